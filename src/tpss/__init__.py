@@ -1,0 +1,1 @@
+"""TPSS, the Train Power System Simulator."""

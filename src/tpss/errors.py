@@ -1,0 +1,38 @@
+"""What can go wrong, as types: bad input, a failed audit, a result that cannot be read."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One fault of an input: where it is, what it is, and how to mend it."""
+
+    file: str
+    key: str
+    value: str
+    problem: str
+    remedy: str
+
+    def __str__(self) -> str:
+        value = f" = {self.value}" if self.value else ""
+        key = f": {self.key}{value}" if self.key else ""
+        return f"{self.file}{key}\n    {self.problem}\n    -> {self.remedy}"
+
+
+class TpssError(Exception):
+    """Base of all errors that TPSS raises on purpose."""
+
+
+class ScenarioError(TpssError):
+    """The input has faults; `findings` lists all of them."""
+
+    def __init__(self, findings: Sequence[Finding]) -> None:
+        self.findings = tuple(findings)
+        count = len(self.findings)
+        head = f"{count} fault{'s' if count > 1 else ''} in the input:"
+        super().__init__("\n".join([head, *(str(finding) for finding in self.findings)]))
+
+
+class ResultError(TpssError):
+    """A result folder cannot be written or read."""

@@ -1,0 +1,64 @@
+"""Compilation of numerical kernels, with a cache that no edit can leave stale.
+
+numba keys its file cache on the file that holds a function, not on the files of the functions that
+it calls: a formula edited in another file would silently keep its old result.  The cache folder is
+therefore named after a digest of *all* kernel sources.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation")
+
+
+def source_digest(package_folder: Path) -> str:
+    """Digest of every kernel source below `package_folder` and of numba's version."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for name in KERNEL_PACKAGES:
+        for file in sorted((package_folder / name).glob("*.py")):
+            digest.update(file.name.encode())
+            digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> Path:
+    """Folder of the compiled kernels: the user's cache, or a temporary one if that is not writable."""
+    home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    name = f"tpss/{source_digest(Path(__file__).parent)}"
+    folder = Path(home).expanduser() / name
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        writable = os.access(folder, os.W_OK)
+    except (OSError, RuntimeError):
+        writable = False
+    return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / name
+
+
+def kernels_are_compiled() -> bool:
+    """Whether compiled kernels of exactly this source exist on disk (or compilation is off)."""
+    return bool(numba.config.DISABLE_JIT) or any(cache_folder().rglob("advance-*.nbi"))
+
+
+def kernel(function: _Function) -> _Function:
+    """Compile `function` at its first call and keep the result on disk.
+
+    Division by zero gives inf or NaN, as in numpy; NaN checks stay (no fast-math); the global
+    interpreter lock is released.  Under ``NUMBA_DISABLE_JIT=1`` the function stays plain Python.
+    """
+    folder_before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(cache_folder())
+    try:
+        compiled: _Function = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    finally:
+        numba.config.CACHE_DIR = folder_before
+    return compiled

@@ -1,0 +1,86 @@
+"""Assemble the model of a scenario from its parts."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tpss.model.supply import SupplyPlan, build_supply
+from tpss.model.trains import build_machine, build_train_types
+from tpss.physics.adhesion import DRY, WET
+from tpss.scenario.line import Line
+from tpss.scenario.scenario import Scenario
+from tpss.simulation.state import STOP, Model, Options, Profile
+from tpss.units import si
+
+STEP_ROUNDING = 1e-9
+"""A dwell or a duration that exceeds whole steps by less than this share of a step ends with them."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Names and places of what the arrays of a model hold."""
+
+    train_types: tuple[str, ...]
+    supply: SupplyPlan
+
+
+def build_model(scenario: Scenario) -> tuple[Model, Layout]:
+    """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
+    network, plan = build_supply(scenario)
+    model = Model(
+        options=_options(scenario),
+        gradients=_gradients(scenario.line),
+        limits=_limits(scenario.line),
+        stops=_stops(scenario),
+        types=build_train_types(list(scenario.trains.values())),
+        machine=build_machine(),
+        network=network,
+    )
+    return model, Layout(train_types=tuple(scenario.trains), supply=plan)
+
+
+def steps_of(duration_s: float, step_s: float) -> int:
+    """Steps that a duration takes, a begun one counted whole."""
+    return int(np.ceil(duration_s / step_s - STEP_ROUNDING))
+
+
+def _options(scenario: Scenario) -> Options:
+    simulation = scenario.simulation
+    return Options(
+        step_s=si(simulation, "time_step_min"),
+        mean_power=simulation.power_sampling == "mean",
+        mean_gradient=simulation.gradient_sampling == "mean",
+        adhesion_in_km_h=simulation.adhesion_speed_unit == "km/h",
+        rail=WET if simulation.rail == "wet" else DRY,
+        fixed_voltage_v=0.0,
+        studied_train=-1,
+    )
+
+
+def _gradients(line: Line) -> Profile:
+    return Profile(
+        from_m=np.array([si(item, "from_km") for item in line.gradients]),
+        value=np.array([item.permille * 1e-3 for item in line.gradients]),
+    )
+
+
+def _limits(line: Line) -> Profile:
+    return Profile(
+        from_m=np.array([si(item, "from_km") for item in line.speed_limits]),
+        value=np.array([si(item, "speed_kmh") for item in line.speed_limits]),
+    )
+
+
+def _stops(scenario: Scenario) -> Any:
+    """Records of `STOP`, one row a traffic entry, the destination last."""
+    position_m = {s.name: si(s, "position_km") for s in scenario.line.stations}
+    step_s = si(scenario.simulation, "time_step_min")
+    most = max(len(entry.stops) for entry in scenario.traffic) + 1
+    rows = np.zeros((len(scenario.traffic), most), dtype=STOP).view(np.recarray)
+    for route, entry in enumerate(scenario.traffic):
+        for k, stop in enumerate(entry.stops):
+            dwell_steps = steps_of(si(stop, "dwell_min"), step_s)
+            rows[route, k] = (position_m[stop.station], dwell_steps, False)
+        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, True)
+    return rows

@@ -1,0 +1,163 @@
+"""The supply network of a scenario as arrays.
+
+Every converter station and every transformer stands at a feeding point.  A feeding point has a node
+on the contact line, and on an AT system, if a converter stands there, one more behind the connection
+impedance; with a high-voltage line it has a node on that line too.  The line's ends are nodes.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.network import SOURCE, Network, assemble, records
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import Catenary, ConverterStation, HighVoltageLine, Supply
+from tpss.units import si
+
+
+@dataclass
+class SupplyPlan:
+    """Nodes, branches and sections by name, before they become arrays."""
+
+    nodes: list[str] = field(default_factory=list)
+    node_km: list[float] = field(default_factory=list)
+    node_level: list[float] = field(default_factory=list)
+    """Own voltage of the node over that of the contact line."""
+    branches: list[tuple[int, int, complex]] = field(default_factory=list)
+    branch_names: list[str] = field(default_factory=list)
+    sections: list[tuple[int, int, float, float, complex, float]] = field(default_factory=list)
+    section_names: list[str] = field(default_factory=list)
+    sources: list[int] = field(default_factory=list)
+
+    def add_node(self, name: str, position_km: float, level: float = 1.0) -> int:
+        """Add a node and return its index."""
+        self.nodes.append(f"{name} at {position_km:g} km")
+        self.node_km.append(position_km)
+        self.node_level.append(level)
+        return len(self.nodes) - 1
+
+    def add_branch(self, name: str, start: int, end: int, impedance_ohm: complex) -> None:
+        """Add a lumped branch."""
+        self.branches.append((start, end, impedance_ohm))
+        self.branch_names.append(name)
+
+
+def build_supply(scenario: Scenario) -> tuple[Network, SupplyPlan]:
+    """Network of a scenario, with the names of its parts."""
+    plan = plan_supply(scenario)
+    sources = _sources(plan, scenario.supply.converter_stations)
+    return assemble(len(plan.nodes), plan.sections, plan.branches, sources), plan
+
+
+def plan_supply(scenario: Scenario) -> SupplyPlan:
+    """Lay out nodes, sections and branches along the line.
+
+    References
+    ----------
+    [Boullanger2009]_, figure 2-4 and appendix A.2.
+    """
+    supply = scenario.supply
+    plan = SupplyPlan()
+    transformers = transformer_positions_km(supply)
+    converters = {station.position_km: station for station in supply.converter_stations}
+    points = sorted({0.0, scenario.line.length_km, *converters, *transformers})
+    line_node = {km: plan.add_node("contact line", km) for km in points}
+    _lay_contact_line(plan, points, line_node, supply)
+    feeding = dict(line_node)
+    connection = _connection_impedance(supply.catenary)
+    if connection:
+        for km, station in sorted(converters.items()):
+            feeding[km] = plan.add_node("AT feeder", km)
+            name = f"connection {station.name}"
+            plan.add_branch(name, feeding[km], line_node[km], connection)
+    if supply.high_voltage_line is not None:
+        stands = sorted({*converters, *transformers})
+        _lay_high_voltage_line(plan, stands, set(converters), feeding, supply)
+    plan.sources = [feeding[station.position_km] for station in supply.converter_stations]
+    return plan
+
+
+def transformer_positions_km(supply: Supply) -> list[float]:
+    """Positions of the transformers between stations, given or equally spaced."""
+    high_voltage = supply.high_voltage_line
+    if high_voltage is None:
+        return []
+    if high_voltage.transformers_km is not None:
+        return list(high_voltage.transformers_km)
+    stations = sorted(station.position_km for station in supply.converter_stations)
+    count = high_voltage.transformers or 0
+    return [
+        start + (end - start) * (i + 1) / (count + 1)
+        for start, end in zip(stations, stations[1:], strict=False)
+        for i in range(count)
+    ]
+
+
+def _connection_impedance(catenary: Catenary) -> complex:
+    return complex(si(catenary, "connection_r_ohm"), si(catenary, "connection_x_ohm"))
+
+
+def _lay_contact_line(
+    plan: SupplyPlan, points: list[float], node: dict[float, int], supply: Supply
+) -> None:
+    catenary = supply.catenary
+    impedance = complex(si(catenary, "r_ohm_per_km"), si(catenary, "x_ohm_per_km"))
+    susceptance = 2 * np.pi * supply.frequency_hz * si(catenary, "capacitance_nf_per_km")
+    for start, end in zip(points, points[1:], strict=False):
+        plan.sections.append(
+            (node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
+        )
+        plan.section_names.append(f"contact line {start:g}-{end:g} km")
+
+
+def _lay_high_voltage_line(
+    plan: SupplyPlan, stands: list[float], stations: set[float], feeding: dict[float, int],
+    supply: Supply,
+) -> None:  # fmt: skip
+    """High-voltage nodes, the line between them, and a transformer at each.
+
+    A transformer between stations on an AT system stands behind a connection impedance of its own,
+    in series.
+    """
+    high_voltage: HighVoltageLine = supply.high_voltage_line  # type: ignore[assignment]
+    level = si(high_voltage, "base_kv") / BASE_VOLTAGE_V
+    kind = high_voltage.type
+    per_m = complex(si(kind, "r_ohm_per_km"), si(kind, "x_ohm_per_km")) / level**2
+    node = {km: plan.add_node("high-voltage line", km, level) for km in stands}
+    for km in stands:
+        unit = high_voltage.station_transformer if km in stations else high_voltage.line_transformer
+        impedance = complex(si(unit, "r_ohm"), si(unit, "x_ohm"))
+        if km not in stations:
+            impedance += _connection_impedance(supply.catenary)
+        plan.add_branch(f"transformer {km:g} km", feeding[km], node[km], impedance)
+    for start, end in zip(stands, stands[1:], strict=False):
+        name = f"high-voltage line {start:g}-{end:g} km"
+        plan.add_branch(name, node[start], node[end], per_m * (end - start) * 1e3)
+
+
+def _sources(plan: SupplyPlan, stations: tuple[ConverterStation, ...]) -> Any:
+    """Records of `SOURCE`, reactances in ohm on the railway's side."""
+    rows = []
+    for node, station in zip(plan.sources, stations, strict=True):
+        kind = station.type
+        base_ohm_va = si(kind, "base_voltage_kv") ** 2
+        row = {
+            "node": node,
+            "no_load_voltage_v": si(kind, "no_load_voltage_kv"),
+            "droop_v_per_var": si(kind, "droop_kv_per_mvar"),
+            "generator_reactance_ohm": kind.generator_reactance_pu
+            * base_ohm_va / si(kind, "generator_base_mva"),
+            "motor_reactance_ohm": kind.motor_reactance_pu
+            * base_ohm_va / si(kind, "motor_base_mva"),
+            "motor_voltage_v": si(kind, "base_voltage_kv"),
+            "grid_reactance_ohm": si(station, "grid_reactance_ohm"),
+            "grid_reactive_power_var": si(station, "grid_reactive_power_mvar"),
+            "grid_angle_rad": si(station, "grid_angle_deg"),
+            "installed": station.converters,
+            "controlled": station.control == "loading",
+            "rating_va": si(kind, "rating_mva"),
+        }  # fmt: skip
+        rows.append(tuple(row[name] for name in SOURCE.names or ()))
+    return records(rows, SOURCE)

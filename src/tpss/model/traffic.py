@@ -1,0 +1,81 @@
+"""The traffic of a scenario as services."""
+
+from tpss.driving.braking import shortest_stop
+from tpss.driving.speed_limits import can_meet_limit
+from tpss.errors import Finding, ScenarioError
+from tpss.physics.gradient import step_index
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.traffic import Traffic
+from tpss.simulation.state import Model
+from tpss.simulation.timetable import Service
+from tpss.units import si
+
+
+def build_services(scenario: Scenario, model: Model) -> list[Service]:
+    """Services in the order of the traffic entries.
+
+    Raises
+    ------
+    ScenarioError
+        A train placed on the line is faster than its limit, or cannot stop or slow down in time.
+    """
+    position = {s.name: si(s, "position_km") for s in scenario.line.stations}
+    types = list(scenario.trains)
+    services = []
+    for route, entry in enumerate(scenario.traffic):
+        stops = (*(position[stop.station] for stop in entry.stops), position[entry.destination])
+        services.append(
+            Service(
+                name=entry.name,
+                train_type=types.index(entry.train),
+                route=route,
+                start_m=position[entry.origin],
+                stops_m=stops,
+                initial=tuple((si(t, "position_km"), si(t, "speed_kmh")) for t in entry.initial_trains),
+                already_running=entry.already_running,
+                **_departures(entry),
+            )
+        )
+    findings = [
+        finding
+        for service in services
+        for i in range(len(service.initial))
+        for finding in _check_placed(service, i, model)
+    ]
+    if findings:
+        raise ScenarioError(findings)
+    return services
+
+
+def _departures(entry: Traffic) -> dict[str, object]:
+    if entry.departures_min is not None:
+        return {"departures_s": tuple(60.0 * minute for minute in entry.departures_min)}
+    return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
+
+
+def _check_placed(service: Service, i: int, model: Model) -> list[Finding]:
+    """Faults of the `i`-th train that a service places on the line."""
+    position_m, speed = service.initial[i]
+    key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
+    limits, h = model.limits, model.options.step_s
+    kind = model.types[service.train_type]
+    retardation = kind.highest_retardation_m_s2
+    here = step_index(position_m, limits.from_m)
+    limit = min(limits.value[here], kind.highest_speed_m_s)
+    stop_m = min(m for m in service.stops_m if m > position_m)
+    problem = ""
+    if speed > limit:
+        problem = f"faster than the limit here, {limit * 3.6:g} km/h"
+    elif shortest_stop(speed, retardation, h) > stop_m - position_m:
+        problem = f"too fast to stop at {stop_m / 1e3:g} km in whole time steps"
+    else:
+        slowest = max(0.0, speed - retardation * h)
+        for j in range(here + 1, limits.from_m.size):
+            distance = limits.from_m[j] - position_m
+            if not can_meet_limit(speed, slowest, distance, limits.value[j], retardation, h):
+                problem = f"too fast to meet the limit at {limits.from_m[j] / 1e3:g} km"
+    if not problem:
+        return []
+    remedy = "lower the speed, or place the train earlier"
+    return [Finding("scenario", key, f"{speed * 3.6:g}", problem, remedy)]
+

@@ -1,0 +1,105 @@
+r"""Converter station between the 50 Hz grid and the railway: terminal voltage over its powers.
+
+All converters of a station are alike and share its power equally.  Static converters imitate
+rotary ones, so one law serves both.
+
+Sign: P and Q are positive when fed into the railway; angles lag (are negative) under load.
+Q_50 is counted positive when delivered to the 50 Hz grid, so that both denominators carry a plus;
+the extraction of the thesis has lost the signs, and with Q_50 = 0 nothing depends on it.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from tpss.kernel import kernel
+
+CONVERTER_LAW = np.dtype(
+    [
+        ("no_load_voltage_v", float),
+        ("droop_v_per_var", float),
+        ("generator_reactance_ohm", float),
+        ("motor_reactance_ohm", float),
+        ("motor_voltage_v", float),
+        ("grid_reactance_ohm", float),
+        ("grid_reactive_power_var", float),
+        ("grid_angle_rad", float),
+    ],
+    align=True,
+)
+"""Parameters of a station's converters; reactances of one converter, on the railway's side."""
+
+Law = Any
+"""A record with the fields of `CONVERTER_LAW`."""
+
+
+@kernel
+def converter_voltage(reactive_power_var: float, converters: float, law: Law) -> float:
+    r"""Terminal voltage of a station. [V]
+
+    .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{MVAr}]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1) and (F.33).
+    """
+    return law.no_load_voltage_v - law.droop_v_per_var * reactive_power_var / converters
+
+
+@kernel
+def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, float]:
+    r"""Angle behind the 50 Hz side, seen at 16.7 Hz, and its slope in P. [rad], [rad/W]
+
+    .. math::
+        \theta_{50} - \tfrac13 \arctan\frac{X_{50} P_G}{U_m^2 + X_{50} Q_{50}}
+        - \tfrac13 \arctan\frac{X_q^m P_G / \#conv}{U_m^2 + X_q^m Q_{50} / \#conv}
+
+    The grid carries the power of the whole station, a machine that of one converter.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.2), (F.39) and the first half of (2.3), (F.40).
+    """
+    q50_var = law.grid_reactive_power_var
+    square = law.motor_voltage_v ** 2
+    grid = law.grid_reactance_ohm / (square + law.grid_reactance_ohm * q50_var)
+    x_motor = law.motor_reactance_ohm / converters
+    motor = x_motor / (square + x_motor * q50_var)
+    angle = law.grid_angle_rad - (np.arctan(grid * power_w) + np.arctan(motor * power_w)) / 3.0
+    slope = -(grid / (1.0 + (grid * power_w) ** 2) + motor / (1.0 + (motor * power_w) ** 2)) / 3.0
+    return angle, slope
+
+
+@kernel
+def terminal_voltage(
+    power_w: float, reactive_power_var: float, converters: float, law: Law
+) -> tuple[float, float, float, float, float]:
+    r"""Voltage and angle of a station and their slopes: U, θ, dU/dQ, dθ/dP, dθ/dQ.
+
+    .. math::
+        \theta = \theta_0 + \psi, \quad
+        \psi \ni -\arctan\frac{X_q^g P_G / \#conv}{U_g^2 + X_q^g Q_G / \#conv}
+
+    Parameters
+    ----------
+    power_w, reactive_power_var : float
+        Fed into the railway by the whole station. [W], [var]
+    converters : float
+        Number of converters running, at least 1.
+    law : record of `CONVERTER_LAW`
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.3), (2.4), (F.40) and (F.41).
+    """
+    voltage = converter_voltage(reactive_power_var, converters, law)
+    voltage_slope = -law.droop_v_per_var / converters
+    behind, behind_slope = grid_angle(power_w, converters, law)
+    x = law.generator_reactance_ohm / converters
+    opposite = x * power_w
+    adjacent = voltage * voltage + x * reactive_power_var
+    length = opposite * opposite + adjacent * adjacent
+    angle = behind - np.arctan2(opposite, adjacent)
+    by_power = behind_slope - x * adjacent / length
+    by_reactive = opposite * (2.0 * voltage * voltage_slope + x) / length
+    return voltage, angle, voltage_slope, by_power, by_reactive

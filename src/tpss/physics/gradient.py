@@ -1,0 +1,68 @@
+"""Gradient of the track under a train, at a point or as a mean over the way of a step.
+
+A profile is a staircase: each gradient holds from its position to the next one's; the outer ones go
+on beyond the profile's ends.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.kernel import kernel
+
+Array = npt.NDArray[np.float64]
+
+
+@kernel
+def step_index(position_m: float, from_m: Array) -> int:
+    """Index of the stair that holds at a position (the first one before the profile begins)."""
+    return max(np.searchsorted(from_m, position_m, side="right") - 1, 0)
+
+
+@kernel
+def gradient_at(position_m: float, from_m: Array, gradient: Array) -> float:
+    """Gradient at a position: rise over run, positive uphill. [1]
+
+    Parameters
+    ----------
+    position_m : float
+        Position on the line. [m]
+    from_m : Array, shape (n,)
+        Positions from which the gradients hold, ascending. [m]
+    gradient : Array, shape (n,)
+        Rise over run. [1]
+
+    References
+    ----------
+    [Boullanger2009]_, the inclination of eq. (F.3).
+    """
+    return gradient[step_index(position_m, from_m)]
+
+
+@kernel
+def mean_gradient(position_m: float, way_m: float, from_m: Array, gradient: Array) -> float:
+    """Altitude difference over a way, divided by the way; the gradient at a point if it is zero. [1]
+
+    The climb of a long step is then the true one, whatever the profile does on the way.  The stairs
+    are summed one by one rather than by the difference of two altitudes, which would cancel.
+
+    Parameters
+    ----------
+    position_m : float
+        Where the way begins. [m]
+    way_m : float
+        Length of the way ahead, not negative. [m]
+    from_m, gradient : Array, shape (n,)
+        The profile, as in `gradient_at`.
+    """
+    stair = step_index(position_m, from_m)
+    if way_m <= 0.0:
+        return gradient[stair]
+    end_m = position_m + way_m
+    climb_m = 0.0
+    at_m = position_m
+    while stair + 1 < from_m.size and from_m[stair + 1] < end_m:
+        climb_m += gradient[stair] * (from_m[stair + 1] - at_m)
+        at_m = from_m[stair + 1]
+        stair += 1
+    climb_m += gradient[stair] * (end_m - at_m)
+    return climb_m / way_m

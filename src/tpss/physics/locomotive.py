@@ -1,0 +1,304 @@
+r"""What a train takes from the contact line at a voltage: force, active and reactive power.
+
+Within a step a train's force is the smallest of what the driver wants, what adhesion allows and what
+the machine gives at the voltage of its pantograph (F.20, F.21).  The first two do not depend on the
+voltage: they are its `force_cap_n`.  The third follows from eq. (2.5) and (2.11), both linear in the
+acceleration that belongs to the force,
+
+.. math:: F = F_{max}(U) - c a, \; a = (F - F_{res}) / M
+          \;\Rightarrow\; F = \frac{F_{max}(U) + c F_{res} / M}{1 + c / M},
+
+with c = 4 K_J (κ + 1) the inertia of the rotors and M that of the train.
+
+Trains are records: `TRAIN_TYPE` holds what its owner states, `DEMAND` what stays fixed while a step
+is solved.  A record is one pointer to compiled code, however many fields it has.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.kernel import kernel
+from tpss.physics.motor import (
+    NEW,
+    armature_current,
+    line_voltage_factor,
+    motor_force,
+    motor_voltage,
+)
+from tpss.physics.neural_network import FeedForwardNetwork
+from tpss.physics.reactive_power import (
+    DOUBLE_BRIDGE,
+    TRANSFORMER_RATIO,
+    bridge_reactive_power,
+    bridge_sine,
+    filter_reactive_power,
+)
+from tpss.physics.tractive_effort import maximum_motor_force, steepest_slope
+
+Array = npt.NDArray[np.float64]
+
+
+class Machine(NamedTuple):
+    """The three networks that describe the locomotive's machine."""
+
+    tractive_effort: FeedForwardNetwork
+    bridge_sine: FeedForwardNetwork
+    power_factor: FeedForwardNetwork
+
+
+TRAIN_TYPE = np.dtype(
+    [
+        ("mass_kg", float),
+        ("adhesive_mass_kg", float),
+        ("inertia_kg", float),  # M = m_adh + (m - m_adh)(1 + H), eq. (2.11)
+        ("rotor_mass_kg", float),  # c = 4 K_J (κ + 1)
+        ("slip_factor", float),  # κ + 1
+        ("resistance_a_n", float),
+        ("resistance_b_n_s_per_m", float),
+        ("resistance_c_n_s2_per_m2", float),
+        ("highest_current_a", float),
+        ("highest_retardation_m_s2", float),
+        ("highest_speed_m_s", float),
+        ("efficiency", float),
+        ("auxiliary_power_w", float),
+        ("auxiliary_reactive_power_var", float),
+        ("base_speed_m_s", float),
+        ("highest_motor_voltage_v", float),
+        ("filter_reactance_ohm", float),  # infinite without a filter
+        ("reactive_model", np.int64),
+        ("voltage_model", np.int64),
+        ("current_model", np.int64),
+    ],
+    align=True,
+)
+"""A kind of train, in SI units."""
+
+DEMAND = np.dtype(
+    [
+        ("force_cap_n", float),  # wanted force or adhesion limit, the smaller; 0 with motors off
+        ("resistance_n", float),
+        ("speed_m_s", float),  # at the start of the step
+        ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
+        ("reactive_ratio", float),  # Q over P of the motors, by the power factor
+        ("free_voltage_v", float),  # voltage around which the machine does not limit the force ...
+        ("free_band_v", float),  # ... and how far from it that is proven; negative: nowhere
+    ],
+    align=True,
+)
+"""What fixes a train's demand over voltage during one step."""
+
+TrainType = Any
+"""A record with the fields of `TRAIN_TYPE`."""
+
+Demand = Any
+"""A record with the fields of `DEMAND`, perhaps among others."""
+
+
+@kernel
+def machine_force(
+    motor_force_n: float, resistance_n: float, rotor_mass_kg: float, inertia_kg: float
+) -> float:
+    """Force at the wheel rim when the motors give `motor_force_n`, acceleration solved for. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5), (2.11), (F.19) and (F.22).
+    """
+    ratio = rotor_mass_kg / inertia_kg
+    return (motor_force_n + ratio * resistance_n) / (1.0 + ratio)
+
+
+@kernel
+def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> float:
+    """Acceleration of a driving train. [m/s²]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11) and (F.19).
+    """
+    return (force_n - resistance_n) / inertia_kg
+
+
+@kernel
+def prove_free_band(
+    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+) -> None:
+    """Find how far from `voltage_v` the machine cannot be what limits the force.
+
+    The slope of the force is bounded (`steepest_slope`), so a margin in force is a margin in
+    voltage; within it the network need not be evaluated again, and nothing is approximated.
+    """
+    train.free_voltage_v = voltage_v
+    train.free_band_v = -1.0
+    if train.force_cap_n <= 0.0:
+        return
+    ratio = kind.rotor_mass_kg / kind.inertia_kg
+    needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
+    network = machine.tractive_effort
+    force, _ = maximum_motor_force(voltage_v, bias, network)
+    train.free_band_v = (force - needed) / steepest_slope(network)
+
+
+@kernel
+def wheel_force(
+    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+) -> tuple[float, float]:
+    """Tractive force at the wheel rim at a voltage, and its slope. [N], [N/V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.7), (F.20) and (F.21).
+    """
+    cap = train.force_cap_n
+    if cap <= 0.0:
+        return 0.0, 0.0
+    if abs(voltage_v - train.free_voltage_v) < train.free_band_v:
+        return cap, 0.0
+    force, slope = maximum_motor_force(voltage_v, bias, machine.tractive_effort)
+    if force < 0.0:
+        force, slope = 0.0, 0.0
+    limit = machine_force(
+        force, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
+    )
+    if limit >= cap:
+        return cap, 0.0
+    if limit <= 0.0:
+        return 0.0, 0.0
+    return limit, slope / (1.0 + kind.rotor_mass_kg / kind.inertia_kg)
+
+
+@kernel
+def motor_state(
+    force_n: float, kind: TrainType, train: Demand
+) -> tuple[float, float, float, float]:
+    r"""Motor force, billed speed, motor power, and the power's slope over the force at the wheel rim.
+
+    .. math:: P_{motor} = F_{motor} \, v \, (\kappa + 1)
+
+    The speed is that at the start of the step (the thesis) or the step's mean, v + a h/2, with which
+    traction work, resistance, climb and kinetic energy balance.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.12) and (F.23a).
+    """
+    weight = train.mean_speed_weight_s
+    a = acceleration(force_n, train.resistance_n, kind.inertia_kg)
+    motor = motor_force(force_n, a, kind.rotor_mass_kg)
+    speed = max(0.0, train.speed_m_s + weight * a)
+    if force_n <= 0.0 or motor <= 0.0:
+        return 0.0, speed, 0.0, 0.0
+    slip = kind.slip_factor
+    slope = slip * (
+        (1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed
+        + motor * weight / kind.inertia_kg
+    )
+    return motor, speed, motor * speed * slip, slope
+
+
+@kernel
+def train_armature_current(
+    motor_force_n: float, speed_m_s: float, kind: TrainType, train: Demand
+) -> float:
+    """Sum of the four motors' currents at full line voltage. [A] See `armature_current`."""
+    return armature_current(
+        motor_force_n,
+        kind.slip_factor,
+        speed_m_s,
+        kind.base_speed_m_s,
+        kind.highest_motor_voltage_v,
+        train.speed_m_s < kind.base_speed_m_s,
+    )
+
+
+@kernel
+def train_bridge_sine(
+    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
+) -> tuple[float, float]:
+    """β, clipped to 0 ≤ β ≤ 1, and its slope over the line voltage. [1], [1/V]"""
+    motor_v = motor_voltage(
+        train.speed_m_s,
+        voltage_v,
+        kind.base_speed_m_s,
+        kind.highest_motor_voltage_v,
+        kind.voltage_model,
+    )
+    sine, by_motor, by_locomotive = bridge_sine(
+        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine
+    )
+    if sine <= 0.0:
+        return 0.0, 0.0
+    if sine >= 1.0:
+        return 1.0, 0.0
+    slope = by_locomotive * TRANSFORMER_RATIO
+    if kind.voltage_model != NEW and line_voltage_factor(voltage_v, kind.voltage_model) < 1.0:
+        slope += by_motor * motor_v / voltage_v
+    return sine, slope
+
+
+@kernel
+def bridge_demand(
+    voltage_v: float, force_n: float, slope_n_per_v: float,
+    kind: TrainType, train: Demand, machine: Machine,
+) -> tuple[float, float]:  # fmt: skip
+    """Reactive power of the motors by the double-bridge model, and its slope. [var], [var/V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.19) and (F.24).
+    """
+    motor, speed, _, _ = motor_state(force_n, kind, train)
+    factor = line_voltage_factor(voltage_v, kind.voltage_model)
+    current = train_armature_current(motor, speed, kind, train) / factor
+    if current <= 0.0:
+        return 0.0, 0.0
+    sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
+    reactive = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, current, sine)
+    unit = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, current, 1.0)
+    slope = unit * sine_slope
+    if factor == 1.0:
+        slope += reactive / voltage_v
+    # The current follows the force: by the motor force and, above base speed, by the speed too.
+    inertia = kind.inertia_kg
+    current_slope = (1.0 + kind.rotor_mass_kg / inertia) / motor
+    if train.speed_m_s >= kind.base_speed_m_s:
+        current_slope += train.mean_speed_weight_s / inertia / speed
+    return reactive, slope + reactive * current_slope * slope_n_per_v
+
+
+@kernel
+def electrical_demand(
+    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+) -> tuple[float, float, float, float]:
+    r"""Active and reactive power that a train draws at a voltage, and their slopes: P, Q, P', Q'.
+
+    .. math:: P_D = P_{motor} / \eta_{loco} + P_{aux}, \quad Q_D = Q_{motor} + Q_{aux} + Q_f
+
+    Parameters
+    ----------
+    voltage_v : float
+        Voltage at the pantograph. [V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
+    """
+    force, slope = wheel_force(voltage_v, kind, train, bias, machine)
+    _, _, power, power_slope = motor_state(force, kind, train)
+    power_slope *= slope
+    active = power / kind.efficiency + kind.auxiliary_power_w
+    if kind.reactive_model == DOUBLE_BRIDGE:
+        reactive, reactive_slope = bridge_demand(
+            voltage_v, force, slope, kind, train, machine
+        )
+    else:
+        reactive = power * train.reactive_ratio
+        reactive_slope = power_slope * train.reactive_ratio
+    filtered = filter_reactive_power(
+        voltage_v * TRANSFORMER_RATIO, kind.filter_reactance_ohm
+    )
+    reactive += kind.auxiliary_reactive_power_var + filtered
+    reactive_slope += 2.0 * filtered / voltage_v
+    return active, reactive, power_slope / kind.efficiency, reactive_slope

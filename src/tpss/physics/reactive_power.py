@@ -1,0 +1,127 @@
+"""Reactive power of a locomotive with line-commutated bridges.
+
+Sign: positive is inductive, drawn by the train.
+"""
+
+import numpy as np
+
+from tpss.kernel import kernel
+from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
+from tpss.physics.neural_network import FeedForwardNetwork, logsig, outside, tansig
+
+POWER_FACTOR = 0
+DOUBLE_BRIDGE = 1
+
+TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
+"""In-locomotive voltage over line voltage, U_locoRc / U = 487 V / 15 kV. [Boullanger2009]_, (F.32)."""
+
+
+@kernel
+def bridge_sine(
+    motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork
+) -> tuple[float, float, float]:
+    r"""Network for the sine of the firing angle, β, and its slopes in both voltages. [1], [1/V]
+
+    β stands for the sin(arccos(...)) of eq. (3.1) of two half-controlled bridges in series; it is
+    between 0 and 1 but for the network's error, and the caller clips it and counts that.
+
+    Parameters
+    ----------
+    motor_voltage_v : float
+        U_di, trained on 0 to 770 V. [V]
+    locomotive_voltage_v : float
+        U_locoRc, trained on 214.28 to 642.84 V. [V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (D.1)-(D.15) and (F.15)-(F.18).
+    """
+    sine = network.output_bias
+    by_motor = 0.0
+    by_locomotive = 0.0
+    hidden = network.hidden
+    for neuron in range(hidden.shape[0]):
+        w_motor, w_locomotive = hidden[neuron, 0], hidden[neuron, 1]
+        activation = logsig(
+            hidden[neuron, 2] + w_motor * motor_voltage_v + w_locomotive * locomotive_voltage_v
+        )
+        slope = hidden[neuron, 3] * activation * (1.0 - activation)
+        sine += hidden[neuron, 3] * activation
+        by_motor += slope * w_motor
+        by_locomotive += slope * w_locomotive
+    return sine, by_motor, by_locomotive
+
+
+@kernel
+def bridge_outside_training(
+    motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork
+) -> bool:
+    """Whether the bridge network extrapolates at this point."""
+    return outside(motor_voltage_v, network, 0) or outside(locomotive_voltage_v, network, 1)
+
+
+@kernel
+def bridge_reactive_power(
+    locomotive_voltage_v: float, armature_current_a: float, sine: float
+) -> float:
+    r"""Fundamental reactive power of the double bridges. [var]
+
+    .. math:: Q_{motor} = U_{locoRc} \, 4 I_D \frac{\sqrt 2}{\pi} \beta
+
+    Notes
+    -----
+    With the former motor current (2.18), I_D already is the sum of the four motors.  Taken with the
+    printed factor 4 the reactive power would be four times the physical one, so we read the former
+    pair of equations as the same sum of currents.  The text does not settle it.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.19), (3.1), (3.2) and (F.24).
+    """
+    return locomotive_voltage_v * armature_current_a * np.sqrt(2.0) / np.pi * sine
+
+
+@kernel
+def power_factor(speed_m_s: float, network: FeedForwardNetwork) -> float:
+    """Power factor λ of the locomotive over speed, trained on 0 to 160 km/h. [1]
+
+    The curve drops from 0.92 to 0.64 just above 40 km/h, where the second bridge starts.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (E.1)-(E.13) and (F.11)-(F.14).
+    """
+    factor = network.output_bias
+    hidden = network.hidden
+    for neuron in range(hidden.shape[0]):
+        factor += hidden[neuron, 2] * tansig(hidden[neuron, 1] + hidden[neuron, 0] * speed_m_s)
+    return factor
+
+
+@kernel
+def reactive_ratio(factor: float) -> float:
+    r"""Reactive over active power at a power factor, √(1 - λ²) / λ. [1]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.21), (2.24), (F.23) and (F.27).
+    """
+    return np.sqrt(1.0 - factor * factor) / factor
+
+
+@kernel
+def filter_reactive_power(locomotive_voltage_v: float, reactance_ohm: float) -> float:
+    r"""Reactive power drawn by the locomotive's filter; negative: it feeds. [var]
+
+    .. math:: Q_f = U_{locoRc}^2 / X_f
+
+    Parameters
+    ----------
+    reactance_ohm : float
+        Reactance on the transformer's secondary side, negative. [Ω]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.20).
+    """
+    return locomotive_voltage_v * locomotive_voltage_v / reactance_ohm

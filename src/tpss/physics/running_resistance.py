@@ -1,0 +1,56 @@
+"""Forces that oppose a train: rolling and air resistance, and gravity on a gradient.
+
+Sign: a positive force opposes forward motion.  Units: SI; the suffix of a name says which.
+"""
+
+from typing import NamedTuple
+
+from tpss.kernel import kernel
+from tpss.physics.constants import GRAVITY_M_S2
+
+
+class DavisCoefficients(NamedTuple):
+    """Running resistance of a whole train on straight level track, R = a + b v + c v²."""
+
+    a_n: float
+    b_n_s_per_m: float
+    c_n_s2_per_m2: float
+
+
+@kernel
+def running_resistance(speed_m_s: float, davis: DavisCoefficients) -> float:
+    r"""Resistance of rolling and air on straight level track. [N]
+
+    .. math:: F_{air,mech} = A + B v + C v^2
+
+    Parameters
+    ----------
+    speed_m_s : float
+        Train speed, not negative. [m/s]
+    davis : DavisCoefficients
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.8) and (F.2).
+    """
+    return davis.a_n + davis.b_n_s_per_m * speed_m_s + davis.c_n_s2_per_m2 * speed_m_s**2
+
+
+@kernel
+def gradient_force(mass_kg: float, gradient: float) -> float:
+    r"""Component of the train's weight along the track. [N]
+
+    .. math:: F_{grades} = m g \alpha
+
+    Parameters
+    ----------
+    mass_kg : float
+        Mass of the whole train. [kg]
+    gradient : float
+        Rise over run, positive uphill; the thesis writes it in per mille. [1]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.9) and (F.3).
+    """
+    return mass_kg * GRAVITY_M_S2 * gradient

@@ -1,0 +1,166 @@
+"""Linear systems over the fixed nodes: block elimination with a pattern found once.
+
+A supply network is a ladder (catenary, feeder, high-voltage line) along the track.  Eliminating its
+nodes in an order of least fill touches a bounded number of blocks for each, so the cost grows in
+proportion to the nodes.  The order, the fill and the places of all blocks are found once, in plain
+Python; each solution then only runs through lists of places.  A block is a pair (see `pairs`).
+"""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.kernel import kernel
+from tpss.powerflow.pairs import apply, compose, determinant, inverse
+
+Indices = npt.NDArray[np.int64]
+Complexes = npt.NDArray[np.complex128]
+
+
+PIVOT = np.dtype(
+    [
+        ("node", np.int64),
+        ("first", np.int64),  # bounds of its neighbours
+        ("end", np.int64),
+        ("update", np.int64),  # first of its updates
+    ],
+    align=True,
+)
+"""A node in the order of elimination."""
+
+NEIGHBOUR = np.dtype(
+    [
+        ("node", np.int64),  # eliminated later, coupled to the pivot's node (fill included)
+        ("upper", np.int64),  # place of (pivot's node, neighbour)
+        ("lower", np.int64),  # place of (neighbour, pivot's node)
+    ],
+    align=True,
+)
+
+
+class Pattern(NamedTuple):
+    """Places of blocks and the order of elimination.  The block (i, i) has the place i."""
+
+    pivots: Any
+    """Records of `PIVOT`, in the order of elimination."""
+    neighbours: Any
+    """Records of `NEIGHBOUR`, pivot by pivot."""
+    updates: Indices
+    """Places of (neighbour a, neighbour b), pivot by pivot and row by row."""
+    row_start: Indices
+    rows: Indices
+    """Places of all blocks of each row, fill included, row by row."""
+
+
+def find_pattern(
+    n_nodes: int, edges: Iterable[tuple[int, int]]
+) -> tuple[Pattern, dict[tuple[int, int], int]]:
+    """Pattern of a network and the place of each block.
+
+    Parameters
+    ----------
+    n_nodes : int
+        Number of nodes.
+    edges : iterable of (int, int)
+        Pairs of nodes that a branch or a section couples.
+
+    Returns
+    -------
+    Pattern, dict
+        The dictionary gives the place of each block (row, column).
+    """
+    coupled: list[set[int]] = [set() for _ in range(n_nodes)]
+    for i, j in edges:
+        coupled[i].add(j)
+        coupled[j].add(i)
+    order, later = _order_of_least_fill(coupled)
+    place = {(i, i): i for i in range(n_nodes)}
+    for node, neighbours in zip(order, later, strict=True):
+        for other in neighbours:
+            place[node, other] = len(place)
+            place[other, node] = len(place)
+    rows = _blocks_by_row(n_nodes, place)
+    starts = np.cumsum([0, *(len(js) for js in later)])
+    updates = np.cumsum([0, *(len(js) ** 2 for js in later)])
+    pivots = zip(order, starts, starts[1:], updates, strict=False)
+    pairs = [(i, j) for i, js in zip(order, later, strict=True) for j in js]
+    neighbours = [(j, place[i, j], place[j, i]) for i, j in pairs]
+    pattern = Pattern(
+        pivots=np.array(list(pivots), dtype=PIVOT).view(np.recarray),
+        neighbours=np.array(neighbours, dtype=NEIGHBOUR).view(np.recarray),
+        updates=_indices(place[a, b] for js in later for a in js for b in js),
+        row_start=_indices([0, *np.cumsum([len(row) for row in rows])]),
+        rows=_indices(item for row in rows for item in row),
+    )
+    return pattern, place
+
+
+def _order_of_least_fill(coupled: list[set[int]]) -> tuple[list[int], list[list[int]]]:
+    """Eliminate, again and again, a node with the fewest neighbours; return order and neighbours."""
+    graph = [set(neighbours) for neighbours in coupled]
+    left = set(range(len(graph)))
+    order: list[int] = []
+    later: list[list[int]] = []
+    while left:
+        node = min(left, key=lambda i: (len(graph[i]), i))
+        neighbours = sorted(graph[node])
+        for i in neighbours:
+            graph[i].discard(node)
+            graph[i].update(j for j in neighbours if j != i)
+        left.discard(node)
+        order.append(node)
+        later.append(neighbours)
+    return order, later
+
+
+def _blocks_by_row(n_nodes: int, place: dict[tuple[int, int], int]) -> list[list[int]]:
+    rows: list[list[int]] = [[] for _ in range(n_nodes)]
+    for (i, _), block in place.items():
+        rows[i].append(block)
+    return rows
+
+
+def _indices(values: Iterable[int]) -> Indices:
+    return np.array(list(values), dtype=np.int64)
+
+
+@kernel
+def solve_blocks(pattern: Pattern, p: Complexes, q: Complexes, x: Complexes) -> float:
+    """Solve the system in place and return the sign of its determinant (0 or NaN: singular).
+
+    Parameters
+    ----------
+    pattern : Pattern
+    p, q : Complexes, shape (blocks,)
+        The blocks; overwritten.
+    x : Complexes, shape (nodes,)
+        The right-hand side; overwritten by the solution.
+    """
+    sign = 1.0
+    # 1. Eliminate forwards; each pivot's inverse replaces it.
+    for k in range(pattern.pivots.size):
+        pivot = pattern.pivots[k]
+        node, target = pivot.node, pivot.update
+        sign *= np.sign(determinant(p[node], q[node]))
+        p[node], q[node] = inverse(p[node], q[node])
+        for a in range(pivot.first, pivot.end):
+            neighbour = pattern.neighbours[a]
+            lp, lq = compose(p[neighbour.lower], q[neighbour.lower], p[node], q[node])
+            for b in range(pivot.first, pivot.end):
+                up, place = pattern.neighbours[b].upper, pattern.updates[target]
+                dp, dq = compose(lp, lq, p[up], q[up])
+                p[place] -= dp
+                q[place] -= dq
+                target += 1
+            x[neighbour.node] -= apply(lp, lq, x[node])
+    # 2. Substitute backwards.
+    for k in range(pattern.pivots.size - 1, -1, -1):
+        pivot = pattern.pivots[k]
+        rest = x[pivot.node]
+        for a in range(pivot.first, pivot.end):
+            neighbour = pattern.neighbours[a]
+            rest -= apply(p[neighbour.upper], q[neighbour.upper], x[neighbour.node])
+        x[pivot.node] = apply(p[pivot.node], q[pivot.node], rest)
+    return sign

@@ -1,0 +1,207 @@
+"""The supply network as records: fixed nodes, lumped branches, contact-line sections, sources.
+
+Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records keep what belongs to
+one node or section together; to compiled code an array of them is one argument.
+"""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.physics.converter import CONVERTER_LAW
+from tpss.physics.locomotive import Machine
+from tpss.powerflow.block_lu import Pattern, find_pattern
+
+Floats = npt.NDArray[np.float64]
+Complexes = npt.NDArray[np.complex128]
+Indices = npt.NDArray[np.int64]
+
+SECTION = np.dtype(
+    [
+        ("start_node", np.int64),
+        ("end_node", np.int64),
+        ("start_m", float),
+        ("end_m", float),
+        ("impedance_ohm_per_m", complex),
+        ("susceptance_s_per_m", float),
+        ("block_aa", np.int64),  # places of its blocks: a is the start node, b the end node
+        ("block_ab", np.int64),
+        ("block_ba", np.int64),
+        ("block_bb", np.int64),
+    ],
+    align=True,
+)
+"""A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
+
+BRANCH = np.dtype(
+    [("start_node", np.int64), ("end_node", np.int64), ("impedance_ohm", complex)], align=True
+)
+"""A lumped impedance."""
+
+SOURCE = np.dtype(
+    [
+        ("node", np.int64),
+        *((name, CONVERTER_LAW[name]) for name in CONVERTER_LAW.names or ()),
+        ("installed", np.int64),
+        ("controlled", np.bool_),  # whether the number of running converters follows the loading
+        ("rating_va", float),  # of one converter
+    ],
+    align=True,
+)
+"""A converter station at a fixed node."""
+
+NODE_FLOW = np.dtype(
+    [
+        ("voltage_v", complex),
+        ("leaving_current_a", complex),  # into sections and branches
+        ("residual_pu", complex),
+        ("base_v", complex),  # where a Newton step starts
+        ("direction_v", complex),  # the whole step
+        ("good_v", complex),  # of the last solution that is known to be good
+    ],
+    align=True,
+)
+
+SECTION_FLOW = np.dtype(
+    [
+        ("current_a", complex),  # enters the section at its start
+        ("end_current_a", complex),  # leaves it at its end
+        ("gap_v", complex),  # between the end of the chain and the end node
+        ("inverse_p", complex),  # pair that gives a change of the entering current
+        ("inverse_q", complex),
+        ("transfer_p", complex),  # pair by which the end voltage follows the start voltage
+        ("transfer_q", complex),
+        ("base_a", complex),
+        ("direction_a", complex),
+        ("good_a", complex),
+        ("first", np.int64),  # bounds of its trains in `Flow.standing`
+        ("end", np.int64),
+        ("closing_m", float),  # line between its last train and its end node
+    ],
+    align=True,
+)
+
+STANDING = np.dtype(
+    [
+        ("train", np.int64),
+        ("piece_m", float),  # line between the train and the train or node before it
+        ("voltage_v", complex),
+    ],
+    align=True,
+)
+"""A train's place in the order along the line."""
+
+
+class Network(NamedTuple):
+    """A supply network; all impedances are referred to the contact line's voltage."""
+
+    sections: Any
+    """Records of `SECTION`, by position."""
+    branches: Any
+    """Records of `BRANCH`."""
+    sources: Any
+    """Records of `SOURCE`."""
+    source_of_node: Indices
+    """Index of the source at each node, or -1."""
+    pattern: Pattern
+    branch_blocks: Complexes
+    """The lumped branches' admittances at the places of their blocks, shape (blocks,)."""
+
+
+class Flow(NamedTuple):
+    """State of a load flow, and scratch; the unknowns are node voltages and entering currents."""
+
+    nodes: Any
+    """Records of `NODE_FLOW`."""
+    sections: Any
+    """Records of `SECTION_FLOW`."""
+    standing: Any
+    """Records of `STANDING`, by position; as many are valid as trains are on the line."""
+    converters: Floats
+    """Number of converters that run in each station."""
+    block_p: Complexes
+    block_q: Complexes
+    right_side: Complexes
+    """Of the linear system over the nodes, then its solution."""
+    sensitivity: Complexes
+    """Of a chain's voltage and current to its start voltage and current, shape (2, 2, 2)."""
+
+
+class Loads(NamedTuple):
+    """The trains, as far as the load flow is concerned."""
+
+    trains: Any
+    """Records with the fields of `DEMAND`, and `train_type`."""
+    bias: Floats
+    """Of each train's tractive-effort network, shape (trains, neurons)."""
+    types: Any
+    """Records of `TRAIN_TYPE`."""
+    machine: Machine
+
+
+def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
+    """Array of records whose fields are attributes, in compiled and in plain Python."""
+    return np.array(list(rows), dtype=dtype).view(np.recarray)
+
+
+def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
+    """Array of records, all zero."""
+    return np.zeros(count, dtype=dtype).view(np.recarray)
+
+
+def assemble(
+    n_nodes: int,
+    sections: list[tuple[int, int, float, float, complex, float]],
+    branches: list[tuple[int, int, complex]],
+    sources: Any,
+) -> Network:
+    """Network from its parts.
+
+    Parameters
+    ----------
+    n_nodes : int
+        Number of fixed nodes.
+    sections : list of (start node, end node, start_m, end_m, impedance_ohm_per_m, susceptance_s_per_m)
+    branches : list of (start node, end node, impedance_ohm)
+    sources : records of `SOURCE`
+        At most one a node.
+    """
+    ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
+    pattern, place = find_pattern(n_nodes, ends)
+    admittances = np.zeros(len(place), dtype=complex)
+    for a, b, impedance in branches:
+        for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+            admittances[place[i, j]] += sign / impedance
+    source_of_node = np.full(n_nodes, -1, dtype=np.int64)
+    source_of_node[sources.node] = np.arange(sources.size)
+    return Network(
+        sections=records(
+            [
+                (a, b, *rest, place[a, a], place[a, b], place[b, a], place[b, b])
+                for a, b, *rest in sections
+            ],
+            SECTION,
+        ),
+        branches=records(branches, BRANCH),
+        sources=sources,
+        source_of_node=source_of_node,
+        pattern=pattern,
+        branch_blocks=admittances,
+    )
+
+
+def new_flow(network: Network, n_trains: int) -> Flow:
+    """State of a load flow with room for `n_trains`, all converters running."""
+    nodes, blocks = network.source_of_node.size, network.branch_blocks.size
+    return Flow(
+        nodes=blank_records(nodes, NODE_FLOW),
+        sections=blank_records(network.sections.size, SECTION_FLOW),
+        standing=blank_records(n_trains, STANDING),
+        converters=network.sources.installed.astype(float),
+        block_p=np.zeros(blocks, dtype=complex),
+        block_q=np.zeros(blocks, dtype=complex),
+        right_side=np.zeros(nodes, dtype=complex),
+        sensitivity=np.zeros((2, 2, 2), dtype=complex),
+    )

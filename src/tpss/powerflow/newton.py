@@ -1,0 +1,290 @@
+r"""Newton's method for the coupled load flow.
+
+Unknowns are the voltages V of the fixed nodes and the current I_s that enters each section.  Three
+kinds of equation, all complex:
+
+    section s from a to b:  E_s(V_a, I_s) = V_b            (`chain` pushes V_a, I_s to the end E_s)
+    node without source:    Σ leaving currents = 0
+    node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
+
+f is the converter law (2.1)-(2.4).  The trains' equations stand inside the chains, so forces,
+accelerations and powers are solved together with the voltages.
+
+A section's linearised equation, A δV_a + B δI_s + g = δV_b with the gap g = E_s - V_b, gives
+
+    δI_s = B⁻¹ (δV_b - A δV_a - g)
+
+and, put into the currents at both ends (end current C δV_a + D δI_s), blocks between its nodes only:
+
+    leaving a:  B⁻¹(δV_b - A δV_a - g)       leaving b:  -(C - D B⁻¹A) δV_a - D B⁻¹ (δV_b - g)
+
+A source's row is the linearised f: with δS = J̄ δV + V δJ̄ and the pair (s₁, s₂) of f over S,
+
+    δV - (s₁J̄, s₂J) δV - (s₂V̄, s₁V) δJ = -(V - f)
+
+All derivatives are pairs (see `pairs`); the system over the nodes is solved by `block_lu`.
+
+The determinant of the whole Jacobian is, but for a positive factor, the product of the B's and of
+the pivots.  From zero load on it stays positive until the solution branch turns, so its sign tells
+the stable branch from the one beyond the turning point.
+
+References
+----------
+[Boullanger2009]_, eq. (3.5), (F.29)-(F.41).
+"""
+
+import numpy as np
+
+from tpss.kernel import kernel
+from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
+from tpss.physics.converter import terminal_voltage
+from tpss.powerflow.block_lu import solve_blocks
+from tpss.powerflow.chain import run_chain
+from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.pairs import apply, compose, determinant, inverse
+
+TOLERANCE = 1e-10
+"""Largest mismatch of a solution, in per unit of base power or base voltage."""
+
+LOWEST_VOLTAGE = 0.5
+HIGHEST_VOLTAGE = 1.2
+"""Plausible band of all voltages, in per unit of base voltage."""
+
+MOST_PASSES = 40
+MOST_HALVINGS = 12
+
+SOLVED = 0
+NOT_CONVERGED = 1
+IMPLAUSIBLE_VOLTAGE = 2
+WRONG_BRANCH = 3
+
+
+@kernel
+def source_law(
+    s: int, voltage: complex, current: complex, network: Network, flow: Flow
+) -> tuple[complex, complex, complex]:
+    """Voltage that the converter law asks for at these powers, and its derivative over P + jQ.
+
+    Returns f [V] and the pair (s1, s2) with δf = s1 δS + s2 conj(δS). [V/VA]
+    """
+    power = voltage * current.conjugate()
+    magnitude, angle, by_q, angle_by_p, angle_by_q = terminal_voltage(
+        power.real, power.imag, flow.converters[s], network.sources[s]
+    )
+    direction = complex(np.cos(angle), np.sin(angle))
+    law = magnitude * direction
+    f_p = 1j * law * angle_by_p
+    f_q = direction * by_q + 1j * law * angle_by_q
+    return law, (f_p - 1j * f_q) / 2.0, (f_p + 1j * f_q) / 2.0
+
+
+@kernel
+def _stamp_section(s: int, network: Network, flow: Flow) -> float:
+    """Add a section's blocks and gap currents to the node system; return the sign of det B."""
+    section, found, w = network.sections[s], flow.sections[s], flow.sensitivity
+    a_p, a_q = w[0, 0, 0], w[0, 0, 1]
+    bi_p, bi_q = inverse(w[0, 1, 0], w[0, 1, 1])
+    ba_p, ba_q = compose(bi_p, bi_q, a_p, a_q)
+    db_p, db_q = compose(w[1, 1, 0], w[1, 1, 1], bi_p, bi_q)
+    dba_p, dba_q = compose(db_p, db_q, a_p, a_q)
+    flow.block_p[section.block_aa] -= ba_p
+    flow.block_q[section.block_aa] -= ba_q
+    flow.block_p[section.block_ab] += bi_p
+    flow.block_q[section.block_ab] += bi_q
+    flow.block_p[section.block_ba] -= w[1, 0, 0] - dba_p
+    flow.block_q[section.block_ba] -= w[1, 0, 1] - dba_q
+    flow.block_p[section.block_bb] -= db_p
+    flow.block_q[section.block_bb] -= db_q
+    flow.nodes[section.start_node].leaving_current_a += found.current_a
+    flow.nodes[section.end_node].leaving_current_a -= found.end_current_a
+    flow.right_side[section.start_node] += apply(bi_p, bi_q, found.gap_v)
+    flow.right_side[section.end_node] -= apply(db_p, db_q, found.gap_v)
+    found.inverse_p, found.inverse_q = bi_p, bi_q
+    found.transfer_p, found.transfer_q = a_p, a_q
+    return np.sign(determinant(w[0, 1, 0], w[0, 1, 1]))
+
+
+@kernel
+def _stamp_branches(network: Network, flow: Flow) -> None:
+    """Start the node system with the lumped branches, constant but for their currents."""
+    flow.block_p[:] = network.branch_blocks
+    flow.block_q[:] = 0.0
+    flow.right_side[:] = 0.0
+    for node in range(flow.nodes.size):
+        flow.nodes[node].leaving_current_a = 0.0
+    for b in range(network.branches.size):
+        branch = network.branches[b]
+        start, end = flow.nodes[branch.start_node], flow.nodes[branch.end_node]
+        current = (start.voltage_v - end.voltage_v) / branch.impedance_ohm
+        start.leaving_current_a += current
+        end.leaving_current_a -= current
+
+
+@kernel
+def _turn_source_row(s: int, network: Network, flow: Flow) -> None:
+    """Replace the current balance of a source's node by the converter law, linearised."""
+    node = network.sources[s].node
+    voltage, current = flow.nodes[node].voltage_v, flow.nodes[node].leaving_current_a
+    law, s1, s2 = source_law(s, voltage, current, network, flow)
+    t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
+    for k in range(network.pattern.row_start[node], network.pattern.row_start[node + 1]):
+        place = network.pattern.rows[k]
+        p, q = compose(t_p, t_q, flow.block_p[place], flow.block_q[place])
+        flow.block_p[place], flow.block_q[place] = -p, -q
+    flow.block_p[node] += 1.0 - s1 * current.conjugate()
+    flow.block_q[node] -= s2 * current
+    flow.nodes[node].residual_pu = (voltage - law) / BASE_VOLTAGE_V
+    # The right side holds minus the change of the leaving current that closes the gaps.
+    flow.right_side[node] = law - voltage - apply(t_p, t_q, flow.right_side[node])
+
+
+@kernel
+def evaluate(
+    scale: float, flat: bool, network: Network, flow: Flow, loads: Loads
+) -> tuple[float, float, float]:
+    """One pass over the network: residuals, and the linear system of the next Newton step.
+
+    Parameters
+    ----------
+    scale : float
+        Factor on all loads. [1]
+    flat : bool
+        Take all trains' currents at base voltage.
+
+    Returns
+    -------
+    mismatch : float
+        Largest residual, per unit of base power (nodes, gaps) or base voltage (sources).
+    merit : float
+        Sum of squares that a step has to lower; infinite where the pass has no result.
+    sign : float
+        Sign of the product of the sections' determinants.
+    """
+    # 1. Lumped branches.
+    _stamp_branches(network, flow)
+    # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
+    mismatch, merit, sign = 0.0, 0.0, 1.0
+    for s in range(network.sections.size):
+        section = network.sections[s]
+        gap = run_chain(s, scale, flat, network, flow, loads)
+        gap -= flow.nodes[section.end_node].voltage_v
+        flow.sections[s].gap_v = gap
+        sign *= _stamp_section(s, network, flow)
+        impedance = abs(section.impedance_ohm_per_m) * (section.end_m - section.start_m)
+        mismatch = max(mismatch, abs(gap) * BASE_VOLTAGE_V / impedance / BASE_POWER_VA)
+        merit += (abs(gap) / BASE_VOLTAGE_V) ** 2
+    # 3. Current balance of the nodes (F.29), (F.30), (F.37), (F.38); the law of the sources.
+    for node in range(network.source_of_node.size):
+        if network.source_of_node[node] >= 0:
+            _turn_source_row(network.source_of_node[node], network, flow)
+        else:
+            current = flow.nodes[node].leaving_current_a
+            flow.nodes[node].residual_pu = current * BASE_VOLTAGE_V / BASE_POWER_VA
+            flow.right_side[node] -= current
+        mismatch = max(mismatch, abs(flow.nodes[node].residual_pu))
+        merit += abs(flow.nodes[node].residual_pu) ** 2
+    if not np.isfinite(merit):
+        return np.inf, np.inf, 0.0
+    return mismatch, merit, sign
+
+
+@kernel
+def _find_direction(network: Network, flow: Flow) -> float:
+    """Solve for the Newton step; return the sign of the node system's determinant."""
+    sign = solve_blocks(network.pattern, flow.block_p, flow.block_q, flow.right_side)
+    for node in range(flow.nodes.size):
+        flow.nodes[node].direction_v = flow.right_side[node]
+    for s in range(network.sections.size):
+        section, found = network.sections[s], flow.sections[s]
+        start, end = flow.right_side[section.start_node], flow.right_side[section.end_node]
+        change = end - apply(found.transfer_p, found.transfer_q, start) - found.gap_v
+        found.direction_a = apply(found.inverse_p, found.inverse_q, change)
+    return sign
+
+
+@kernel
+def _mark_base(flow: Flow) -> None:
+    for node in range(flow.nodes.size):
+        flow.nodes[node].base_v = flow.nodes[node].voltage_v
+    for s in range(flow.sections.size):
+        flow.sections[s].base_a = flow.sections[s].current_a
+
+
+@kernel
+def _take_step(size: float, flow: Flow) -> None:
+    for n in range(flow.nodes.size):
+        node = flow.nodes[n]
+        node.voltage_v = node.base_v + size * node.direction_v
+    for s in range(flow.sections.size):
+        section = flow.sections[s]
+        section.current_a = section.base_a + size * section.direction_a
+
+
+@kernel
+def _close_gaps(flow: Flow) -> None:
+    """Spread what is left of each section's gap over its pieces, in proportion to their length.
+
+    The gap is a rounding (below `TOLERANCE`), but over a closing piece of a metre even a rounding is
+    a visible current; spread over the whole section it is none.
+    """
+    for s in range(flow.sections.size):
+        section = flow.sections[s]
+        total_m = section.closing_m
+        for k in range(section.first, section.end):
+            total_m += flow.standing[k].piece_m
+        passed_m = 0.0
+        for k in range(section.first, section.end):
+            passed_m += flow.standing[k].piece_m
+            flow.standing[k].voltage_v -= section.gap_v * (passed_m / total_m)
+
+
+@kernel
+def voltages_are_plausible(flow: Flow) -> bool:
+    """Whether every node and train lies in the band that a sound line never leaves."""
+    low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V
+    for n in range(flow.nodes.size):
+        if not low <= abs(flow.nodes[n].voltage_v) <= high:
+            return False
+    for k in range(flow.sections[flow.sections.size - 1].end):
+        if not low <= abs(flow.standing[k].voltage_v) <= high:
+            return False
+    return True
+
+
+@kernel
+def newton(
+    scale: float, flat: bool, network: Network, flow: Flow, loads: Loads
+) -> tuple[int, int]:
+    """Solve from the state in `flow`, damped; return a status and the number of passes.
+
+    Parameters
+    ----------
+    scale : float
+        Factor on all loads. [1]
+    flat : bool
+        Begin with all trains' currents at base voltage, whatever the state.
+    """
+    mismatch, merit, chains = evaluate(scale, flat, network, flow, loads)
+    passes = 1
+    while passes < MOST_PASSES and np.isfinite(merit):
+        sign = chains * _find_direction(network, flow)
+        if mismatch < TOLERANCE and not flat:
+            _close_gaps(flow)
+            if not voltages_are_plausible(flow):
+                return IMPLAUSIBLE_VOLTAGE, passes
+            return (SOLVED if sign > 0.0 else WRONG_BRANCH), passes
+        _mark_base(flow)
+        size = 1.0
+        for _ in range(MOST_HALVINGS):
+            _take_step(size, flow)
+            mismatch, trial, chains = evaluate(scale, False, network, flow, loads)
+            passes += 1
+            # After a flat pass the merits belong to different equations.
+            if trial < merit or mismatch < TOLERANCE or (flat and np.isfinite(trial)):
+                break
+            size /= 2.0
+        else:
+            return NOT_CONVERGED, passes
+        merit = trial
+        flat = False
+    return NOT_CONVERGED, passes

@@ -1,0 +1,37 @@
+r"""Real-linear maps of the complex plane, as pairs of complex numbers.
+
+A train's current is not an analytic function of its voltage (it depends on V and on its conjugate),
+so a derivative has two parts: a small change δ gives
+
+.. math:: (p, q) \, \delta = p \, \delta + q \, \bar\delta .
+
+Every 2 × 2 real matrix is such a pair, an impedance is the pair (z, 0), and the algebra is short:
+composition (p₁p₂ + q₁q̄₂, p₁q₂ + q₁p̄₂), determinant |p|² - |q|², inverse (p̄, -q) / determinant.
+"""
+
+from tpss.kernel import kernel
+
+
+@kernel
+def apply(p: complex, q: complex, delta: complex) -> complex:
+    """The map (p, q) of a change."""
+    return p * delta + q * delta.conjugate()
+
+
+@kernel
+def compose(p1: complex, q1: complex, p2: complex, q2: complex) -> tuple[complex, complex]:
+    """The map (p1, q1) after (p2, q2)."""
+    return p1 * p2 + q1 * q2.conjugate(), p1 * q2 + q1 * p2.conjugate()
+
+
+@kernel
+def determinant(p: complex, q: complex) -> float:
+    """Determinant of the map as a 2 × 2 real matrix."""
+    return p.real * p.real + p.imag * p.imag - q.real * q.real - q.imag * q.imag
+
+
+@kernel
+def inverse(p: complex, q: complex) -> tuple[complex, complex]:
+    """Inverse of the map; infinite or NaN if it is singular."""
+    scale = 1.0 / determinant(p, q)
+    return p.conjugate() * scale, -q * scale

@@ -1,0 +1,140 @@
+"""Checks between the parts of a scenario.
+
+They read the document as it was written, not the validated parts, and pass over what is not there
+or of the wrong type, so that they report their faults beside those of single fields.
+"""
+
+import difflib
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from tpss.errors import Finding
+
+
+def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
+    """All faults between the parts of a document."""
+    line, supply = _table(document, "line"), _table(document, "supply")
+    findings = [*_line(line), *_supply(supply, _number(line, "length_km"))]
+    places = {
+        station["name"]: position
+        for _, station in _items(line, "stations")
+        if isinstance(station.get("name"), str)
+        and (position := _number(station, "position_km")) is not None
+    }
+    trains = list(_table(document, "trains"))
+    for i, entry in _items(document, "traffic"):
+        findings += _traffic(f"traffic.{i}", entry, trains, places)
+    return [Finding(file, *finding) for finding in findings]
+
+
+_Fault = tuple[str, str, str, str]
+
+
+def _table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    value = document.get(key)
+    return value if isinstance(value, Mapping) else {}
+
+
+def _items(document: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    value = document.get(key)
+    for i, item in enumerate(value if isinstance(value, list | tuple) else []):
+        if isinstance(item, Mapping):
+            yield i, item
+
+
+def _number(table: Mapping[str, Any], key: str) -> float | None:
+    value = table.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def _outside(key: str, position: float | None, length: float | None) -> Iterator[_Fault]:
+    if position is not None and length is not None and position > length:
+        problem = f"outside the line, which ends at {length:g} km"
+        yield key, f"{position:g}", problem, f"place it between 0 and {length:g} km"
+
+
+def _line(line: Mapping[str, Any]) -> Iterator[_Fault]:
+    length = _number(line, "length_km")
+    for i, station in _items(line, "stations"):
+        yield from _outside(
+            f"line.stations.{i}.position_km", _number(station, "position_km"), length
+        )
+    first = next((limit for _, limit in _items(line, "speed_limits")), {})
+    begin = _number(first, "from_km")
+    if begin is not None and begin > 0.0:
+        problem = "no speed limit holds from the beginning of the line"
+        yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "let the first limit begin at 0"
+
+
+def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
+    stations = [_number(s, "position_km") for _, s in _items(supply, "converter_stations")]
+    for i, station in _items(supply, "converter_stations"):
+        key = f"supply.converter_stations.{i}.position_km"
+        yield from _outside(key, _number(station, "position_km"), length)
+    high_voltage = _table(supply, "high_voltage_line")
+    given = high_voltage.get("transformers_km")
+    for i, position in enumerate(given if isinstance(given, list | tuple) else []):
+        key = f"supply.high_voltage_line.transformers_km.{i}"
+        number = _number({"position": position}, "position")
+        yield from _outside(key, number, length)
+        if number is not None and number < 0.0:
+            yield key, f"{number:g}", "before the beginning of the line", "place it at 0 or beyond"
+        if number is not None and number in stations:
+            problem = "a converter station stands here, which has a transformer of its own"
+            yield key, f"{number:g}", problem, "leave it out, or place it elsewhere"
+    if _number(high_voltage, "transformers") and len(stations) < 2:
+        key = "supply.high_voltage_line.transformers"
+        problem = "there are no two converter stations between which to space them"
+        yield key, str(high_voltage["transformers"]), problem, "give transformers_km instead"
+
+
+def _unknown(key: str, name: object, known: list[str], kind: str) -> Iterator[_Fault]:
+    if isinstance(name, str) and name not in known:
+        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]}? " if near else ""
+        listed = ", ".join(known) or "none"
+        yield key, repr(name), f"there is no such {kind}", f"{hint}{kind}s: {listed}"
+
+
+def _traffic(
+    key: str, entry: Mapping[str, Any], trains: list[str], places: dict[str, float]
+) -> Iterator[_Fault]:
+    yield from _unknown(f"{key}.train", entry.get("train"), trains, "train")
+    begin = entry.get("from", entry.get("origin"))
+    end = entry.get("to", entry.get("destination"))
+    yield from _unknown(f"{key}.from", begin, list(places), "station")
+    yield from _unknown(f"{key}.to", end, list(places), "station")
+    for i, stop in _items(entry, "stops"):
+        yield from _unknown(f"{key}.stops.{i}.station", stop.get("station"), list(places), "station")
+    if begin not in places or end not in places:
+        return
+    start_km, end_km = places[begin], places[end]
+    if end_km <= start_km:
+        problem = f"{end} ({end_km:g} km) does not lie beyond {begin} ({start_km:g} km)"
+        yield f"{key}.to", repr(end), problem, "trains run towards growing positions: swap or mirror"
+        return
+    yield from _stops(key, entry, places, start_km, end_km)
+    for i, train in _items(entry, "initial_trains"):
+        position = _number(train, "position_km")
+        if position is not None and not start_km <= position < end_km:
+            problem = f"not between {begin} ({start_km:g} km) and {end} ({end_km:g} km)"
+            place = f"{key}.initial_trains.{i}.position_km"
+            yield place, f"{position:g}", problem, "place it on the way of its trains"
+
+
+def _stops(
+    key: str, entry: Mapping[str, Any], places: dict[str, float], start_km: float, end_km: float
+) -> Iterator[_Fault]:
+    before_km = start_km
+    for i, stop in _items(entry, "stops"):
+        name = stop.get("station")
+        if name not in places:
+            continue
+        if not before_km < places[name] < end_km:
+            problem = f"at {places[name]:g} km, not between {before_km:g} and {end_km:g} km"
+            remedy = "list the stops in the order in which the train meets them, ends left out"
+            yield f"{key}.stops.{i}.station", repr(name), problem, remedy
+        before_km = max(before_km, places[name])

@@ -1,0 +1,48 @@
+"""The line: its length, gradients, speed limits and stations."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tpss.scenario.fields import Name, Part, Real, ascending, unique
+
+
+class Gradient(Part):
+    """A gradient that holds from its position to the next one's."""
+
+    from_km: Real = Field(description="Position from which the gradient holds.")
+    permille: Real = Field(ge=-100, le=100, description="Rise over run, positive uphill.")
+
+
+class SpeedLimit(Part):
+    """A speed limit that holds from its position to the next one's."""
+
+    from_km: Real = Field(ge=0, description="Position from which the limit holds.")
+    speed_kmh: Real = Field(gt=0, le=500, description="Highest speed.")
+
+
+class Station(Part):
+    """A place where trains may begin, stop or end."""
+
+    name: Name = Field(description="Name that traffic entries refer to.")
+    position_km: Real = Field(ge=0, description="Position on the line.")
+
+
+class Line(Part):
+    """A railway line from position 0 to its length."""
+
+    length_km: Real = Field(gt=0, description="Length; the contact line runs along all of it.")
+    gradients_file: str | None = Field(
+        default=None,
+        description="CSV file beside the scenario with the columns position_km and "
+        "gradient_permille, in place of `gradients`.",
+    )
+    gradients: Annotated[tuple[Gradient, ...], Field(min_length=1), ascending("from_km")] = Field(
+        description="Gradients; the outer ones go on beyond the profile's ends."
+    )
+    speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
+        Field(description="Speed limits; the first one begins at 0.")
+    )
+    stations: Annotated[
+        tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
+    ] = Field(description="Stations, at least two.")

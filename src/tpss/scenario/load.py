@@ -1,0 +1,29 @@
+"""Load a scenario from its file."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tpss.scenario.files import read_toml
+from tpss.scenario.override import override
+from tpss.scenario.scenario import Scenario
+
+
+def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scenario:
+    """Scenario of a TOML file, with the CSV files that it names.
+
+    Parameters
+    ----------
+    path : path
+        The scenario file.
+    changes : mapping of str to value, optional
+        Values to set by key path before validation, as in `Scenario.with_`.
+
+    Raises
+    ------
+    ScenarioError
+        The file, or a file that it names, cannot be read or has faults; all are listed.
+    """
+    source = Path(path)
+    document = override(read_toml(source), changes or {}, source)
+    return Scenario.from_document(document, source)

@@ -1,0 +1,72 @@
+"""Change single values of a scenario document by their key paths."""
+
+import copy
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tpss.errors import Finding, ScenarioError
+
+
+def override(document: Mapping[str, Any], changes: Mapping[str, Any], source: Path) -> dict[str, Any]:
+    """Copy of a document with values set by key path (``traffic.0.headway_min``); None removes.
+
+    Raises
+    ------
+    ScenarioError
+        A path leads through something that is not there.
+    """
+    changed = copy.deepcopy(dict(document))
+    findings = []
+    for path, value in changes.items():
+        try:
+            _set(changed, path.split("."), value)
+        except (KeyError, IndexError, ValueError, TypeError):
+            problem = "no such place in the scenario"
+            remedy = "name tables by their keys and list items by their number from 0"
+            findings.append(Finding(str(source), path, repr(value), problem, remedy))
+    if findings:
+        raise ScenarioError(findings)
+    return changed
+
+
+def _set(container: Any, keys: list[str], value: Any) -> None:
+    for key in keys[:-1]:
+        if isinstance(container, dict):
+            container = container.setdefault(key, {})
+        else:
+            container = container[_index(key, container)]
+    last = keys[-1]
+    if isinstance(container, list):
+        container[_index(last, container)] = value
+    elif value is None:
+        container.pop(last, None)
+    else:
+        container[last] = value
+
+
+def _index(key: str, items: list[Any]) -> int:
+    index = int(key)
+    if not 0 <= index < len(items):
+        raise IndexError(key)
+    return index
+
+
+def parse_assignment(text: str) -> tuple[str, Any]:
+    """Key path and value of ``path=value``; the value is read as TOML, else as plain text.
+
+    Raises
+    ------
+    ScenarioError
+        There is no ``=`` in the text.
+    """
+    path, equals, raw = text.partition("=")
+    if not equals or not path.strip():
+        remedy = "write --set simulation.time_step_min=0.1"
+        raise ScenarioError([Finding("--set", text, "", "not of the form KEY=VALUE", remedy)])
+    try:
+        value = tomllib.loads(f"value = {raw}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = raw.strip()
+    return path.strip(), value

@@ -1,0 +1,80 @@
+"""A whole scenario: the line, its supply, its trains, its traffic, and how to simulate them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, PrivateAttr
+
+from tpss.scenario.fields import Name, Part, unique
+from tpss.scenario.line import Line
+from tpss.scenario.override import override
+from tpss.scenario.rolling_stock import Train
+from tpss.scenario.simulation import Simulation
+from tpss.scenario.supply import Supply
+from tpss.scenario.traffic import Traffic
+from tpss.scenario.validate import validate
+
+
+class Scenario(Part):
+    """A validated, frozen scenario of format 1.
+
+    Made by `tpss.load_scenario` or `Scenario.from_document`, which check the parts against each
+    other too.  `with_` gives a changed copy.
+    """
+
+    format: Literal[1] = Field(description="Version of the file format.")
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")] = Field(
+        description="Short name; result folders take theirs from it."
+    )
+    description: str = Field(default="", description="What the scenario is about.")
+    simulation: Simulation
+    line: Line
+    supply: Supply
+    trains: Annotated[dict[Name, Train], Field(min_length=1)]
+    traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")]
+
+    _document: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _source: Path = PrivateAttr(default=Path("scenario"))
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any], source: str | Path = "scenario") -> Self:
+        """Scenario from a mapping with the keys of a scenario file.
+
+        Parameters
+        ----------
+        document : mapping
+            Keys and values as in a TOML file.
+        source : path
+            File to name in errors; paths in the document are relative to its folder.
+
+        Raises
+        ------
+        ScenarioError
+            The document has faults; the error lists all of them.
+        """
+        scenario = validate(cls, dict(document), Path(source))
+        scenario._document = dict(document)
+        scenario._source = Path(source)
+        return scenario
+
+    def with_(self, changes: Mapping[str, Any]) -> Self:
+        """Validated copy with some values changed.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            Key paths, such as ``"simulation.time_step_min"`` or ``"traffic.0.headway_min"``, and
+            their new values; None takes a key out.
+
+        Raises
+        ------
+        ScenarioError
+            The changed scenario has faults.
+        """
+        document = override(self._document, changes, self._source)
+        return type(self).from_document(document, self._source)
+
+    def as_document(self) -> dict[str, Any]:
+        """The scenario as run, with everything it took from files, library and defaults."""
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True)

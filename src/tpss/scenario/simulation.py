@@ -1,0 +1,51 @@
+"""How the simulation runs: its step, its end, and the choices of the models."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tpss.scenario.fields import Part, Real
+
+
+class Simulation(Part):
+    """Time step, end of the run, and the thesis's choices beside ours."""
+
+    time_step_min: Real = Field(ge=0.001, le=10, description="Length of a time step.")
+    until: Literal["first-departure-arrives"] | None = Field(
+        default=None, description="End with the arrival of the studied train (the default)."
+    )
+    duration_min: Real | None = Field(
+        default=None, gt=0, le=100_000, description="End after this time."
+    )
+    power_sampling: Literal["mean", "start"] = Field(
+        default="mean",
+        description="Speed with which motor power is billed: mean of the step, or its start "
+        "(the thesis).",
+    )
+    gradient_sampling: Literal["mean", "start"] = Field(
+        default="mean",
+        description="Gradient of a step: mean over its way, or at its start (the thesis).",
+    )
+    adhesion_speed_unit: Literal["m/s", "km/h"] = Field(
+        default="m/s",
+        description="Unit of the speed in the adhesion law: m/s (physically right), or km/h as "
+        "the thesis prints it.",
+    )
+    rail: Literal["dry", "wet"] = Field(default="dry", description="State of the rails.")
+    load_flow: Literal["equations"] = Field(
+        default="equations", description="Solution of the load flow as a system of equations."
+    )
+    driver: Literal["regulated"] = Field(
+        default="regulated", description="A driver who holds the speed limit."
+    )
+
+    @model_validator(mode="after")
+    def _one_way_to_end(self) -> Self:
+        if self.until is not None and self.duration_min is not None:
+            raise PydanticCustomError(
+                "either_or",
+                "give either {first} or {second}",
+                {"first": "until", "second": "duration_min"},
+            )
+        return self

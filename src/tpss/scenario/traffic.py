@@ -1,0 +1,69 @@
+"""The traffic: which trains run from where to where, and when."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers
+
+
+class Stop(Part):
+    """A stop on the way."""
+
+    station: Name = Field(description="Station of the line.")
+    dwell_min: Real = Field(ge=0, description="Time that the train stands.")
+
+
+class InitialTrain(Part):
+    """A train that is on the line when the simulation begins, heading for its next stop."""
+
+    position_km: Real = Field(ge=0, description="Position on the line.")
+    speed_kmh: Real = Field(ge=0, description="Speed.")
+
+
+class Traffic(Part):
+    """A service: trains of one kind from one station to another."""
+
+    name: Name = Field(description="Name, from which the trains take theirs.")
+    train: Name = Field(description="One of the scenario's trains.")
+    origin: Name = Field(alias="from", description="Station where the trains begin.")
+    destination: Name = Field(alias="to", description="Station where they leave the line.")
+    headway_min: Real | None = Field(default=None, gt=0, description="Time between departures.")
+    departures_min: Annotated[
+        tuple[Annotated[Real, Field(ge=0)], ...], Field(min_length=1), ascending_numbers("departures_min")
+    ] | None = Field(default=None, description="Times of departure, in place of a headway.")  # fmt: skip
+    first_departure_min: Real = Field(
+        default=0.0, ge=0, description="Time of the first departure, with a headway."
+    )
+    already_running: Flag = Field(
+        default=False,
+        description="Whether trains stand along the line at the start, as if the service had "
+        "always run.",
+    )
+    initial_trains: tuple[InitialTrain, ...] = Field(
+        default=(), description="Trains on the line at the start."
+    )
+    stops: tuple[Stop, ...] = Field(default=(), description="Stops on the way, in order.")
+
+    @model_validator(mode="after")
+    def _one_way_to_depart(self) -> Self:
+        if (self.headway_min is None) == (self.departures_min is None):
+            raise PydanticCustomError(
+                "either_or",
+                "give either {first} or {second}",
+                {"first": "headway_min", "second": "departures_min"},
+            )
+        if self.already_running and (self.departures_min is not None or self.initial_trains):
+            raise PydanticCustomError(
+                "conflict",
+                "already_running needs headway_min, and stands in place of initial_trains",
+                {"remedy": "leave already_running out, or use it with headway_min alone"},
+            )
+        if self.departures_min is not None and self.first_departure_min:
+            raise PydanticCustomError(
+                "conflict",
+                "first_departure_min goes with headway_min; departures_min lists every departure",
+                {"remedy": "leave first_departure_min out"},
+            )
+        return self

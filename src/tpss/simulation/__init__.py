@@ -1,0 +1,1 @@
+"""The clock: traffic, driver, braking, converters, coupled load flow and motion, step by step."""

@@ -1,0 +1,88 @@
+"""The clock: the order of things in a step, and when a run ends."""
+
+from tpss.kernel import kernel
+from tpss.powerflow.chain import place_trains, sort_by_position
+from tpss.simulation.converter_control import control_converters, note_loading
+from tpss.simulation.coupling import solve_step
+from tpss.simulation.driver import prepare
+from tpss.simulation.record import record_instant, record_network, record_train
+from tpss.simulation.state import DWELLING, Counter, Model, Recording, State, Status
+from tpss.simulation.traffic import depart, list_trains, move, remove_arrived
+
+
+@kernel
+def find_stalled(count: int, state: State) -> bool:
+    """Whether a train would roll back, or stands with no force to start; note the first one."""
+    for k in range(count):
+        i = state.flow.standing[k].train
+        train = state.trains[i]
+        if train.phase == DWELLING or train.force_n >= train.wanted_force_n:
+            continue
+        standing = train.speed_m_s <= 0.0
+        if train.next_speed_m_s < 0.0 or (standing and train.next_speed_m_s <= 0.0):
+            clock = state.clock[0]
+            clock.stalled_train = i
+            clock.force_needed_n = train.resistance_n
+            clock.force_available_n = train.force_n
+            return True
+    return False
+
+
+@kernel
+def begin_step(step: int, model: Model, state: State, recording: Recording) -> int:
+    """Traffic, converter control, drivers; return the number of trains on the line."""
+    # 1. Departures, and removal of arrived trains, which this instant still shows.
+    depart(step, state.trains)
+    record_instant(step, state.trains, recording)
+    remove_arrived(state.trains)
+    # 2. Converter control (3.6)-(3.9).
+    control_converters(step * model.options.step_s, model, state)
+    # 3. Where the trains stand, and what their drivers want.
+    count = list_trains(state.trains, state.flow)
+    sort_by_position(state.flow.standing, count, state.trains)
+    short = place_trains(count, state.trains, model.network, state.flow)
+    recording.counters[Counter.SHORT_PIECE] += short
+    for k in range(count):
+        i = state.flow.standing[k].train
+        prepare(state.trains[i], state.bias[i], model)
+    return count
+
+
+@kernel
+def end_step(step: int, count: int, model: Model, state: State, recording: Recording) -> None:
+    """Record the interval, then bring every train to the next instant."""
+    for k in range(count):
+        record_train(step, k, model, state, recording)
+    if model.options.fixed_voltage_v <= 0.0:
+        record_network(step, model, state, recording)
+        note_loading(model, state)
+    for k in range(count):
+        move(step, state.trains[state.flow.standing[k].train], model, state)
+
+
+@kernel
+def advance(
+    first: int, last: int, model: Model, state: State, recording: Recording
+) -> tuple[int, int]:
+    """Run steps `first` to `last` - 1; return a `Status` and the step at which it holds.
+
+    With `Status.FINISHED` that is the instant at which the studied train has arrived; with
+    `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
+    which is not carried out.
+    """
+    for step in range(first, last):
+        count = begin_step(step, model, state, recording)
+        share, passes = solve_step(count, step > 0, model, state)
+        recording.passes[step] = passes
+        if share < 1.0:
+            state.clock[0].carried_share = share
+            return Status.COLLAPSED, step
+        if find_stalled(count, state):
+            return Status.STALLED, step
+        end_step(step, count, model, state, recording)
+        studied = model.options.studied_train
+        if studied >= 0 and state.trains[studied].arrival_step == step + 1:
+            record_instant(step + 1, state.trains, recording)
+            return Status.FINISHED, step + 1
+    record_instant(last, state.trains, recording)
+    return Status.RUNNING, last

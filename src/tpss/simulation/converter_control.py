@@ -1,0 +1,92 @@
+"""Converter stations switch converters on and off by their loading, every three minutes."""
+
+import numpy as np
+
+from tpss.kernel import kernel
+from tpss.simulation.state import CONTROL_PERIOD_S, Model, State
+
+HIGHEST_LOADING = 0.85
+TIME_ROUNDING_S = 1e-6
+COUNT_ROUNDING = 1e-9
+
+
+@kernel
+def station_loading(power: complex, converters: float, rating_va: float) -> float:
+    r"""Apparent power of a station over the rating of its running converters. [1]
+
+    .. math:: Ld = \sqrt{P_G^2 + Q_G^2} / (NoC_{used} \, S_{nom})
+
+    Parameters
+    ----------
+    power : complex
+        P + jQ fed into the railway. [VA]
+    converters : float
+        Number of converters running.
+    rating_va : float
+        Rating of one converter. [VA]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (3.6).
+    """
+    return abs(power) / (converters * rating_va)
+
+
+@kernel
+def converters_needed(mean_loading: float, converters: float, installed: int) -> float:
+    r"""Converters that would carry the mean power at no more than 85 % loading, at least one.
+
+    .. math:: NoC' = \min(NoC, \lceil \overline{Ld} \, NoC_{used} / 0.85 \rceil)
+
+    Parameters
+    ----------
+    mean_loading : float
+        Mean loading since the last action. [1]
+    converters : float
+        Number of converters running.
+    installed : int
+        Number of converters installed.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (3.7)-(3.9).
+    """
+    needed = np.ceil(mean_loading * converters / HIGHEST_LOADING - COUNT_ROUNDING)
+    return min(float(installed), max(1.0, needed))
+
+
+@kernel
+def control_converters(time_s: float, model: Model, state: State) -> None:
+    """Act at the first instant at or past each multiple of three minutes."""
+    clock = state.clock[0]
+    if time_s < clock.next_action_s - TIME_ROUNDING_S:
+        return
+    converters = state.flow.converters
+    for s in range(converters.size):
+        source = model.network.sources[s]
+        if source.controlled:
+            mean = state.loading_sum[s] / clock.loading_steps
+            converters[s] = converters_needed(mean, converters[s], source.installed)
+        state.loading_sum[s] = 0.0
+    clock.loading_steps = 0
+    periods = np.floor((time_s + TIME_ROUNDING_S) / CONTROL_PERIOD_S)
+    clock.next_action_s = (periods + 1.0) * CONTROL_PERIOD_S
+
+
+@kernel
+def station_power(s: int, model: Model, state: State) -> complex:
+    """Power P + jQ that a station feeds into the railway. [VA]"""
+    node = state.flow.nodes[model.network.sources[s].node]
+    return node.voltage_v * node.leaving_current_a.conjugate()
+
+
+@kernel
+def note_loading(model: Model, state: State) -> None:
+    """Add this step's loading of each station to the mean that decides the next action."""
+    for s in range(state.loading_sum.size):
+        state.loading_sum[s] += station_loading(
+            station_power(s, model, state),
+            state.flow.converters[s],
+            model.network.sources[s].rating_va,
+        )
+    state.clock[0].loading_steps += 1

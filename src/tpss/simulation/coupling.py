@@ -1,0 +1,95 @@
+"""One step's forces, voltages and powers, solved together until every driver's decision stands.
+
+Whether a train must start to brake for its stop depends on the acceleration that the solution gives
+it.  So the step is solved, trains that would come too near to their stop are put on their braking
+plan, and the step is solved again; each round puts at least one more train on its plan.
+"""
+
+from typing import Any
+
+from tpss.kernel import kernel
+from tpss.physics.locomotive import acceleration, wheel_force
+from tpss.powerflow.network import Loads
+from tpss.powerflow.solve import solve
+from tpss.simulation.driver import aim
+from tpss.simulation.state import DWELLING, Floats, Model, State
+from tpss.simulation.traffic import begin_plan, must_plan
+
+
+@kernel
+def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
+    """Solve this step for the first `count` trains of `state.flow.standing`.
+
+    Parameters
+    ----------
+    count : int
+        Number of trains on the line.
+    warm : bool
+        Whether the state of the step before may serve as a start.
+
+    Returns
+    -------
+    share : float
+        1.0, or the share of the load that the line can carry.
+    passes : int
+        Evaluations of the network.
+    """
+    passes = 0
+    while True:
+        share, more = solve_network(count, warm, model, state)
+        passes += more
+        if share < 1.0:
+            return share, passes
+        planned = False
+        for k in range(count):
+            i = state.flow.standing[k].train
+            train = state.trains[i]
+            settle(train, state.bias[i], model)
+            if must_plan(train, model):
+                begin_plan(train, model)
+                aim(train, state.bias[i], model)
+                planned = True
+        if not planned:
+            return 1.0, passes
+        warm = True
+
+
+@kernel
+def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
+    """Voltages at all pantographs: by the load flow, or fixed if the model says so."""
+    fixed_v, flow = model.options.fixed_voltage_v, state.flow
+    if fixed_v > 0.0:
+        for k in range(count):
+            state.trains[flow.standing[k].train].voltage_v = fixed_v
+        return 1.0, 0
+    loads = Loads(state.trains, state.bias, model.types, model.machine)
+    share, passes = solve(warm, model.network, flow, loads)
+    for k in range(count):
+        state.trains[flow.standing[k].train].voltage_v = abs(flow.standing[k].voltage_v)
+    return share, passes
+
+
+@kernel
+def settle(train: Any, bias: Floats, model: Model) -> None:
+    """Force, brakes and next speed of a train at the voltage of the solution.
+
+    With motors off the train brakes with exactly the wanted acceleration; below its wanted force it
+    takes what the machine gives.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11), (F.19), (F.20).
+    """
+    kind = model.types[train.train_type]
+    force, _ = wheel_force(train.voltage_v, kind, train, bias, model.machine)
+    wanted = train.wanted_force_n
+    train.force_n = force
+    train.braking_force_n = 0.0
+    if train.phase == DWELLING:
+        train.next_speed_m_s = 0.0
+    elif force >= wanted or wanted <= 0.0:
+        train.next_speed_m_s = train.target_speed_m_s
+        train.braking_force_n = max(0.0, -wanted)
+    else:
+        a = acceleration(force, train.resistance_n, kind.inertia_kg)
+        train.next_speed_m_s = train.speed_m_s + a * model.options.step_s

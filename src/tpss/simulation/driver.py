@@ -1,0 +1,121 @@
+"""The driver of each train: which speed to reach in this step, and which force that takes."""
+
+from typing import Any
+
+from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
+from tpss.driving.speed_limits import heed_limits_ahead
+from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
+from tpss.kernel import kernel
+from tpss.physics.adhesion import adhesion_limit
+from tpss.physics.gradient import gradient_at, mean_gradient, step_index
+from tpss.physics.locomotive import prove_free_band
+from tpss.physics.reactive_power import POWER_FACTOR, power_factor, reactive_ratio
+from tpss.physics.running_resistance import DavisCoefficients, gradient_force, running_resistance
+from tpss.physics.tractive_effort import speed_and_current_bias
+from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Floats, Model
+from tpss.simulation.traffic import distance_to_stop
+
+
+@kernel
+def target_speed(train: Any, kind: Any, model: Model) -> float:
+    """Speed that a train is to have after this step, if its machine can. [m/s]
+
+    The lower of line and train limits it; a braking plan and limits ahead lower it; a standing train
+    takes no more than leaves room for its next stop.
+
+    References
+    ----------
+    [Boullanger2009]_, section 2.3.1 and figure 3-7.
+    """
+    limits, h, retardation = model.limits, model.options.step_s, kind.highest_retardation_m_s2
+    if train.phase == PLANNED:
+        target = planned_speed(train, retardation * h)
+    else:
+        limit = limits.value[step_index(train.position_m, limits.from_m)]
+        target = min(limit, kind.highest_speed_m_s)
+        if train.speed_m_s <= 0.0:
+            room_m = distance_to_stop(train, model)
+            target = min(target, highest_speed_that_stops(0.0, room_m, retardation, h))
+    allowed = heed_limits_ahead(
+        train.position_m, train.speed_m_s, target, limits.from_m, limits.value, retardation, h
+    )
+    if allowed < target and train.phase == PLANNED:
+        train.phase = DRIVING  # a limit goes first; the train plans anew
+    return allowed
+
+
+@kernel
+def planned_speed(train: Any, full_braking_m_s: float) -> float:
+    """Speed that the braking plan of a train asks for after this step. [m/s]"""
+    hold, full, last = train.plan_hold, train.plan_full, train.plan_last
+    if train.plan_step + 1 == plan_length(hold, full, last):
+        return 0.0
+    fraction = plan_fraction(train.plan_step, hold, train.plan_first, full, last)
+    return max(0.0, train.speed_m_s - fraction * full_braking_m_s)
+
+
+@kernel
+def oppose(train: Any, kind: Any, model: Model) -> None:
+    """Forces on a train that do not depend on what its driver does, for this step.
+
+    A standing train is held by its brakes; no running resistance is billed.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.8)-(2.10), (F.2)-(F.4).
+    """
+    profile, speed = model.gradients, train.speed_m_s
+    if model.options.mean_gradient:
+        way_m = speed * model.options.step_s
+        slope = mean_gradient(train.position_m, way_m, profile.from_m, profile.value)
+    else:
+        slope = gradient_at(train.position_m, profile.from_m, profile.value)
+    davis = DavisCoefficients(
+        kind.resistance_a_n, kind.resistance_b_n_s_per_m, kind.resistance_c_n_s2_per_m2
+    )
+    standing = train.phase == DWELLING
+    train.running_resistance_n = 0.0 if standing else running_resistance(speed, davis)
+    train.gradient_force_n = gradient_force(kind.mass_kg, slope)
+    train.resistance_n = train.running_resistance_n + train.gradient_force_n
+
+
+@kernel
+def aim(train: Any, bias: Floats, model: Model) -> None:
+    """Set the target of a train, and the force that adhesion and driver allow at most.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.6), (F.5), (F.20).
+    """
+    kind, options = model.types[train.train_type], model.options
+    train.force_cap_n = 0.0
+    train.target_speed_m_s = 0.0
+    train.wanted_force_n = 0.0
+    if train.phase != DWELLING:
+        target = target_speed(train, kind, model)
+        a = wanted_acceleration(train.speed_m_s, target, options.step_s)
+        wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
+        speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
+        adhesion = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
+        train.force_cap_n = max(0.0, min(wanted, adhesion))
+        train.target_speed_m_s = target
+        train.wanted_force_n = wanted
+    prove_free_band(train.voltage_v, kind, train, bias, model.machine)
+
+
+@kernel
+def prepare(train: Any, bias: Floats, model: Model) -> None:
+    """Everything about a train that stays fixed while this step is solved.
+
+    References
+    ----------
+    [Boullanger2009]_, appendix F.1.
+    """
+    kind, options, machine = model.types[train.train_type], model.options, model.machine
+    train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
+    if kind.reactive_model == POWER_FACTOR:
+        factor = power_factor(train.speed_m_s, machine.power_factor)
+        train.reactive_ratio = reactive_ratio(factor)
+    speed_and_current_bias(train.speed_m_s, kind.highest_current_a, machine.tractive_effort, bias)
+    oppose(train, kind, model)
+    aim(train, bias, model)

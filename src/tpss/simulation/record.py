@@ -1,0 +1,152 @@
+"""Keep everything: states at the instants, forces and powers over the intervals between them."""
+
+from typing import Any
+
+import numpy as np
+
+from tpss.kernel import kernel
+from tpss.physics.locomotive import electrical_demand, motor_state, train_armature_current
+from tpss.physics.motor import line_voltage_factor, motor_current, motor_voltage
+from tpss.physics.neural_network import outside
+from tpss.physics.reactive_power import (
+    DOUBLE_BRIDGE,
+    TRANSFORMER_RATIO,
+    bridge_outside_training,
+    bridge_sine,
+)
+from tpss.physics.tractive_effort import effort_outside_training, maximum_motor_force
+from tpss.simulation.converter_control import station_loading, station_power
+from tpss.simulation.state import (
+    ARRIVED,
+    DWELLING,
+    STATE_ARRIVED,
+    STATE_BRAKING,
+    STATE_COASTING,
+    STATE_DWELLING,
+    STATE_MOTORING,
+    Counter,
+    Floats,
+    Indices,
+    Model,
+    Recording,
+    State,
+)
+from tpss.simulation.traffic import is_on_line
+
+
+@kernel
+def record_instant(step: int, trains: Any, recording: Recording) -> None:
+    """Position and speed of every train on the line, those that have just arrived included."""
+    for i in range(trains.size):
+        train = trains[i]
+        if is_on_line(train.phase) or train.phase == ARRIVED:
+            recording.trains[step, i].position = train.position_m
+            recording.trains[step, i].speed = train.speed_m_s
+            if train.phase == ARRIVED:
+                recording.train_state[step, i] = STATE_ARRIVED
+
+
+@kernel
+def state_code(train: Any) -> int:
+    """Code of `train_state` of a train on the line."""
+    if train.phase == DWELLING:
+        return STATE_DWELLING
+    if train.force_n > 0.0:
+        return STATE_MOTORING
+    return STATE_BRAKING if train.braking_force_n > 0.0 else STATE_COASTING
+
+
+@kernel
+def record_train(step: int, k: int, model: Model, state: State, recording: Recording) -> None:
+    """Forces, voltage and powers of the `k`-th train along the line."""
+    i = state.flow.standing[k].train
+    train, bias, row = state.trains[i], state.bias[i], recording.trains[step, i]
+    kind = model.types[train.train_type]
+    motor, speed, _, _ = motor_state(train.force_n, kind, train)
+    current = train_armature_current(motor, speed, kind, train)
+    current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
+    active, reactive, _, _ = electrical_demand(train.voltage_v, kind, train, bias, model.machine)
+    recording.train_state[step, i] = state_code(train)
+    row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
+    row.tractive_force = train.force_n
+    row.braking_force = train.braking_force_n
+    row.running_resistance = train.running_resistance_n
+    row.gradient_force = train.gradient_force_n
+    row.motor_current = motor_current(current, kind.current_model)
+    row.pantograph_voltage = train.voltage_v
+    row.pantograph_angle = np.angle(state.flow.standing[k].voltage_v)
+    row.active_power = active
+    row.reactive_power = reactive
+    if train.force_n > 0.0:
+        count_limits(train, kind, bias, model, recording.counters)
+
+
+@kernel
+def count_limits(train: Any, kind: Any, bias: Floats, model: Model, counters: Indices) -> None:
+    """Count where a network of a motoring train extrapolates or is clipped."""
+    machine, speed, voltage = model.machine, train.speed_m_s, train.voltage_v
+    if effort_outside_training(speed, voltage, kind.highest_current_a, machine.tractive_effort):
+        counters[Counter.EFFORT_EXTRAPOLATED] += 1
+    if abs(voltage - train.free_voltage_v) >= train.free_band_v:
+        highest, _ = maximum_motor_force(voltage, bias, machine.tractive_effort)
+        if highest < 0.0:
+            counters[Counter.EFFORT_CLIPPED] += 1
+    if kind.reactive_model != DOUBLE_BRIDGE:
+        if outside(speed, machine.power_factor, 0):
+            counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1
+        return
+    motor_v = motor_voltage(
+        speed, voltage, kind.base_speed_m_s, kind.highest_motor_voltage_v, kind.voltage_model
+    )
+    sine, _, _ = bridge_sine(motor_v, voltage * TRANSFORMER_RATIO, machine.bridge_sine)
+    if bridge_outside_training(motor_v, voltage * TRANSFORMER_RATIO, machine.bridge_sine):
+        counters[Counter.BRIDGE_EXTRAPOLATED] += 1
+    if sine < 0.0 or sine > 1.0:
+        counters[Counter.BRIDGE_CLIPPED] += 1
+
+
+@kernel
+def record_network(step: int, model: Model, state: State, recording: Recording) -> None:
+    """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
+    network, flow = model.network, state.flow
+    for n in range(flow.nodes.size):
+        recording.nodes[step, n].node_voltage = abs(flow.nodes[n].voltage_v)
+        recording.nodes[step, n].node_angle = np.angle(flow.nodes[n].voltage_v)
+    for s in range(network.sources.size):
+        row, power = recording.stations[step, s], station_power(s, model, state)
+        row.station_active_power = power.real
+        row.station_reactive_power = power.imag
+        row.active_converters = flow.converters[s]
+        rating_va = network.sources[s].rating_va
+        row.converter_loading = station_loading(power, flow.converters[s], rating_va)
+    losses = 0.0
+    for b in range(network.branches.size):
+        branch = network.branches[b]
+        drop = flow.nodes[branch.start_node].voltage_v - flow.nodes[branch.end_node].voltage_v
+        current = abs(drop / branch.impedance_ohm)
+        recording.branch_current[step, b] = current
+        losses += current**2 * branch.impedance_ohm.real
+    lumped = network.branches.size
+    for s in range(network.sections.size):
+        found = flow.sections[s]
+        recording.branch_current[step, lumped + 2 * s] = abs(found.current_a)
+        recording.branch_current[step, lumped + 2 * s + 1] = abs(found.end_current_a)
+        losses += section_losses(s, model, state)
+    recording.network_losses[step] = losses
+
+
+@kernel
+def section_losses(s: int, model: Model, state: State) -> float:
+    """Losses of a contact-line section, I²R piece by piece. [W]"""
+    section, found, flow = model.network.sections[s], state.flow.sections[s], state.flow
+    voltage = flow.nodes[section.start_node].voltage_v
+    losses = 0.0
+    for k in range(found.first, found.end + 1):
+        if k < found.end:
+            after, length_m = flow.standing[k].voltage_v, flow.standing[k].piece_m
+        else:
+            after, length_m = flow.nodes[section.end_node].voltage_v, found.closing_m
+        z = section.impedance_ohm_per_m * length_m
+        losses += abs((voltage - after) / z) ** 2 * z.real
+        voltage = after
+    return losses

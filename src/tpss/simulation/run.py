@@ -1,0 +1,265 @@
+"""Run a model: put its trains on the line, advance the clock in stretches, keep the recording.
+
+The kernel works in stretches of steps, so that progress can be shown and a run be interrupted; the
+recording grows when a run is longer than was foreseen.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tpss.physics.constants import NOMINAL_VOLTAGE_V
+from tpss.simulation.advance import advance
+from tpss.simulation.state import (
+    DRIVING,
+    DWELLING,
+    PLANNED,
+    Model,
+    Recording,
+    State,
+    Status,
+    new_recording,
+    new_state,
+)
+from tpss.simulation.timetable import (
+    Service,
+    Train,
+    departing_trains,
+    placed_trains,
+    train_now,
+    train_records,
+)
+
+STRETCH_S = 0.05
+"""Time between two reports of progress, about. [s]"""
+
+LONGEST_RUN_S = 7 * 24 * 3600.0
+"""A run that waits for a train to arrive gives up after this simulated time. [s]"""
+
+INTERRUPTED = "interrupted"
+STATUS_NAME = {
+    Status.FINISHED: "finished",
+    Status.COLLAPSED: "collapsed",
+    Status.STALLED: "stalled",
+}
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run stands."""
+
+    time_s: float
+    trains: int
+    """Trains on the line."""
+    share: float
+    """Share of the run that is done, as far as it can be foreseen."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run that has ended, however it did."""
+
+    status: str
+    steps: int
+    """Steps carried out; the recording has one row more."""
+    trains: tuple[Train, ...]
+    studied_train: int
+    arrival_step: np.ndarray
+    recording: Recording
+    state: State
+
+
+class Run:
+    """A run in progress: the state at `step`, and the recording up to it."""
+
+    def __init__(self, model: Model, trains: list[Train], capacity: int) -> None:
+        self.model = model
+        self.trains = trains
+        self.capacity = capacity
+        self.step = 0
+        self.status = Status.RUNNING
+        self.state = new_state(model, train_records(trains, NOMINAL_VOLTAGE_V))
+        self.recording = new_recording(model, capacity, len(trains))
+
+    def advance_to(self, step: int) -> None:
+        """Advance to a step no further than the capacity, or to the run's end before it."""
+        status, self.step = advance(self.step, step, self.model, self.state, self.recording)
+        self.status = Status(status)
+
+    def way_m(self, route: int) -> tuple[float, float]:
+        """Where the trains of a route begin and end. [m]"""
+        begin_m = next(train.position_m for train in self.trains if train.route == route)
+        return begin_m, float(self.model.stops[route].position_m[-1])
+
+    def grow(self, capacity: int, departing: list[Train]) -> None:
+        """Make room for more steps and for the trains that depart in them."""
+        before, state = self.recording, self.state
+        self.trains = [*self.trains, *departing]
+        records = train_records(self.trains, NOMINAL_VOLTAGE_V)
+        records[: state.trains.size] = state.trains
+        self.state = new_state(self.model, records)
+        flow = self.state.flow
+        for old, new in (
+            (state.flow.nodes, flow.nodes),
+            (state.flow.sections, flow.sections),
+            (state.flow.converters, flow.converters),
+            (state.loading_sum, self.state.loading_sum),
+            (state.clock, self.state.clock),
+        ):
+            new[:] = old
+        self.recording = new_recording(self.model, capacity, len(self.trains))
+        for row, kept in zip(self.recording, before, strict=True):
+            row[tuple(slice(n) for n in kept.shape)] = kept
+        self.capacity = capacity
+
+
+def trains_already_running(model: Model, service: Service) -> list[Train]:
+    """Trains of a service as if it had run for ever: those that departed before the start.
+
+    The n-th stands where a lone train at nominal voltage is n headways after its departure, with its
+    speed and its progress in a dwell or a braking plan.
+    """
+    h = model.options.step_s
+    options = model.options._replace(fixed_voltage_v=NOMINAL_VOLTAGE_V, studied_train=0)
+    lone = departing_trains([replace(service, first_s=0.0)], h, 0, 1)
+    capacity = foreseen_steps(model, service)
+    run = Run(model._replace(options=options), lone, capacity)
+    trains = []
+    for n in range(1, math.ceil(LONGEST_RUN_S / service.headway_s)):
+        step = round((n * service.headway_s - service.first_s) / h)
+        if step < 1:
+            continue
+        while run.capacity < step:
+            run.grow(2 * run.capacity, [])
+        if step > run.step:
+            run.advance_to(step)
+        if run.status != Status.RUNNING:
+            break
+        name = f"{service.name} initial {len(trains) + 1}"
+        trains.append(replace(train_now(lone[0], run.state.trains[0]), name=name))
+    return trains
+
+
+def foreseen_steps(model: Model, service: Service) -> int:
+    """Steps that a train of a service takes if little slows it down, with some to spare."""
+    fastest = min(
+        float(model.limits.value.max()), float(model.types[service.train_type].highest_speed_m_s)
+    )
+    travel_s = (service.stops_m[-1] - service.start_m) / fastest
+    dwell = int(model.stops[service.route].dwell_steps.sum())
+    return int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
+
+
+def run_services(
+    model: Model,
+    services: list[Service],
+    steps: int | None,
+    report: Callable[[Progress], None] | None = None,
+) -> Outcome:
+    """Run a model with its services.
+
+    Parameters
+    ----------
+    model : Model
+    services : list of Service
+        The first departure of the first one is the studied train.
+    steps : int or None
+        Number of steps; None: until the studied train arrives.
+    report : callable, optional
+        Called with the `Progress` after every stretch of steps.
+
+    Returns
+    -------
+    Outcome
+        A Ctrl-C ends the run with the status "interrupted" and what it has so far.
+    """
+    h = model.options.step_s
+    on_line = [
+        train
+        for service in services
+        for train in (
+            trains_already_running(model, service)
+            if service.already_running
+            else placed_trains(service)
+        )
+    ]
+    first_s = next(services[0].departure_times_s(math.inf))
+    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
+    departing = departing_trains(services, h, 0, capacity)
+    names = [train.name for train in (*on_line, *departing)]
+    studied_name = f"{services[0].name} 1"
+    studied = names.index(studied_name) if studied_name in names else -1
+    ends_with = studied if steps is None else -1
+    model = model._replace(options=model.options._replace(studied_train=ends_with))
+    run = Run(model, [*on_line, *departing], capacity)
+    status = _advance_to_end(run, services, steps, report)
+    return _outcome(run, status, studied)
+
+
+def _advance_to_end(
+    run: Run,
+    services: list[Service],
+    steps: int | None,
+    report: Callable[[Progress], None] | None,
+) -> str:
+    """Advance by stretches until the run ends; return the name of its status."""
+    h = run.model.options.step_s
+    last = steps if steps is not None else int(LONGEST_RUN_S / h)
+    stretch = 32
+    try:
+        while run.step < last:
+            if run.step == run.capacity:
+                more = min(last, run.capacity + run.capacity // 2 + 1)
+                run.grow(more, departing_trains(services, h, run.capacity, more))
+            started = time.perf_counter()
+            run.advance_to(min(run.step + stretch, run.capacity, last))
+            elapsed = time.perf_counter() - started
+            stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
+            if report is not None:
+                report(_progress(run, steps))
+            if run.status != Status.RUNNING:
+                return STATUS_NAME[run.status]
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
+
+
+def _progress(run: Run, steps: int | None) -> Progress:
+    studied = run.model.options.studied_train
+    share = run.step / (steps or run.capacity)
+    if steps is None:
+        train = run.state.trains[studied]
+        begin_m, end_m = run.way_m(train.route)
+        share = (train.position_m - begin_m) / (end_m - begin_m)
+    on_line = np.isin(run.state.trains.phase, (DRIVING, PLANNED, DWELLING)).sum()
+    time_s = run.step * run.model.options.step_s
+    return Progress(time_s=time_s, trains=int(on_line), share=min(1.0, float(share)))
+
+
+def _outcome(run: Run, status: str, studied: int) -> Outcome:
+    """The run as it ended, its recording cut to the steps carried out."""
+    rows = run.step + 1
+    count = sum(train.departure_step <= run.step for train in run.trains)
+    kept = run.recording
+    recording = Recording(
+        trains=kept.trains[:rows, :count],
+        train_state=kept.train_state[:rows, :count],
+        nodes=kept.nodes[:rows],
+        stations=kept.stations[:rows],
+        branch_current=kept.branch_current[:rows],
+        network_losses=kept.network_losses[:rows],
+        passes=kept.passes[:rows],
+        counters=kept.counters,
+    )
+    return Outcome(
+        status=status,
+        steps=run.step,
+        trains=tuple(run.trains[:count]),
+        studied_train=studied if studied < count else -1,
+        arrival_step=run.state.trains.arrival_step[:count].copy(),
+        recording=recording,
+        state=run.state,
+    )

@@ -1,0 +1,238 @@
+"""What the clock reads and writes: the model in SI units, the state of the trains, the recording."""
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.physics.locomotive import DEMAND, Machine
+from tpss.powerflow.network import Flow, Loads, Network, blank_records, new_flow
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+class Status(IntEnum):
+    """How a call of the clock ended."""
+
+    RUNNING = 0
+    FINISHED = 1
+    COLLAPSED = 2
+    STALLED = 3
+
+
+CONTROL_PERIOD_S = 180.0
+"""Time between two actions of the converter control. [s] [Boullanger2009]_, section 3.5."""
+
+# Phases of a train.
+PENDING = 0
+DRIVING = 1
+PLANNED = 2
+DWELLING = 3
+ARRIVED = 4
+GONE = 5
+
+# Codes of `train_state` in the result.
+ABSENT = -1
+STATE_WAITING = 0
+STATE_MOTORING = 1
+STATE_COASTING = 2
+STATE_BRAKING = 3
+STATE_DWELLING = 4
+STATE_ARRIVED = 5
+
+STOP = np.dtype(
+    [("position_m", float), ("dwell_steps", np.int64), ("destination", np.bool_)], align=True
+)
+"""A stop of a route."""
+
+TRAIN = np.dtype(
+    [
+        ("train_type", np.int64),
+        ("route", np.int64),
+        ("departure_step", np.int64),
+        ("arrival_step", np.int64),  # -1 until it arrives
+        ("phase", np.int64),
+        ("position_m", float),
+        *((name, DEMAND[name]) for name in DEMAND.names or ()),
+        ("next_stop", np.int64),
+        ("dwell_left", np.int64),
+        ("plan_step", np.int64),
+        ("plan_hold", np.int64),
+        ("plan_first", float),
+        ("plan_full", np.int64),
+        ("plan_last", float),
+        ("voltage_v", float),  # at the pantograph, in this step or the one before
+        ("target_speed_m_s", float),  # what the driver wants after this step
+        ("wanted_force_n", float),
+        ("running_resistance_n", float),
+        ("gradient_force_n", float),
+        ("force_n", float),  # what came of it
+        ("braking_force_n", float),
+        ("next_speed_m_s", float),
+    ],
+    align=True,
+)
+"""State of a train, and its forces in the present step."""
+
+CLOCK = np.dtype(
+    [
+        ("loading_steps", np.int64),  # since the last action of the converter control
+        ("next_action_s", float),
+        ("stop_error_m", float),  # largest distance between the end of a plan and its stop
+        ("stalled_train", np.int64),
+        ("force_needed_n", float),
+        ("force_available_n", float),
+        ("carried_share", float),  # of the load, where the line cannot carry all of it
+    ],
+    align=True,
+)
+"""What the clock keeps from step to step, and why it stopped."""
+
+
+class Counter(IntEnum):
+    """What was limited or left its range, counted in steps of one train."""
+
+    EFFORT_EXTRAPOLATED = 0
+    EFFORT_CLIPPED = 1
+    BRIDGE_EXTRAPOLATED = 2
+    BRIDGE_CLIPPED = 3
+    POWER_FACTOR_EXTRAPOLATED = 4
+    SHORT_PIECE = 5
+
+
+class Profile(NamedTuple):
+    """A staircase over position: each value holds from its position to the next one's."""
+
+    from_m: Floats
+    value: Floats
+
+
+class Options(NamedTuple):
+    """Choices of the simulation."""
+
+    step_s: float
+    mean_power: bool
+    mean_gradient: bool
+    adhesion_in_km_h: bool
+    rail: int
+    fixed_voltage_v: float
+    """Voltage at every pantograph without a load flow, or 0 for the coupled simulation."""
+    studied_train: int
+    """The run ends with its arrival; -1: it does not."""
+
+
+class Model(NamedTuple):
+    """Everything that stays as it is during a run."""
+
+    options: Options
+    gradients: Profile
+    """Rise over run. [1]"""
+    limits: Profile
+    """Speed limits. [m/s]"""
+    stops: Any
+    """Records of `STOP`, shape (routes, most stops)."""
+    types: Any
+    """Records of `TRAIN_TYPE`."""
+    machine: Machine
+    network: Network
+
+
+class State(NamedTuple):
+    """Everything that a step changes."""
+
+    trains: Any
+    """Records of `TRAIN`."""
+    bias: Floats
+    """Of each train's tractive-effort network, shape (trains, neurons)."""
+    flow: Flow
+    loading_sum: Floats
+    """Of each station since the last action of the converter control."""
+    clock: Any
+    """One record of `CLOCK`."""
+
+
+TRAIN_ROW = np.dtype(
+    [
+        (name, float)
+        for name in (
+            "position", "speed", "acceleration", "tractive_force", "braking_force",
+            "running_resistance", "gradient_force", "motor_current", "pantograph_voltage",
+            "pantograph_angle", "active_power", "reactive_power",
+        )
+    ],
+    align=True,
+)  # fmt: skip
+"""What is recorded of a train at an instant and over the interval that follows."""
+
+NODE_ROW = np.dtype([("node_voltage", float), ("node_angle", float)], align=True)
+
+STATION_ROW = np.dtype(
+    [
+        ("station_active_power", float),
+        ("station_reactive_power", float),
+        ("active_converters", float),
+        ("converter_loading", float),
+    ],
+    align=True,
+)
+
+
+class Recording(NamedTuple):
+    """Everything that is kept, one row a step; NaN where there is nothing."""
+
+    trains: Any
+    """Records of `TRAIN_ROW`, shape (instants, trains)."""
+    train_state: npt.NDArray[np.int8]
+    nodes: Any
+    """Records of `NODE_ROW`, shape (instants, nodes)."""
+    stations: Any
+    """Records of `STATION_ROW`, shape (instants, stations)."""
+    branch_current: Floats
+    """Lumped branches first, then the start and the end of each section."""
+    network_losses: Floats
+    passes: Indices
+    """Evaluations of the network."""
+    counters: Indices
+    """By `Counter`."""
+
+
+def loads_of(model: Model, state: State) -> Loads:
+    """The trains as the load flow sees them."""
+    return Loads(state.trains, state.bias, model.types, model.machine)
+
+
+def new_state(model: Model, trains: Any) -> State:
+    """State before the first step."""
+    clock = blank_records(1, CLOCK)
+    clock.next_action_s = CONTROL_PERIOD_S
+    clock.stalled_train = -1
+    clock.carried_share = 1.0
+    return State(
+        trains=trains,
+        bias=np.zeros((trains.size, model.machine.tractive_effort.hidden.shape[0])),
+        flow=new_flow(model.network, trains.size),
+        loading_sum=np.zeros(model.network.sources.size),
+        clock=clock,
+    )
+
+
+def new_recording(model: Model, steps: int, trains: int) -> Recording:
+    """Recording with room for `steps` steps and one instant more."""
+    network, rows = model.network, steps + 1
+
+    def blank(columns: int, dtype: np.dtype[Any]) -> Any:
+        size = rows * columns * len(dtype.names or ())
+        return np.full(size, np.nan).view(dtype).reshape(rows, columns).view(np.recarray)
+
+    return Recording(
+        trains=blank(trains, TRAIN_ROW),
+        train_state=np.full((rows, trains), ABSENT, dtype=np.int8),
+        nodes=blank(network.source_of_node.size, NODE_ROW),
+        stations=blank(network.sources.size, STATION_ROW),
+        branch_current=np.full((rows, network.branches.size + 2 * network.sections.size), np.nan),
+        network_losses=np.full(rows, np.nan),
+        passes=np.zeros(rows, dtype=np.int64),
+        counters=np.zeros(len(Counter), dtype=np.int64),
+    )

@@ -1,0 +1,120 @@
+"""The traffic as services: who departs when, and who is on the line from the start."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from tpss.powerflow.network import blank_records
+from tpss.simulation.state import DRIVING, PENDING, TRAIN
+
+DEPARTURE_ROUNDING_S = 1e-6
+"""A train departs at the first instant that is no more than this before its time. [s]"""
+
+
+@dataclass(frozen=True)
+class Service:
+    """Trains of one kind on one route.
+
+    Departures repeat every `headway_s` from `first_s` on, or are those of `departures_s`.
+    """
+
+    name: str
+    train_type: int
+    route: int
+    start_m: float
+    stops_m: tuple[float, ...]
+    headway_s: float = math.inf
+    first_s: float = 0.0
+    departures_s: tuple[float, ...] = ()
+    already_running: bool = False
+    initial: tuple[tuple[float, float], ...] = ()
+    """Position [m] and speed [m/s] of each train on the line at the start."""
+
+    def departure_times_s(self, until_s: float) -> Iterator[float]:
+        """Times of departure before `until_s`, ascending. [s]"""
+        if self.departures_s:
+            yield from (time for time in self.departures_s if time < until_s)
+            return
+        count = 0
+        while (time := self.first_s + count * self.headway_s) < until_s:
+            yield time
+            count += 1
+
+
+@dataclass(frozen=True)
+class Train:
+    """A train as it enters the simulation; fields are those of `TRAIN`."""
+
+    name: str
+    service: str
+    train_type: int
+    route: int
+    departure_step: int
+    phase: int = PENDING
+    position_m: float = 0.0
+    speed_m_s: float = 0.0
+    next_stop: int = 0
+    dwell_left: int = 0
+    plan_step: int = 0
+    plan_hold: int = 0
+    plan_first: float = 0.0
+    plan_full: int = 0
+    plan_last: float = 0.0
+
+
+def departing_trains(services: list[Service], step_s: float, first: int, last: int) -> list[Train]:
+    """Trains that depart at steps `first` to `last` - 1, by time and, at the same time, by service."""
+    trains = []
+    for service in services:
+        for number, time_s in enumerate(service.departure_times_s(last * step_s), 1):
+            step = max(0, math.ceil((time_s - DEPARTURE_ROUNDING_S) / step_s))
+            if first <= step < last:
+                trains.append(
+                    Train(
+                        name=f"{service.name} {number}",
+                        service=service.name,
+                        train_type=service.train_type,
+                        route=service.route,
+                        departure_step=step,
+                        position_m=service.start_m,
+                    )
+                )
+    return sorted(trains, key=lambda train: train.departure_step)
+
+
+def placed_trains(service: Service) -> list[Train]:
+    """Trains that a service names as on the line at the start, each heading for its next stop."""
+    return [
+        Train(
+            name=f"{service.name} initial {number}",
+            service=service.name,
+            train_type=service.train_type,
+            route=service.route,
+            departure_step=0,
+            phase=DRIVING,
+            position_m=position_m,
+            speed_m_s=speed_m_s,
+            next_stop=next(i for i, stop_m in enumerate(service.stops_m) if stop_m > position_m),
+        )
+        for number, (position_m, speed_m_s) in enumerate(service.initial, 1)
+    ]
+
+
+_STATE_FIELDS = [field.name for field in fields(Train) if field.name in (TRAIN.names or ())]
+
+
+def train_records(trains: list[Train], voltage_v: float) -> Any:
+    """Records of `TRAIN`, in the order of the trains, with a first guess of their voltage."""
+    rows = blank_records(len(trains), TRAIN)
+    for name in _STATE_FIELDS:
+        rows[name] = [getattr(train, name) for train in trains]
+    rows.arrival_step = -1
+    rows.voltage_v = voltage_v
+    return rows
+
+
+def train_now(train: Train, record: Any) -> Train:
+    """The train in its present state, ready to enter another simulation at its start."""
+    state = {name: record[name].item() for name in _STATE_FIELDS}
+    return replace(train, **{**state, "departure_step": 0})

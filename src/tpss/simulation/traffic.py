@@ -1,0 +1,132 @@
+"""Who is on the line: departures, braking plans towards the next stop, dwell, arrivals, motion."""
+
+from typing import Any
+
+from tpss.driving.braking import braking_plan, plan_length, shortest_stop
+from tpss.kernel import kernel
+from tpss.powerflow.network import Flow
+from tpss.simulation.state import (
+    ARRIVED,
+    DRIVING,
+    DWELLING,
+    GONE,
+    PENDING,
+    PLANNED,
+    Model,
+    State,
+)
+
+
+@kernel
+def depart(step: int, trains: Any) -> None:
+    """Put trains on the line whose departure has come."""
+    for i in range(trains.size):
+        if trains[i].phase == PENDING and trains[i].departure_step <= step:
+            trains[i].phase = DRIVING
+
+
+@kernel
+def remove_arrived(trains: Any) -> None:
+    """Take trains off the line that stand at their destination."""
+    for i in range(trains.size):
+        if trains[i].phase == ARRIVED:
+            trains[i].phase = GONE
+
+
+@kernel
+def is_on_line(phase: int) -> bool:
+    """Whether a train of this phase draws power."""
+    return phase in (DRIVING, PLANNED, DWELLING)
+
+
+@kernel
+def list_trains(trains: Any, flow: Flow) -> int:
+    """Write the trains on the line into `flow.standing`, unsorted; return their number."""
+    count = 0
+    for i in range(trains.size):
+        if is_on_line(trains[i].phase):
+            flow.standing[count].train = i
+            count += 1
+    return count
+
+
+@kernel
+def distance_to_stop(train: Any, model: Model) -> float:
+    """Way of a train to its next stop. [m]"""
+    return model.stops[train.route, train.next_stop].position_m - train.position_m
+
+
+@kernel
+def must_plan(train: Any, model: Model) -> bool:
+    """Whether this step, driven as it is, would leave a train too little way to stop.
+
+    References
+    ----------
+    [Boullanger2009]_, ``final_brake`` of figure 3-7.
+    """
+    if train.phase != DRIVING or train.speed_m_s <= 0.0:
+        return False
+    h = model.options.step_s
+    way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
+    retardation = model.types[train.train_type].highest_retardation_m_s2
+    needed_m = shortest_stop(max(train.next_speed_m_s, 0.0), retardation, h)
+    return distance_to_stop(train, model) - way_m < needed_m
+
+
+@kernel
+def begin_plan(train: Any, model: Model) -> None:
+    """Put a train on its braking plan, from its present speed and position."""
+    hold, first, full, last = braking_plan(
+        train.speed_m_s,
+        distance_to_stop(train, model),
+        model.types[train.train_type].highest_retardation_m_s2,
+        model.options.step_s,
+    )
+    train.phase = PLANNED
+    train.plan_step = 0
+    train.plan_hold = hold
+    train.plan_first = first
+    train.plan_full = full
+    train.plan_last = last
+
+
+@kernel
+def move(step: int, train: Any, model: Model, state: State) -> None:
+    """Bring a train to the next instant: v' = v + a h, x' = x + v h + a h²/2.
+
+    References
+    ----------
+    [Boullanger2009]_, implied by eq. (2.29) and (2.30).
+    """
+    if train.phase == DWELLING:
+        train.dwell_left -= 1
+        if train.dwell_left <= 0:
+            train.phase = DRIVING
+        return
+    train.position_m += model.options.step_s * (train.speed_m_s + train.next_speed_m_s) / 2.0
+    train.speed_m_s = train.next_speed_m_s
+    if train.phase != PLANNED:
+        return
+    if train.force_n < train.wanted_force_n:
+        train.phase = DRIVING  # the machine could not follow: plan anew
+        return
+    train.plan_step += 1
+    if train.plan_step == plan_length(train.plan_hold, train.plan_full, train.plan_last):
+        error_m = abs(distance_to_stop(train, model))
+        state.clock[0].stop_error_m = max(state.clock[0].stop_error_m, error_m)
+        stand_at_stop(step + 1, train, model)
+
+
+@kernel
+def stand_at_stop(step: int, train: Any, model: Model) -> None:
+    """A train has come to its stop: it has arrived, dwells, or goes on at once."""
+    stop = model.stops[train.route, train.next_stop]
+    train.position_m = stop.position_m
+    train.speed_m_s = 0.0
+    if stop.destination:
+        train.phase = ARRIVED
+        train.arrival_step = step
+        return
+    train.next_stop += 1
+    train.dwell_left = stop.dwell_steps
+    train.phase = DWELLING if stop.dwell_steps > 0 else DRIVING

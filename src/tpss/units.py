@@ -1,0 +1,54 @@
+"""The one table of unit suffixes: what a name's suffix means, and its factor to SI.
+
+Files and the scenario's fields carry engineering units in their names (``length_km``); the program
+computes in SI.  The conversion happens once, in `tpss.model`, through `si`.
+"""
+
+import math
+
+SUFFIXES: dict[str, tuple[str, float]] = {
+    # suffix: (label, factor to SI)
+    "_ohm_per_km": ("Ω/km", 1e-3),
+    "_nf_per_km": ("nF/km", 1e-12),
+    "_n_s_per_m": ("N s/m", 1.0),
+    "_n_s2_per_m2": ("N s²/m²", 1.0),
+    "_kv_per_mvar": ("kV/MVAr", 1e-3),
+    "_permille": ("‰", 1e-3),
+    "_m_s2": ("m/s²", 1.0),
+    "_mvar": ("MVAr", 1e6),
+    "_mva": ("MVA", 1e6),
+    "_ohm": ("Ω", 1.0),
+    "_kmh": ("km/h", 1.0 / 3.6),
+    "_min": ("min", 60.0),
+    "_deg": ("°", math.pi / 180.0),
+    "_km": ("km", 1e3),
+    "_kv": ("kV", 1e3),
+    "_kw": ("kW", 1e3),
+    "_kg": ("kg", 1.0),
+    "_hz": ("Hz", 1.0),
+    "_t": ("t", 1e3),
+    "_a": ("A", 1.0),
+    "_v": ("V", 1.0),
+    "_n": ("N", 1.0),
+}
+
+
+def suffix(name: str) -> str:
+    """Longest unit suffix of a name, or an empty string."""
+    return max((s for s in SUFFIXES if name.endswith(s)), key=len, default="")
+
+
+def label(name: str) -> str:
+    """Unit of a field as it is written for people; empty for a pure number."""
+    return SUFFIXES[suffix(name)][0] if suffix(name) else ""
+
+
+def si(source: object, name: str) -> float:
+    """Value of the field `name` of `source` in SI units.
+
+    Raises
+    ------
+    KeyError
+        The name has no unit suffix.
+    """
+    return float(getattr(source, name)) * SUFFIXES[suffix(name)][1]
