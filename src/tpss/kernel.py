@@ -8,12 +8,13 @@ therefore named after a digest of *all* kernel sources.
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -62,3 +63,17 @@ def kernel(function: _Function) -> _Function:
     finally:
         numba.config.CACHE_DIR = folder_before
     return compiled
+
+
+def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
+    """Array of records whose fields are attributes, in compiled and in plain Python.
+
+    To compiled code such an array is one argument, and one of its records a pointer, however many
+    fields they have.
+    """
+    return np.array(list(rows), dtype=dtype).view(np.recarray)
+
+
+def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
+    """Array of records, all zero."""
+    return np.zeros(count, dtype=dtype).view(np.recarray)

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from tpss.kernel import records
 from tpss.physics.constants import BASE_VOLTAGE_V
-from tpss.powerflow.network import SOURCE, Network, assemble, records
+from tpss.powerflow.network import SOURCE, Network, assemble
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Catenary, ConverterStation, HighVoltageLine, Supply
 from tpss.units import si

@@ -4,11 +4,11 @@ import math
 from typing import Any
 
 from tpss import library
-from tpss.physics.locomotive import TRAIN_TYPE, Machine
+from tpss.kernel import blank_records, records
+from tpss.physics.locomotive import MACHINE, TRAIN_TYPE
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.neural_network import fold_scaling
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR, reactive_ratio
-from tpss.powerflow.network import records
 from tpss.scenario.rolling_stock import Train
 from tpss.units import si
 
@@ -19,14 +19,16 @@ _REACTIVE = {"power-factor": POWER_FACTOR, "double-bridge": DOUBLE_BRIDGE}
 _MODEL = {"new": NEW, "former": FORMER}
 
 
-def build_machine() -> Machine:
-    """The networks of the library, scaled to SI units."""
-    coefficients = library.networks()
-    return Machine(
-        tractive_effort=fold_scaling(coefficients["tractive_effort"], (KM_H, KV, 1.0)),
-        bridge_sine=fold_scaling(coefficients["bridge_sine"], (1.0, 1.0)),
-        power_factor=fold_scaling(coefficients["power_factor"], (KM_H,)),
-    )
+def build_machine() -> Any:
+    """The networks of the library, scaled to SI units: one record of `MACHINE`."""
+    coefficients, machine = library.networks(), blank_records(1, MACHINE)
+    for name, units in (
+        ("tractive_effort", (KM_H, KV, 1.0)),
+        ("bridge_sine", (1.0, 1.0)),
+        ("power_factor", (KM_H,)),
+    ):
+        machine[0][name] = fold_scaling(coefficients[name], units)
+    return machine
 
 
 def build_train_types(trains: list[Train]) -> Any:

@@ -14,10 +14,9 @@ Trains are records: `TRAIN_TYPE` holds what its owner states, `DEMAND` what stay
 is solved.  A record is one pointer to compiled code, however many fields it has.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tpss.kernel import kernel
 from tpss.physics.motor import (
@@ -27,7 +26,7 @@ from tpss.physics.motor import (
     motor_force,
     motor_voltage,
 )
-from tpss.physics.neural_network import FeedForwardNetwork
+from tpss.physics.neural_network import network_record
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     TRANSFORMER_RATIO,
@@ -35,18 +34,19 @@ from tpss.physics.reactive_power import (
     bridge_sine,
     filter_reactive_power,
 )
-from tpss.physics.tractive_effort import maximum_motor_force, steepest_slope
+from tpss.physics.tractive_effort import NEURONS, maximum_motor_force, steepest_slope
 
-Array = npt.NDArray[np.float64]
-
-
-class Machine(NamedTuple):
-    """The three networks that describe the locomotive's machine."""
-
-    tractive_effort: FeedForwardNetwork
-    bridge_sine: FeedForwardNetwork
-    power_factor: FeedForwardNetwork
-
+MACHINE = np.dtype(
+    (
+        np.record,
+        [
+            ("tractive_effort", network_record(NEURONS, 3)),
+            ("bridge_sine", network_record(16, 2)),
+            ("power_factor", network_record(10, 1)),
+        ],
+    ),
+)
+"""The three networks that describe a locomotive's machine."""
 
 TRAIN_TYPE = np.dtype(
     [
@@ -84,6 +84,7 @@ DEMAND = np.dtype(
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
         ("free_voltage_v", float),  # voltage around which the machine does not limit the force ...
         ("free_band_v", float),  # ... and how far from it that is proven; negative: nowhere
+        ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
     ],
     align=True,
 )
@@ -94,6 +95,9 @@ TrainType = Any
 
 Demand = Any
 """A record with the fields of `DEMAND`, perhaps among others."""
+
+Machine = Any
+"""A record of `MACHINE`."""
 
 
 @kernel
@@ -123,7 +127,7 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
 
 @kernel
 def prove_free_band(
-    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> None:
     """Find how far from `voltage_v` the machine cannot be what limits the force.
 
@@ -137,13 +141,13 @@ def prove_free_band(
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
     network = machine.tractive_effort
-    force, _ = maximum_motor_force(voltage_v, bias, network)
+    force, _ = maximum_motor_force(voltage_v, train.bias, network)
     train.free_band_v = (force - needed) / steepest_slope(network)
 
 
 @kernel
 def wheel_force(
-    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
     """Tractive force at the wheel rim at a voltage, and its slope. [N], [N/V]
 
@@ -156,7 +160,7 @@ def wheel_force(
         return 0.0, 0.0
     if abs(voltage_v - train.free_voltage_v) < train.free_band_v:
         return cap, 0.0
-    force, slope = maximum_motor_force(voltage_v, bias, machine.tractive_effort)
+    force, slope = maximum_motor_force(voltage_v, train.bias, machine.tractive_effort)
     if force < 0.0:
         force, slope = 0.0, 0.0
     limit = machine_force(
@@ -270,7 +274,7 @@ def bridge_demand(
 
 @kernel
 def electrical_demand(
-    voltage_v: float, kind: TrainType, train: Demand, bias: Array, machine: Machine
+    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float, float, float]:
     r"""Active and reactive power that a train draws at a voltage, and their slopes: P, Q, P', Q'.
 
@@ -285,7 +289,7 @@ def electrical_demand(
     ----------
     [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
     """
-    force, slope = wheel_force(voltage_v, kind, train, bias, machine)
+    force, slope = wheel_force(voltage_v, kind, train, machine)
     _, _, power, power_slope = motor_state(force, kind, train)
     power_slope *= slope
     active = power / kind.efficiency + kind.auxiliary_power_w

@@ -18,7 +18,7 @@ References
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,22 +28,32 @@ from tpss.kernel import kernel
 Array = npt.NDArray[np.float64]
 
 
-class FeedForwardNetwork(NamedTuple):
-    """Weights with the scaling folded in: inputs and output in SI units.
+def network_record(neurons: int, inputs: int) -> np.dtype[Any]:
+    """Type of a network's record, with the scaling folded in: inputs and output in SI units.
 
-    `hidden` has a row for each neuron: the weights of the inputs, the bias, and the weight of the
-    neuron in the output.  `trained` has a row for each input: the ends of its training range.
+    ``hidden`` has a row for each neuron: the weights of the inputs, the bias, and the weight of the
+    neuron in the output.  ``trained`` has a row for each input: the ends of its training range.
     """
+    return np.dtype(
+        (
+            np.record,
+            [
+                ("hidden", float, (neurons, inputs + 2)),
+                ("output_bias", float),
+                ("trained", float, (inputs, 2)),
+            ],
+        )
+    )
 
-    hidden: Array
-    output_bias: float
-    trained: Array
+
+FeedForwardNetwork = Any
+"""A record with the fields of `network_record`."""
 
 
 def fold_scaling(
     coefficients: Mapping[str, Any], input_to_si: Sequence[float]
-) -> FeedForwardNetwork:
-    """Network in SI units from the coefficients as they are printed.
+) -> tuple[Array, float, Array]:
+    """Fields of a network's record, in SI units, from the coefficients as they are printed.
 
     Parameters
     ----------
@@ -65,11 +75,9 @@ def fold_scaling(
     weight = printed * 2.0 / (high - low)
     bias = np.array(coefficients["b1"]) - printed @ (2.0 * low / (high - low) + 1.0)
     output_weight = half_range * np.array(coefficients["w2"], dtype=float)
-    return FeedForwardNetwork(
-        hidden=np.column_stack([weight, bias, output_weight]),
-        output_bias=float(half_range * (coefficients["b2"] + 1.0) + coefficients["output_min"]),
-        trained=np.column_stack([low, high]),
-    )
+    output_bias = float(half_range * (coefficients["b2"] + 1.0) + coefficients["output_min"])
+    hidden = np.column_stack([weight, bias, output_weight])
+    return hidden, output_bias, np.column_stack([low, high])
 
 
 @kernel

@@ -12,6 +12,9 @@ from tpss.physics.neural_network import FeedForwardNetwork, outside, tansig
 
 Array = npt.NDArray[np.float64]
 
+NEURONS = 15
+"""Neurons of the network. [Boullanger2009]_, section 2.2.1."""
+
 SPEED, VOLTAGE, CURRENT, BIAS, OUTPUT = 0, 1, 2, 3, 4
 
 
@@ -33,7 +36,7 @@ def speed_and_current_bias(
     [Boullanger2009]_, eq. (F.7), the inputs that the voltage does not move.
     """
     hidden = network.hidden
-    for neuron in range(bias.size):
+    for neuron in range(NEURONS):
         bias[neuron] = (
             hidden[neuron, BIAS]
             + hidden[neuron, SPEED] * speed_m_s
@@ -63,7 +66,7 @@ def maximum_motor_force(
     force = network.output_bias
     slope = 0.0
     hidden = network.hidden
-    for neuron in range(bias.size):
+    for neuron in range(NEURONS):
         weight, output = hidden[neuron, VOLTAGE], hidden[neuron, OUTPUT]
         activation = tansig(bias[neuron] + weight * voltage_v)
         force += output * activation
@@ -78,7 +81,7 @@ def steepest_slope(network: FeedForwardNetwork) -> float:
     The derivative of tansig never exceeds 1, so no slope exceeds the sum of the weights' products.
     """
     bound = 0.0
-    for neuron in range(network.hidden.shape[0]):
+    for neuron in range(NEURONS):
         bound += abs(network.hidden[neuron, OUTPUT] * network.hidden[neuron, VOLTAGE])
     return bound
 

@@ -12,11 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
+from tpss.kernel import kernel, records
 from tpss.powerflow.pairs import apply, compose, determinant, inverse
 
 Indices = npt.NDArray[np.int64]
-Complexes = npt.NDArray[np.complex128]
 
 
 PIVOT = np.dtype(
@@ -24,7 +23,7 @@ PIVOT = np.dtype(
         ("node", np.int64),
         ("first", np.int64),  # bounds of its neighbours
         ("end", np.int64),
-        ("update", np.int64),  # first of its updates
+        ("update", np.int64),  # where its updates begin in `Pattern.places`
     ],
     align=True,
 )
@@ -47,11 +46,11 @@ class Pattern(NamedTuple):
     """Records of `PIVOT`, in the order of elimination."""
     neighbours: Any
     """Records of `NEIGHBOUR`, pivot by pivot."""
-    updates: Indices
-    """Places of (neighbour a, neighbour b), pivot by pivot and row by row."""
+    places: Indices
+    """Places of blocks that belong together: for each pivot those of (neighbour a, neighbour b), row
+    by row; then, for each node, all of its row."""
     row_start: Indices
-    rows: Indices
-    """Places of all blocks of each row, fill included, row by row."""
+    """Where each node's row begins in `places`, and where the last one ends."""
 
 
 def find_pattern(
@@ -86,13 +85,12 @@ def find_pattern(
     updates = np.cumsum([0, *(len(js) ** 2 for js in later)])
     pivots = zip(order, starts, starts[1:], updates, strict=False)
     pairs = [(i, j) for i, js in zip(order, later, strict=True) for j in js]
-    neighbours = [(j, place[i, j], place[j, i]) for i, j in pairs]
+    places = [place[a, b] for js in later for a in js for b in js]
     pattern = Pattern(
-        pivots=np.array(list(pivots), dtype=PIVOT).view(np.recarray),
-        neighbours=np.array(neighbours, dtype=NEIGHBOUR).view(np.recarray),
-        updates=_indices(place[a, b] for js in later for a in js for b in js),
-        row_start=_indices([0, *np.cumsum([len(row) for row in rows])]),
-        rows=_indices(item for row in rows for item in row),
+        pivots=records(pivots, PIVOT),
+        neighbours=records(((j, place[i, j], place[j, i]) for i, j in pairs), NEIGHBOUR),
+        places=np.array([*places, *(block for row in rows for block in row)], dtype=np.int64),
+        row_start=len(places) + np.cumsum([0, *(len(row) for row in rows)], dtype=np.int64),
     )
     return pattern, place
 
@@ -122,45 +120,44 @@ def _blocks_by_row(n_nodes: int, place: dict[tuple[int, int], int]) -> list[list
     return rows
 
 
-def _indices(values: Iterable[int]) -> Indices:
-    return np.array(list(values), dtype=np.int64)
-
-
 @kernel
-def solve_blocks(pattern: Pattern, p: Complexes, q: Complexes, x: Complexes) -> float:
+def solve_blocks(pattern: Pattern, blocks: Any, nodes: Any) -> float:
     """Solve the system in place and return the sign of its determinant (0 or NaN: singular).
 
     Parameters
     ----------
     pattern : Pattern
-    p, q : Complexes, shape (blocks,)
-        The blocks; overwritten.
-    x : Complexes, shape (nodes,)
-        The right-hand side; overwritten by the solution.
+    blocks : records
+        With the pair (p, q) of each block; overwritten.
+    nodes : records
+        With the right-hand side in ``right_side``; overwritten by the solution.
     """
     sign = 1.0
     # 1. Eliminate forwards; each pivot's inverse replaces it.
     for k in range(pattern.pivots.size):
         pivot = pattern.pivots[k]
-        node, target = pivot.node, pivot.update
-        sign *= np.sign(determinant(p[node], q[node]))
-        p[node], q[node] = inverse(p[node], q[node])
+        own, target = blocks[pivot.node], pivot.update
+        sign *= np.sign(determinant(own.p, own.q))
+        own.p, own.q = inverse(own.p, own.q)
         for a in range(pivot.first, pivot.end):
             neighbour = pattern.neighbours[a]
-            lp, lq = compose(p[neighbour.lower], q[neighbour.lower], p[node], q[node])
+            low = blocks[neighbour.lower]
+            lp, lq = compose(low.p, low.q, own.p, own.q)
             for b in range(pivot.first, pivot.end):
-                up, place = pattern.neighbours[b].upper, pattern.updates[target]
-                dp, dq = compose(lp, lq, p[up], q[up])
-                p[place] -= dp
-                q[place] -= dq
+                up = blocks[pattern.neighbours[b].upper]
+                changed = blocks[pattern.places[target]]
+                dp, dq = compose(lp, lq, up.p, up.q)
+                changed.p -= dp
+                changed.q -= dq
                 target += 1
-            x[neighbour.node] -= apply(lp, lq, x[node])
+            nodes[neighbour.node].right_side -= apply(lp, lq, nodes[pivot.node].right_side)
     # 2. Substitute backwards.
     for k in range(pattern.pivots.size - 1, -1, -1):
         pivot = pattern.pivots[k]
-        rest = x[pivot.node]
+        rest = nodes[pivot.node].right_side
         for a in range(pivot.first, pivot.end):
             neighbour = pattern.neighbours[a]
-            rest -= apply(p[neighbour.upper], q[neighbour.upper], x[neighbour.node])
-        x[pivot.node] = apply(p[pivot.node], q[pivot.node], rest)
+            up = blocks[neighbour.upper]
+            rest -= apply(up.p, up.q, nodes[neighbour.node].right_side)
+        nodes[pivot.node].right_side = apply(blocks[pivot.node].p, blocks[pivot.node].q, rest)
     return sign

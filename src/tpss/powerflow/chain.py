@@ -26,6 +26,10 @@ from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
 from tpss.powerflow.network import Complexes, Flow, Loads, Network
 
+WARM = 0
+FLAT = 1
+"""Whether a pass takes the trains' currents at the voltages of the state, or at base voltage."""
+
 SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
 
@@ -80,7 +84,7 @@ def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
 
 @kernel
 def train_current(
-    i: int, voltage: complex, scale: float, flat: bool, loads: Loads
+    i: int, voltage: complex, scale: float, start: int, loads: Loads
 ) -> tuple[complex, complex, complex]:
     """Current that train `i` takes [A], and its derivative as a pair [S].
 
@@ -95,16 +99,16 @@ def train_current(
     flat : bool
         Take the current at base voltage instead, as if it did not depend on the voltage.
     """
-    if flat:
+    if start == FLAT:
         voltage = complex(BASE_VOLTAGE_V, 0.0)
     magnitude = abs(voltage)
     train = loads.trains[i]
     p, q, p_slope, q_slope = electrical_demand(
-        magnitude, loads.types[train.train_type], train, loads.bias[i], loads.machine
+        magnitude, loads.types[train.train_type], train, loads.machine[0]
     )
     conj_voltage = voltage.conjugate()
     current = scale * complex(p, -q) / conj_voltage
-    if flat:
+    if start == FLAT:
         return current, 0j, 0j
     y1 = scale * complex(p_slope, -q_slope) / (2.0 * magnitude)
     y2 = (y1 * voltage - current) / conj_voltage
@@ -128,7 +132,7 @@ def _push_load(y1: complex, y2: complex, w: Complexes) -> None:
 
 @kernel
 def run_chain(
-    s: int, scale: float, flat: bool, network: Network, flow: Flow, loads: Loads
+    s: int, scale: float, start: int, network: Network, flow: Flow, loads: Loads
 ) -> complex:
     """Push section `s` from its start to its end; return the voltage there. [V]
 
@@ -154,7 +158,7 @@ def run_chain(
         voltage -= z * place.piece_m * current
         _push_piece(z * place.piece_m, w)
         # 2. The train; the half shunt at the piece's end waits for that of the next piece.
-        load, y1, y2 = train_current(place.train, voltage, scale, flat, loads)
+        load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
         place.voltage_v = voltage
         current -= load
         _push_load(y1, y2, w)

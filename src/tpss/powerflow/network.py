@@ -4,17 +4,15 @@ Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records
 one node or section together; to compiled code an array of them is one argument.
 """
 
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from tpss.kernel import blank_records, records
 from tpss.physics.converter import CONVERTER_LAW
-from tpss.physics.locomotive import Machine
 from tpss.powerflow.block_lu import Pattern, find_pattern
 
-Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
 
@@ -36,7 +34,16 @@ SECTION = np.dtype(
 """A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
 
 BRANCH = np.dtype(
-    [("start_node", np.int64), ("end_node", np.int64), ("impedance_ohm", complex)], align=True
+    [
+        ("start_node", np.int64),
+        ("end_node", np.int64),
+        ("impedance_ohm", complex),
+        ("block_aa", np.int64),
+        ("block_ab", np.int64),
+        ("block_ba", np.int64),
+        ("block_bb", np.int64),
+    ],
+    align=True,
 )
 """A lumped impedance."""
 
@@ -57,6 +64,7 @@ NODE_FLOW = np.dtype(
         ("voltage_v", complex),
         ("leaving_current_a", complex),  # into sections and branches
         ("residual_pu", complex),
+        ("right_side", complex),  # of the linear system, then its solution
         ("base_v", complex),  # where a Newton step starts
         ("direction_v", complex),  # the whole step
         ("good_v", complex),  # of the last solution that is known to be good
@@ -83,6 +91,17 @@ SECTION_FLOW = np.dtype(
     align=True,
 )
 
+SOURCE_FLOW = np.dtype(
+    [
+        ("converters", float),  # number of converters that run
+        ("loading_sum", float),  # over the steps since the last action of the converter control
+    ],
+    align=True,
+)
+
+BLOCK = np.dtype([("p", complex), ("q", complex)], align=True)
+"""A block of the linear system, as a pair."""
+
 STANDING = np.dtype(
     [
         ("train", np.int64),
@@ -106,8 +125,6 @@ class Network(NamedTuple):
     source_of_node: Indices
     """Index of the source at each node, or -1."""
     pattern: Pattern
-    branch_blocks: Complexes
-    """The lumped branches' admittances at the places of their blocks, shape (blocks,)."""
 
 
 class Flow(NamedTuple):
@@ -119,12 +136,10 @@ class Flow(NamedTuple):
     """Records of `SECTION_FLOW`."""
     standing: Any
     """Records of `STANDING`, by position; as many are valid as trains are on the line."""
-    converters: Floats
-    """Number of converters that run in each station."""
-    block_p: Complexes
-    block_q: Complexes
-    right_side: Complexes
-    """Of the linear system over the nodes, then its solution."""
+    sources: Any
+    """Records of `SOURCE_FLOW`."""
+    blocks: Any
+    """Records of `BLOCK`."""
     sensitivity: Complexes
     """Of a chain's voltage and current to its start voltage and current, shape (2, 2, 2)."""
 
@@ -134,21 +149,10 @@ class Loads(NamedTuple):
 
     trains: Any
     """Records with the fields of `DEMAND`, and `train_type`."""
-    bias: Floats
-    """Of each train's tractive-effort network, shape (trains, neurons)."""
     types: Any
     """Records of `TRAIN_TYPE`."""
-    machine: Machine
-
-
-def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
-    """Array of records whose fields are attributes, in compiled and in plain Python."""
-    return np.array(list(rows), dtype=dtype).view(np.recarray)
-
-
-def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
-    """Array of records, all zero."""
-    return np.zeros(count, dtype=dtype).view(np.recarray)
+    machine: Any
+    """One record of `MACHINE`."""
 
 
 def assemble(
@@ -170,38 +174,31 @@ def assemble(
     """
     ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
     pattern, place = find_pattern(n_nodes, ends)
-    admittances = np.zeros(len(place), dtype=complex)
-    for a, b, impedance in branches:
-        for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
-            admittances[place[i, j]] += sign / impedance
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
     source_of_node[sources.node] = np.arange(sources.size)
+
+    def blocks(a: int, b: int) -> tuple[int, int, int, int]:
+        return place[a, a], place[a, b], place[b, a], place[b, b]
+
     return Network(
-        sections=records(
-            [
-                (a, b, *rest, place[a, a], place[a, b], place[b, a], place[b, b])
-                for a, b, *rest in sections
-            ],
-            SECTION,
-        ),
-        branches=records(branches, BRANCH),
+        sections=records([(*section, *blocks(*section[:2])) for section in sections], SECTION),
+        branches=records([(*branch, *blocks(*branch[:2])) for branch in branches], BRANCH),
         sources=sources,
         source_of_node=source_of_node,
         pattern=pattern,
-        branch_blocks=admittances,
     )
 
 
 def new_flow(network: Network, n_trains: int) -> Flow:
     """State of a load flow with room for `n_trains`, all converters running."""
-    nodes, blocks = network.source_of_node.size, network.branch_blocks.size
-    return Flow(
-        nodes=blank_records(nodes, NODE_FLOW),
+    blocks = network.source_of_node.size + 2 * network.pattern.neighbours.size
+    flow = Flow(
+        nodes=blank_records(network.source_of_node.size, NODE_FLOW),
         sections=blank_records(network.sections.size, SECTION_FLOW),
         standing=blank_records(n_trains, STANDING),
-        converters=network.sources.installed.astype(float),
-        block_p=np.zeros(blocks, dtype=complex),
-        block_q=np.zeros(blocks, dtype=complex),
-        right_side=np.zeros(nodes, dtype=complex),
+        sources=blank_records(network.sources.size, SOURCE_FLOW),
+        blocks=blank_records(blocks, BLOCK),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
+    flow.sources.converters = network.sources.installed
+    return flow

@@ -33,13 +33,15 @@ References
 [Boullanger2009]_, eq. (3.5), (F.29)-(F.41).
 """
 
+from typing import Any
+
 import numpy as np
 
 from tpss.kernel import kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
-from tpss.powerflow.chain import run_chain
+from tpss.powerflow.chain import FLAT, WARM, run_chain
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.pairs import apply, compose, determinant, inverse
 
@@ -69,13 +71,19 @@ def source_law(
     """
     power = voltage * current.conjugate()
     magnitude, angle, by_q, angle_by_p, angle_by_q = terminal_voltage(
-        power.real, power.imag, flow.converters[s], network.sources[s]
+        power.real, power.imag, flow.sources[s].converters, network.sources[s]
     )
     direction = complex(np.cos(angle), np.sin(angle))
     law = magnitude * direction
     f_p = 1j * law * angle_by_p
     f_q = direction * by_q + 1j * law * angle_by_q
     return law, (f_p - 1j * f_q) / 2.0, (f_p + 1j * f_q) / 2.0
+
+
+@kernel
+def _add(block: Any, p: complex, q: complex) -> None:
+    block.p += p
+    block.q += q
 
 
 @kernel
@@ -87,18 +95,15 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     ba_p, ba_q = compose(bi_p, bi_q, a_p, a_q)
     db_p, db_q = compose(w[1, 1, 0], w[1, 1, 1], bi_p, bi_q)
     dba_p, dba_q = compose(db_p, db_q, a_p, a_q)
-    flow.block_p[section.block_aa] -= ba_p
-    flow.block_q[section.block_aa] -= ba_q
-    flow.block_p[section.block_ab] += bi_p
-    flow.block_q[section.block_ab] += bi_q
-    flow.block_p[section.block_ba] -= w[1, 0, 0] - dba_p
-    flow.block_q[section.block_ba] -= w[1, 0, 1] - dba_q
-    flow.block_p[section.block_bb] -= db_p
-    flow.block_q[section.block_bb] -= db_q
-    flow.nodes[section.start_node].leaving_current_a += found.current_a
-    flow.nodes[section.end_node].leaving_current_a -= found.end_current_a
-    flow.right_side[section.start_node] += apply(bi_p, bi_q, found.gap_v)
-    flow.right_side[section.end_node] -= apply(db_p, db_q, found.gap_v)
+    _add(flow.blocks[section.block_aa], -ba_p, -ba_q)
+    _add(flow.blocks[section.block_ab], bi_p, bi_q)
+    _add(flow.blocks[section.block_ba], dba_p - w[1, 0, 0], dba_q - w[1, 0, 1])
+    _add(flow.blocks[section.block_bb], -db_p, -db_q)
+    start, end = flow.nodes[section.start_node], flow.nodes[section.end_node]
+    start.leaving_current_a += found.current_a
+    end.leaving_current_a -= found.end_current_a
+    start.right_side += apply(bi_p, bi_q, found.gap_v)
+    end.right_side -= apply(db_p, db_q, found.gap_v)
     found.inverse_p, found.inverse_q = bi_p, bi_q
     found.transfer_p, found.transfer_q = a_p, a_q
     return np.sign(determinant(w[0, 1, 0], w[0, 1, 1]))
@@ -106,16 +111,22 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
 
 @kernel
 def _stamp_branches(network: Network, flow: Flow) -> None:
-    """Start the node system with the lumped branches, constant but for their currents."""
-    flow.block_p[:] = network.branch_blocks
-    flow.block_q[:] = 0.0
-    flow.right_side[:] = 0.0
-    for node in range(flow.nodes.size):
-        flow.nodes[node].leaving_current_a = 0.0
+    """Start the node system with the lumped branches."""
+    for k in range(flow.blocks.size):
+        flow.blocks[k].p = 0.0
+        flow.blocks[k].q = 0.0
+    for n in range(flow.nodes.size):
+        flow.nodes[n].leaving_current_a = 0.0
+        flow.nodes[n].right_side = 0.0
     for b in range(network.branches.size):
         branch = network.branches[b]
         start, end = flow.nodes[branch.start_node], flow.nodes[branch.end_node]
-        current = (start.voltage_v - end.voltage_v) / branch.impedance_ohm
+        admittance = 1.0 / branch.impedance_ohm
+        current = (start.voltage_v - end.voltage_v) * admittance
+        flow.blocks[branch.block_aa].p += admittance
+        flow.blocks[branch.block_ab].p -= admittance
+        flow.blocks[branch.block_ba].p -= admittance
+        flow.blocks[branch.block_bb].p += admittance
         start.leaving_current_a += current
         end.leaving_current_a -= current
 
@@ -123,24 +134,25 @@ def _stamp_branches(network: Network, flow: Flow) -> None:
 @kernel
 def _turn_source_row(s: int, network: Network, flow: Flow) -> None:
     """Replace the current balance of a source's node by the converter law, linearised."""
-    node = network.sources[s].node
-    voltage, current = flow.nodes[node].voltage_v, flow.nodes[node].leaving_current_a
+    number = network.sources[s].node
+    node, own = flow.nodes[number], flow.blocks[number]
+    voltage, current = node.voltage_v, node.leaving_current_a
     law, s1, s2 = source_law(s, voltage, current, network, flow)
     t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
-    for k in range(network.pattern.row_start[node], network.pattern.row_start[node + 1]):
-        place = network.pattern.rows[k]
-        p, q = compose(t_p, t_q, flow.block_p[place], flow.block_q[place])
-        flow.block_p[place], flow.block_q[place] = -p, -q
-    flow.block_p[node] += 1.0 - s1 * current.conjugate()
-    flow.block_q[node] -= s2 * current
-    flow.nodes[node].residual_pu = (voltage - law) / BASE_VOLTAGE_V
+    for k in range(network.pattern.row_start[number], network.pattern.row_start[number + 1]):
+        block = flow.blocks[network.pattern.places[k]]
+        p, q = compose(t_p, t_q, block.p, block.q)
+        block.p, block.q = -p, -q
+    own.p += 1.0 - s1 * current.conjugate()
+    own.q -= s2 * current
+    node.residual_pu = (voltage - law) / BASE_VOLTAGE_V
     # The right side holds minus the change of the leaving current that closes the gaps.
-    flow.right_side[node] = law - voltage - apply(t_p, t_q, flow.right_side[node])
+    node.right_side = law - voltage - apply(t_p, t_q, node.right_side)
 
 
 @kernel
 def evaluate(
-    scale: float, flat: bool, network: Network, flow: Flow, loads: Loads
+    scale: float, start: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[float, float, float]:
     """One pass over the network: residuals, and the linear system of the next Newton step.
 
@@ -166,7 +178,7 @@ def evaluate(
     mismatch, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
         section = network.sections[s]
-        gap = run_chain(s, scale, flat, network, flow, loads)
+        gap = run_chain(s, scale, start, network, flow, loads)
         gap -= flow.nodes[section.end_node].voltage_v
         flow.sections[s].gap_v = gap
         sign *= _stamp_section(s, network, flow)
@@ -174,15 +186,15 @@ def evaluate(
         mismatch = max(mismatch, abs(gap) * BASE_VOLTAGE_V / impedance / BASE_POWER_VA)
         merit += (abs(gap) / BASE_VOLTAGE_V) ** 2
     # 3. Current balance of the nodes (F.29), (F.30), (F.37), (F.38); the law of the sources.
-    for node in range(network.source_of_node.size):
-        if network.source_of_node[node] >= 0:
-            _turn_source_row(network.source_of_node[node], network, flow)
+    for n in range(flow.nodes.size):
+        node = flow.nodes[n]
+        if network.source_of_node[n] >= 0:
+            _turn_source_row(network.source_of_node[n], network, flow)
         else:
-            current = flow.nodes[node].leaving_current_a
-            flow.nodes[node].residual_pu = current * BASE_VOLTAGE_V / BASE_POWER_VA
-            flow.right_side[node] -= current
-        mismatch = max(mismatch, abs(flow.nodes[node].residual_pu))
-        merit += abs(flow.nodes[node].residual_pu) ** 2
+            node.residual_pu = node.leaving_current_a * (BASE_VOLTAGE_V / BASE_POWER_VA)
+            node.right_side -= node.leaving_current_a
+        mismatch = max(mismatch, abs(node.residual_pu))
+        merit += abs(node.residual_pu) ** 2
     if not np.isfinite(merit):
         return np.inf, np.inf, 0.0
     return mismatch, merit, sign
@@ -191,13 +203,14 @@ def evaluate(
 @kernel
 def _find_direction(network: Network, flow: Flow) -> float:
     """Solve for the Newton step; return the sign of the node system's determinant."""
-    sign = solve_blocks(network.pattern, flow.block_p, flow.block_q, flow.right_side)
-    for node in range(flow.nodes.size):
-        flow.nodes[node].direction_v = flow.right_side[node]
+    sign = solve_blocks(network.pattern, flow.blocks, flow.nodes)
+    for n in range(flow.nodes.size):
+        flow.nodes[n].direction_v = flow.nodes[n].right_side
     for s in range(network.sections.size):
         section, found = network.sections[s], flow.sections[s]
-        start, end = flow.right_side[section.start_node], flow.right_side[section.end_node]
-        change = end - apply(found.transfer_p, found.transfer_q, start) - found.gap_v
+        start_v = flow.nodes[section.start_node].direction_v
+        end_v = flow.nodes[section.end_node].direction_v
+        change = end_v - apply(found.transfer_p, found.transfer_q, start_v) - found.gap_v
         found.direction_a = apply(found.inverse_p, found.inverse_q, change)
     return sign
 
@@ -253,7 +266,7 @@ def voltages_are_plausible(flow: Flow) -> bool:
 
 @kernel
 def newton(
-    scale: float, flat: bool, network: Network, flow: Flow, loads: Loads
+    scale: float, start: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
@@ -264,11 +277,11 @@ def newton(
     flat : bool
         Begin with all trains' currents at base voltage, whatever the state.
     """
-    mismatch, merit, chains = evaluate(scale, flat, network, flow, loads)
+    mismatch, merit, chains = evaluate(scale, start, network, flow, loads)
     passes = 1
     while passes < MOST_PASSES and np.isfinite(merit):
         sign = chains * _find_direction(network, flow)
-        if mismatch < TOLERANCE and not flat:
+        if mismatch < TOLERANCE and start == WARM:
             _close_gaps(flow)
             if not voltages_are_plausible(flow):
                 return IMPLAUSIBLE_VOLTAGE, passes
@@ -277,14 +290,14 @@ def newton(
         size = 1.0
         for _ in range(MOST_HALVINGS):
             _take_step(size, flow)
-            mismatch, trial, chains = evaluate(scale, False, network, flow, loads)
+            mismatch, trial, chains = evaluate(scale, WARM, network, flow, loads)
             passes += 1
             # After a flat pass the merits belong to different equations.
-            if trial < merit or mismatch < TOLERANCE or (flat and np.isfinite(trial)):
+            if trial < merit or mismatch < TOLERANCE or (start == FLAT and np.isfinite(trial)):
                 break
             size /= 2.0
         else:
             return NOT_CONVERGED, passes
         merit = trial
-        flat = False
+        start = WARM
     return NOT_CONVERGED, passes

@@ -9,6 +9,7 @@
 
 from tpss.kernel import kernel
 from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.newton import SOLVED, newton
 
@@ -54,7 +55,8 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
     share, step, passes = 0.0, FIRST_STEP, 0
     while share < 1.0 and step >= SHORTEST_STEP:
         target = min(1.0, share + step)
-        status, more = newton(target, share == 0.0, network, flow, loads)
+        start = FLAT if share == 0.0 else WARM
+        status, more = newton(target, start, network, flow, loads)
         passes += more
         if status == SOLVED:
             _keep(flow)
@@ -65,7 +67,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
             step /= 2.0
     if 0.0 < share < 1.0:
         # The last trial has left its voltages at the trains; find those of the share again.
-        newton(share, False, network, flow, loads)
+        newton(share, WARM, network, flow, loads)
     return share, passes
 
 
@@ -88,11 +90,11 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
     """
     passes = 0
     if warm:
-        status, passes = newton(1.0, False, network, flow, loads)
+        status, passes = newton(1.0, WARM, network, flow, loads)
         if status == SOLVED:
             return 1.0, passes
     start_flat(flow)
-    status, more = newton(1.0, True, network, flow, loads)
+    status, more = newton(1.0, FLAT, network, flow, loads)
     passes += more
     if status == SOLVED:
         return 1.0, passes

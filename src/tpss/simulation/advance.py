@@ -43,8 +43,7 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     short = place_trains(count, state.trains, model.network, state.flow)
     recording.counters[Counter.SHORT_PIECE] += short
     for k in range(count):
-        i = state.flow.standing[k].train
-        prepare(state.trains[i], state.bias[i], model)
+        prepare(state.trains[state.flow.standing[k].train], model)
     return count
 
 

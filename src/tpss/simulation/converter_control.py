@@ -61,13 +61,12 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
     clock = state.clock[0]
     if time_s < clock.next_action_s - TIME_ROUNDING_S:
         return
-    converters = state.flow.converters
-    for s in range(converters.size):
-        source = model.network.sources[s]
+    for s in range(model.network.sources.size):
+        source, found = model.network.sources[s], state.flow.sources[s]
         if source.controlled:
-            mean = state.loading_sum[s] / clock.loading_steps
-            converters[s] = converters_needed(mean, converters[s], source.installed)
-        state.loading_sum[s] = 0.0
+            mean = found.loading_sum / clock.loading_steps
+            found.converters = converters_needed(mean, found.converters, source.installed)
+        found.loading_sum = 0.0
     clock.loading_steps = 0
     periods = np.floor((time_s + TIME_ROUNDING_S) / CONTROL_PERIOD_S)
     clock.next_action_s = (periods + 1.0) * CONTROL_PERIOD_S
@@ -83,10 +82,8 @@ def station_power(s: int, model: Model, state: State) -> complex:
 @kernel
 def note_loading(model: Model, state: State) -> None:
     """Add this step's loading of each station to the mean that decides the next action."""
-    for s in range(state.loading_sum.size):
-        state.loading_sum[s] += station_loading(
-            station_power(s, model, state),
-            state.flow.converters[s],
-            model.network.sources[s].rating_va,
-        )
+    for s in range(model.network.sources.size):
+        source, found = model.network.sources[s], state.flow.sources[s]
+        power = station_power(s, model, state)
+        found.loading_sum += station_loading(power, found.converters, source.rating_va)
     state.clock[0].loading_steps += 1

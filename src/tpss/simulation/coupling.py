@@ -12,7 +12,7 @@ from tpss.physics.locomotive import acceleration, wheel_force
 from tpss.powerflow.network import Loads
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
-from tpss.simulation.state import DWELLING, Floats, Model, State
+from tpss.simulation.state import DWELLING, Model, State
 from tpss.simulation.traffic import begin_plan, must_plan
 
 
@@ -42,12 +42,11 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
             return share, passes
         planned = False
         for k in range(count):
-            i = state.flow.standing[k].train
-            train = state.trains[i]
-            settle(train, state.bias[i], model)
+            train = state.trains[state.flow.standing[k].train]
+            settle(train, model)
             if must_plan(train, model):
                 begin_plan(train, model)
-                aim(train, state.bias[i], model)
+                aim(train, model)
                 planned = True
         if not planned:
             return 1.0, passes
@@ -62,7 +61,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
         for k in range(count):
             state.trains[flow.standing[k].train].voltage_v = fixed_v
         return 1.0, 0
-    loads = Loads(state.trains, state.bias, model.types, model.machine)
+    loads = Loads(state.trains, model.types, model.machine)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
         state.trains[flow.standing[k].train].voltage_v = abs(flow.standing[k].voltage_v)
@@ -70,7 +69,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
 
 
 @kernel
-def settle(train: Any, bias: Floats, model: Model) -> None:
+def settle(train: Any, model: Model) -> None:
     """Force, brakes and next speed of a train at the voltage of the solution.
 
     With motors off the train brakes with exactly the wanted acceleration; below its wanted force it
@@ -81,7 +80,7 @@ def settle(train: Any, bias: Floats, model: Model) -> None:
     [Boullanger2009]_, eq. (2.11), (F.19), (F.20).
     """
     kind = model.types[train.train_type]
-    force, _ = wheel_force(train.voltage_v, kind, train, bias, model.machine)
+    force, _ = wheel_force(train.voltage_v, kind, train, model.machine[0])
     wanted = train.wanted_force_n
     train.force_n = force
     train.braking_force_n = 0.0

@@ -10,9 +10,13 @@ from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
 from tpss.physics.locomotive import prove_free_band
 from tpss.physics.reactive_power import POWER_FACTOR, power_factor, reactive_ratio
-from tpss.physics.running_resistance import DavisCoefficients, gradient_force, running_resistance
+from tpss.physics.running_resistance import (
+    DavisCoefficients,
+    gradient_force,
+    running_resistance,
+)
 from tpss.physics.tractive_effort import speed_and_current_bias
-from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Floats, Model
+from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
 from tpss.simulation.traffic import distance_to_stop
 
 
@@ -80,7 +84,7 @@ def oppose(train: Any, kind: Any, model: Model) -> None:
 
 
 @kernel
-def aim(train: Any, bias: Floats, model: Model) -> None:
+def aim(train: Any, model: Model) -> None:
     """Set the target of a train, and the force that adhesion and driver allow at most.
 
     References
@@ -100,22 +104,24 @@ def aim(train: Any, bias: Floats, model: Model) -> None:
         train.force_cap_n = max(0.0, min(wanted, adhesion))
         train.target_speed_m_s = target
         train.wanted_force_n = wanted
-    prove_free_band(train.voltage_v, kind, train, bias, model.machine)
+    prove_free_band(train.voltage_v, kind, train, model.machine[0])
 
 
 @kernel
-def prepare(train: Any, bias: Floats, model: Model) -> None:
+def prepare(train: Any, model: Model) -> None:
     """Everything about a train that stays fixed while this step is solved.
 
     References
     ----------
     [Boullanger2009]_, appendix F.1.
     """
-    kind, options, machine = model.types[train.train_type], model.options, model.machine
+    kind, options, machine = model.types[train.train_type], model.options, model.machine[0]
     train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
     if kind.reactive_model == POWER_FACTOR:
         factor = power_factor(train.speed_m_s, machine.power_factor)
         train.reactive_ratio = reactive_ratio(factor)
-    speed_and_current_bias(train.speed_m_s, kind.highest_current_a, machine.tractive_effort, bias)
+    speed_and_current_bias(
+        train.speed_m_s, kind.highest_current_a, machine.tractive_effort, train.bias
+    )
     oppose(train, kind, model)
-    aim(train, bias, model)
+    aim(train, model)

@@ -5,7 +5,11 @@ from typing import Any
 import numpy as np
 
 from tpss.kernel import kernel
-from tpss.physics.locomotive import electrical_demand, motor_state, train_armature_current
+from tpss.physics.locomotive import (
+    electrical_demand,
+    motor_state,
+    train_armature_current,
+)
 from tpss.physics.motor import line_voltage_factor, motor_current, motor_voltage
 from tpss.physics.neural_network import outside
 from tpss.physics.reactive_power import (
@@ -25,7 +29,6 @@ from tpss.simulation.state import (
     STATE_DWELLING,
     STATE_MOTORING,
     Counter,
-    Floats,
     Indices,
     Model,
     Recording,
@@ -60,12 +63,12 @@ def state_code(train: Any) -> int:
 def record_train(step: int, k: int, model: Model, state: State, recording: Recording) -> None:
     """Forces, voltage and powers of the `k`-th train along the line."""
     i = state.flow.standing[k].train
-    train, bias, row = state.trains[i], state.bias[i], recording.trains[step, i]
+    train, row = state.trains[i], recording.trains[step, i]
     kind = model.types[train.train_type]
     motor, speed, _, _ = motor_state(train.force_n, kind, train)
     current = train_armature_current(motor, speed, kind, train)
     current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
-    active, reactive, _, _ = electrical_demand(train.voltage_v, kind, train, bias, model.machine)
+    active, reactive, _, _ = electrical_demand(train.voltage_v, kind, train, model.machine[0])
     recording.train_state[step, i] = state_code(train)
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n
@@ -78,17 +81,17 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.active_power = active
     row.reactive_power = reactive
     if train.force_n > 0.0:
-        count_limits(train, kind, bias, model, recording.counters)
+        count_limits(train, kind, model, recording.counters)
 
 
 @kernel
-def count_limits(train: Any, kind: Any, bias: Floats, model: Model, counters: Indices) -> None:
+def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
     """Count where a network of a motoring train extrapolates or is clipped."""
-    machine, speed, voltage = model.machine, train.speed_m_s, train.voltage_v
+    machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
     if effort_outside_training(speed, voltage, kind.highest_current_a, machine.tractive_effort):
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
     if abs(voltage - train.free_voltage_v) >= train.free_band_v:
-        highest, _ = maximum_motor_force(voltage, bias, machine.tractive_effort)
+        highest, _ = maximum_motor_force(voltage, train.bias, machine.tractive_effort)
         if highest < 0.0:
             counters[Counter.EFFORT_CLIPPED] += 1
     if kind.reactive_model != DOUBLE_BRIDGE:
@@ -116,9 +119,9 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
         row, power = recording.stations[step, s], station_power(s, model, state)
         row.station_active_power = power.real
         row.station_reactive_power = power.imag
-        row.active_converters = flow.converters[s]
+        row.active_converters = flow.sources[s].converters
         rating_va = network.sources[s].rating_va
-        row.converter_loading = station_loading(power, flow.converters[s], rating_va)
+        row.converter_loading = station_loading(power, flow.sources[s].converters, rating_va)
     losses = 0.0
     for b in range(network.branches.size):
         branch = network.branches[b]

@@ -105,8 +105,7 @@ class Run:
         for old, new in (
             (state.flow.nodes, flow.nodes),
             (state.flow.sections, flow.sections),
-            (state.flow.converters, flow.converters),
-            (state.loading_sum, self.state.loading_sum),
+            (state.flow.sources, flow.sources),
             (state.clock, self.state.clock),
         ):
             new[:] = old

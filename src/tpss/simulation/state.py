@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.physics.locomotive import DEMAND, Machine
-from tpss.powerflow.network import Flow, Loads, Network, blank_records, new_flow
+from tpss.kernel import blank_records
+from tpss.physics.locomotive import DEMAND
+from tpss.powerflow.network import Flow, Network, new_flow
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -135,7 +136,8 @@ class Model(NamedTuple):
     """Records of `STOP`, shape (routes, most stops)."""
     types: Any
     """Records of `TRAIN_TYPE`."""
-    machine: Machine
+    machine: Any
+    """One record of `MACHINE`."""
     network: Network
 
 
@@ -144,11 +146,7 @@ class State(NamedTuple):
 
     trains: Any
     """Records of `TRAIN`."""
-    bias: Floats
-    """Of each train's tractive-effort network, shape (trains, neurons)."""
     flow: Flow
-    loading_sum: Floats
-    """Of each station since the last action of the converter control."""
     clock: Any
     """One record of `CLOCK`."""
 
@@ -198,11 +196,6 @@ class Recording(NamedTuple):
     """By `Counter`."""
 
 
-def loads_of(model: Model, state: State) -> Loads:
-    """The trains as the load flow sees them."""
-    return Loads(state.trains, state.bias, model.types, model.machine)
-
-
 def new_state(model: Model, trains: Any) -> State:
     """State before the first step."""
     clock = blank_records(1, CLOCK)
@@ -211,9 +204,7 @@ def new_state(model: Model, trains: Any) -> State:
     clock.carried_share = 1.0
     return State(
         trains=trains,
-        bias=np.zeros((trains.size, model.machine.tractive_effort.hidden.shape[0])),
         flow=new_flow(model.network, trains.size),
-        loading_sum=np.zeros(model.network.sources.size),
         clock=clock,
     )
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from tpss.powerflow.network import blank_records
+from tpss.kernel import blank_records
 from tpss.simulation.state import DRIVING, PENDING, TRAIN
 
 DEPARTURE_ROUNDING_S = 1e-6
