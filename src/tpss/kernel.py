@@ -54,12 +54,30 @@ def kernel(function: _Function) -> _Function:
     """Compile `function` at its first call and keep the result on disk.
 
     Division by zero gives inf or NaN, as in numpy; NaN checks stay (no fast-math); the global
-    interpreter lock is released.  Under ``NUMBA_DISABLE_JIT=1`` the function stays plain Python.
+    interpreter lock is released.  Kernels allocate nothing, so they are compiled without the
+    counting of references to arrays, which would cost as much as the arithmetic.  Under
+    ``NUMBA_DISABLE_JIT=1`` the function stays plain Python.
     """
+    return _compiled(function, inline="never")
+
+
+def inlined(function: _Function) -> _Function:
+    """`kernel` for a function with one caller: compiled as a part of it, not once more by itself."""
+    return _compiled(function, inline="always")
+
+
+def _compiled(function: _Function, inline: str) -> _Function:
     folder_before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+        compiled: _Function = numba.njit(
+            cache=True,
+            nogil=True,
+            error_model="numpy",
+            inline=inline,
+            no_cfunc_wrapper=True,
+            _nrt=False,
+        )(function)
     finally:
         numba.config.CACHE_DIR = folder_before
     return compiled

@@ -28,7 +28,7 @@ References
 [Boullanger2009]_, eq. (2.26)-(2.33), section 3.4.3.
 """
 
-import numpy as np
+import math
 
 from tpss.kernel import kernel
 
@@ -54,7 +54,7 @@ def shortest_stop(speed_m_s: float, retardation_m_s2: float, step_s: float) -> f
     [Boullanger2009]_, the feasibility of eq. (2.26)-(2.33).
     """
     whole = speed_m_s / (retardation_m_s2 * step_s)
-    n = np.floor(whole)
+    n = math.floor(whole)
     return retardation_m_s2 * step_s**2 * (n * n / 2.0 + (whole - n) * (n + 0.5))
 
 
@@ -89,12 +89,12 @@ def braking_plan(
     [Boullanger2009]_, eq. (2.26)-(2.33).
     """
     whole = speed_m_s / (retardation_m_s2 * step_s)
-    n = int(np.floor(whole))
+    n = int(math.floor(whole))
     f = whole - n
     mean = distance_m / (retardation_m_s2 * step_s**2) + whole / 2.0
     mean = max(mean, n * (n + 1) / 2.0 + f * (n + 1))
     slide = mean - n * (n + 1) / 2.0
-    start = int(np.floor(slide / whole))
+    start = int(math.floor(slide / whole))
     rest = slide - start * whole
     if rest < f * (n + 1) and start > 0:
         moved = rest / (n + 1)
@@ -146,5 +146,5 @@ def highest_speed_that_stops(
     """
     unit = retardation_m_s2 * step_s
     room = max(0.0, distance_m / (unit * step_s) - speed_m_s / unit / 2.0)
-    n = np.floor((np.sqrt(1.0 + 8.0 * room) - 1.0) / 2.0)
+    n = math.floor((math.sqrt(1.0 + 8.0 * room) - 1.0) / 2.0)
     return unit * (n + max(0.0, room - n * (n + 1.0) / 2.0) / (n + 1.0))

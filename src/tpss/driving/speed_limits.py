@@ -8,6 +8,8 @@ the limit can be met are those up to a highest one, which bisection finds to the
 such a speed full braking always leads to another, so the limit stays within reach.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -41,7 +43,7 @@ def slowing_distance(
         Highest retardation [m/s²] and time step [s].
     """
     unit = retardation_m_s2 * step_s
-    n = max(0.0, np.ceil((speed_m_s - limit_m_s) / unit - SLACK_STEPS))
+    n = max(0.0, math.ceil((speed_m_s - limit_m_s) / unit - SLACK_STEPS))
     if n * unit > speed_m_s:
         return shortest_stop(speed_m_s, retardation_m_s2, step_s)
     return step_s * n * (speed_m_s - n * unit / 2.0)

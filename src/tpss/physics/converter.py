@@ -8,6 +8,7 @@ Q_50 is counted positive when delivered to the 50 Hz grid, so that both denomina
 the extraction of the thesis has lost the signs, and with Q_50 = 0 nothing depends on it.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,7 @@ def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, floa
     grid = law.grid_reactance_ohm / (square + law.grid_reactance_ohm * q50_var)
     x_motor = law.motor_reactance_ohm / converters
     motor = x_motor / (square + x_motor * q50_var)
-    angle = law.grid_angle_rad - (np.arctan(grid * power_w) + np.arctan(motor * power_w)) / 3.0
+    angle = law.grid_angle_rad - (math.atan(grid * power_w) + math.atan(motor * power_w)) / 3.0
     slope = -(grid / (1.0 + (grid * power_w) ** 2) + motor / (1.0 + (motor * power_w) ** 2)) / 3.0
     return angle, slope
 
@@ -99,7 +100,7 @@ def terminal_voltage(
     opposite = x * power_w
     adjacent = voltage * voltage + x * reactive_power_var
     length = opposite * opposite + adjacent * adjacent
-    angle = behind - np.arctan2(opposite, adjacent)
+    angle = behind - math.atan2(opposite, adjacent)
     by_power = behind_slope - x * adjacent / length
     by_reactive = opposite * (2.0 * voltage * voltage_slope + x) / length
     return voltage, angle, voltage_slope, by_power, by_reactive

@@ -15,7 +15,14 @@ Array = npt.NDArray[np.float64]
 @kernel
 def step_index(position_m: float, from_m: Array) -> int:
     """Index of the stair that holds at a position (the first one before the profile begins)."""
-    return max(np.searchsorted(from_m, position_m, side="right") - 1, 0)
+    low, high = 0, from_m.size
+    while high - low > 1:
+        middle = (low + high) // 2
+        if from_m[middle] <= position_m:
+            low = middle
+        else:
+            high = middle
+    return low
 
 
 @kernel

@@ -3,7 +3,7 @@
 Sign: positive is inductive, drawn by the train.
 """
 
-import numpy as np
+import math
 
 from tpss.kernel import kernel
 from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
@@ -78,7 +78,7 @@ def bridge_reactive_power(
     ----------
     [Boullanger2009]_, eq. (2.19), (3.1), (3.2) and (F.24).
     """
-    return locomotive_voltage_v * armature_current_a * np.sqrt(2.0) / np.pi * sine
+    return locomotive_voltage_v * armature_current_a * math.sqrt(2.0) / math.pi * sine
 
 
 @kernel
@@ -106,7 +106,7 @@ def reactive_ratio(factor: float) -> float:
     ----------
     [Boullanger2009]_, eq. (2.21), (2.24), (F.23) and (F.27).
     """
-    return np.sqrt(1.0 - factor * factor) / factor
+    return math.sqrt(1.0 - factor * factor) / factor
 
 
 @kernel

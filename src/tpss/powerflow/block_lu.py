@@ -6,6 +6,7 @@ proportion to the nodes.  The order, the fill and the places of all blocks are f
 Python; each solution then only runs through lists of places.  A block is a pair (see `pairs`).
 """
 
+import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -137,7 +138,7 @@ def solve_blocks(pattern: Pattern, blocks: Any, nodes: Any) -> float:
     for k in range(pattern.pivots.size):
         pivot = pattern.pivots[k]
         own, target = blocks[pivot.node], pivot.update
-        sign *= np.sign(determinant(own.p, own.q))
+        sign *= math.copysign(1.0, determinant(own.p, own.q))
         own.p, own.q = inverse(own.p, own.q)
         for a in range(pivot.first, pivot.end):
             neighbour = pattern.neighbours[a]

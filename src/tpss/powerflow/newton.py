@@ -33,9 +33,8 @@ References
 [Boullanger2009]_, eq. (3.5), (F.29)-(F.41).
 """
 
+import math
 from typing import Any
-
-import numpy as np
 
 from tpss.kernel import kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
@@ -73,7 +72,7 @@ def source_law(
     magnitude, angle, by_q, angle_by_p, angle_by_q = terminal_voltage(
         power.real, power.imag, flow.sources[s].converters, network.sources[s]
     )
-    direction = complex(np.cos(angle), np.sin(angle))
+    direction = complex(math.cos(angle), math.sin(angle))
     law = magnitude * direction
     f_p = 1j * law * angle_by_p
     f_q = direction * by_q + 1j * law * angle_by_q
@@ -106,7 +105,7 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     end.right_side -= apply(db_p, db_q, found.gap_v)
     found.inverse_p, found.inverse_q = bi_p, bi_q
     found.transfer_p, found.transfer_q = a_p, a_q
-    return np.sign(determinant(w[0, 1, 0], w[0, 1, 1]))
+    return math.copysign(1.0, determinant(w[0, 1, 0], w[0, 1, 1]))
 
 
 @kernel
@@ -195,8 +194,8 @@ def evaluate(
             node.right_side -= node.leaving_current_a
         mismatch = max(mismatch, abs(node.residual_pu))
         merit += abs(node.residual_pu) ** 2
-    if not np.isfinite(merit):
-        return np.inf, np.inf, 0.0
+    if not math.isfinite(merit):
+        return math.inf, math.inf, 0.0
     return mismatch, merit, sign
 
 
@@ -279,7 +278,7 @@ def newton(
     """
     mismatch, merit, chains = evaluate(scale, start, network, flow, loads)
     passes = 1
-    while passes < MOST_PASSES and np.isfinite(merit):
+    while passes < MOST_PASSES and math.isfinite(merit):
         sign = chains * _find_direction(network, flow)
         if mismatch < TOLERANCE and start == WARM:
             _close_gaps(flow)
@@ -293,7 +292,7 @@ def newton(
             mismatch, trial, chains = evaluate(scale, WARM, network, flow, loads)
             passes += 1
             # After a flat pass the merits belong to different equations.
-            if trial < merit or mismatch < TOLERANCE or (start == FLAT and np.isfinite(trial)):
+            if trial < merit or mismatch < TOLERANCE or (start == FLAT and math.isfinite(trial)):
                 break
             size /= 2.0
         else:

@@ -7,7 +7,7 @@
    exists on that branch, and the share of the load that could be carried is the result.
 """
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Flow, Loads, Network
@@ -44,7 +44,7 @@ def _restore(flow: Flow) -> None:
         flow.sections[s].current_a = flow.sections[s].good_a
 
 
-@kernel
+@inlined
 def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Raise all loads from zero; return the share of the load that is carried, and the passes.
 
@@ -71,7 +71,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
     return share, passes
 
 
-@kernel
+@inlined
 def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Solve a load flow.
 

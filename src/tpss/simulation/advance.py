@@ -1,6 +1,6 @@
 """The clock: the order of things in a step, and when a run ends."""
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.powerflow.chain import place_trains, sort_by_position
 from tpss.simulation.converter_control import control_converters, note_loading
 from tpss.simulation.coupling import solve_step
@@ -28,7 +28,7 @@ def find_stalled(count: int, state: State) -> bool:
     return False
 
 
-@kernel
+@inlined
 def begin_step(step: int, model: Model, state: State, recording: Recording) -> int:
     """Traffic, converter control, drivers; return the number of trains on the line."""
     # 1. Departures, and removal of arrived trains, which this instant still shows.
@@ -47,7 +47,7 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     return count
 
 
-@kernel
+@inlined
 def end_step(step: int, count: int, model: Model, state: State, recording: Recording) -> None:
     """Record the interval, then bring every train to the next instant."""
     for k in range(count):

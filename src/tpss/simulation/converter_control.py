@@ -1,8 +1,8 @@
 """Converter stations switch converters on and off by their loading, every three minutes."""
 
-import numpy as np
+import math
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.simulation.state import CONTROL_PERIOD_S, Model, State
 
 HIGHEST_LOADING = 0.85
@@ -51,11 +51,11 @@ def converters_needed(mean_loading: float, converters: float, installed: int) ->
     ----------
     [Boullanger2009]_, eq. (3.7)-(3.9).
     """
-    needed = np.ceil(mean_loading * converters / HIGHEST_LOADING - COUNT_ROUNDING)
+    needed = math.ceil(mean_loading * converters / HIGHEST_LOADING - COUNT_ROUNDING)
     return min(float(installed), max(1.0, needed))
 
 
-@kernel
+@inlined
 def control_converters(time_s: float, model: Model, state: State) -> None:
     """Act at the first instant at or past each multiple of three minutes."""
     clock = state.clock[0]
@@ -68,7 +68,7 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
             found.converters = converters_needed(mean, found.converters, source.installed)
         found.loading_sum = 0.0
     clock.loading_steps = 0
-    periods = np.floor((time_s + TIME_ROUNDING_S) / CONTROL_PERIOD_S)
+    periods = math.floor((time_s + TIME_ROUNDING_S) / CONTROL_PERIOD_S)
     clock.next_action_s = (periods + 1.0) * CONTROL_PERIOD_S
 
 
@@ -79,7 +79,7 @@ def station_power(s: int, model: Model, state: State) -> complex:
     return node.voltage_v * node.leaving_current_a.conjugate()
 
 
-@kernel
+@inlined
 def note_loading(model: Model, state: State) -> None:
     """Add this step's loading of each station to the mean that decides the next action."""
     for s in range(model.network.sources.size):

@@ -7,7 +7,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 
 from typing import Any
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.locomotive import acceleration, wheel_force
 from tpss.powerflow.network import Loads
 from tpss.powerflow.solve import solve
@@ -16,7 +16,7 @@ from tpss.simulation.state import DWELLING, Model, State
 from tpss.simulation.traffic import begin_plan, must_plan
 
 
-@kernel
+@inlined
 def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
     """Solve this step for the first `count` trains of `state.flow.standing`.
 
@@ -53,7 +53,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         warm = True
 
 
-@kernel
+@inlined
 def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
     """Voltages at all pantographs: by the load flow, or fixed if the model says so."""
     fixed_v, flow = model.options.fixed_voltage_v, state.flow

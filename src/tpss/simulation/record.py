@@ -1,10 +1,9 @@
 """Keep everything: states at the instants, forces and powers over the intervals between them."""
 
+import cmath
 from typing import Any
 
-import numpy as np
-
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.locomotive import (
     electrical_demand,
     motor_state,
@@ -59,7 +58,7 @@ def state_code(train: Any) -> int:
     return STATE_BRAKING if train.braking_force_n > 0.0 else STATE_COASTING
 
 
-@kernel
+@inlined
 def record_train(step: int, k: int, model: Model, state: State, recording: Recording) -> None:
     """Forces, voltage and powers of the `k`-th train along the line."""
     i = state.flow.standing[k].train
@@ -77,14 +76,14 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.gradient_force = train.gradient_force_n
     row.motor_current = motor_current(current, kind.current_model)
     row.pantograph_voltage = train.voltage_v
-    row.pantograph_angle = np.angle(state.flow.standing[k].voltage_v)
+    row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
     row.active_power = active
     row.reactive_power = reactive
     if train.force_n > 0.0:
         count_limits(train, kind, model, recording.counters)
 
 
-@kernel
+@inlined
 def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
     """Count where a network of a motoring train extrapolates or is clipped."""
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
@@ -108,13 +107,13 @@ def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None
         counters[Counter.BRIDGE_CLIPPED] += 1
 
 
-@kernel
+@inlined
 def record_network(step: int, model: Model, state: State, recording: Recording) -> None:
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
     network, flow = model.network, state.flow
     for n in range(flow.nodes.size):
         recording.nodes[step, n].node_voltage = abs(flow.nodes[n].voltage_v)
-        recording.nodes[step, n].node_angle = np.angle(flow.nodes[n].voltage_v)
+        recording.nodes[step, n].node_angle = cmath.phase(flow.nodes[n].voltage_v)
     for s in range(network.sources.size):
         row, power = recording.stations[step, s], station_power(s, model, state)
         row.station_active_power = power.real
