@@ -29,12 +29,20 @@ from tpss.physics.motor import (
 from tpss.physics.neural_network import network_record
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
+    POWER_FACTOR,
     TRANSFORMER_RATIO,
     bridge_reactive_power,
     bridge_sine,
     filter_reactive_power,
+    power_factor,
+    reactive_ratio,
 )
-from tpss.physics.tractive_effort import NEURONS, maximum_motor_force, steepest_slope
+from tpss.physics.tractive_effort import (
+    NEURONS,
+    maximum_motor_force,
+    speed_and_current_bias,
+    steepest_slope,
+)
 
 MACHINE = np.dtype(
     (
@@ -82,9 +90,15 @@ DEMAND = np.dtype(
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
-        ("free_voltage_v", float),  # voltage around which the machine does not limit the force ...
-        ("free_band_v", float),  # ... and how far from it that is proven; negative: nowhere
+        ("bias_speed_m_s", float),  # speed to which `bias` and `reactive_ratio` belong
+        ("free_voltage_v", float),  # voltage around which the machine does not limit the force
+        ("free_force_n", float),  # what the machine gives there
+        ("free_band_v", float),  # how far from it that is proven; negative: nowhere
         ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
+        ("active_power_w", float),  # what came of it at the voltage last tried
+        ("reactive_power_var", float),
+        ("machine_force_n", float),  # of all motors at most, before clipping
+        ("bridge_sine", float),  # β, before clipping
     ],
     align=True,
 )
@@ -126,23 +140,35 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
 
 
 @kernel
-def prove_free_band(
-    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
-) -> None:
-    """Find how far from `voltage_v` the machine cannot be what limits the force.
+def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machine) -> None:
+    """Evaluate what depends on the speed alone, if the speed has changed since that was done last.
+
+    A train that holds its speed limit has the same speed, to the last digit, step after step.
+    """
+    if train.speed_m_s == train.bias_speed_m_s:
+        return
+    train.bias_speed_m_s = train.speed_m_s
+    if kind.reactive_model == POWER_FACTOR:
+        factor = power_factor(train.speed_m_s, machine.power_factor)
+        train.reactive_ratio = reactive_ratio(factor)
+    network = machine.tractive_effort
+    speed_and_current_bias(train.speed_m_s, kind.highest_current_a, network, train.bias)
+    train.free_voltage_v = voltage_v
+    train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
+
+
+@kernel
+def prove_free_band(kind: TrainType, train: Demand, machine: Machine) -> None:
+    """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
     The slope of the force is bounded (`steepest_slope`), so a margin in force is a margin in
     voltage; within it the network need not be evaluated again, and nothing is approximated.
     """
-    train.free_voltage_v = voltage_v
-    train.free_band_v = -1.0
-    if train.force_cap_n <= 0.0:
-        return
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
-    network = machine.tractive_effort
-    force, _ = maximum_motor_force(voltage_v, train.bias, network)
-    train.free_band_v = (force - needed) / steepest_slope(network)
+    margin = train.free_force_n - needed
+    train.free_band_v = margin / steepest_slope(machine.tractive_effort)
+    train.machine_force_n = train.free_force_n
 
 
 @kernel
@@ -161,6 +187,7 @@ def wheel_force(
     if abs(voltage_v - train.free_voltage_v) < train.free_band_v:
         return cap, 0.0
     force, slope = maximum_motor_force(voltage_v, train.bias, machine.tractive_effort)
+    train.machine_force_n = force
     if force < 0.0:
         force, slope = 0.0, 0.0
     limit = machine_force(
@@ -232,6 +259,7 @@ def train_bridge_sine(
     sine, by_motor, by_locomotive = bridge_sine(
         motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine
     )
+    train.bridge_sine = sine
     if sine <= 0.0:
         return 0.0, 0.0
     if sine >= 1.0:
@@ -280,6 +308,8 @@ def electrical_demand(
 
     .. math:: P_D = P_{motor} / \eta_{loco} + P_{aux}, \quad Q_D = Q_{motor} + Q_{aux} + Q_f
 
+    The powers are noted in the train's record too.
+
     Parameters
     ----------
     voltage_v : float
@@ -305,4 +335,5 @@ def electrical_demand(
     )
     reactive += kind.auxiliary_reactive_power_var + filtered
     reactive_slope += 2.0 * filtered / voltage_v
+    train.active_power_w, train.reactive_power_var = active, reactive
     return active, reactive, power_slope / kind.efficiency, reactive_slope

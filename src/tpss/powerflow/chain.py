@@ -19,12 +19,14 @@ References
 [Boullanger2009]_, eq. (F.31), (F.35)-(F.38): the same balances, written with an admittance matrix.
 """
 
+import math
 from typing import Any
 
 from tpss.kernel import kernel
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
 from tpss.powerflow.network import Complexes, Flow, Loads, Network
+from tpss.powerflow.pairs import squared
 
 WARM = 0
 FLAT = 1
@@ -101,17 +103,18 @@ def train_current(
     """
     if start == FLAT:
         voltage = complex(BASE_VOLTAGE_V, 0.0)
-    magnitude = abs(voltage)
+    square = squared(voltage)
+    magnitude = math.sqrt(square)
     train = loads.trains[i]
     p, q, p_slope, q_slope = electrical_demand(
         magnitude, loads.types[train.train_type], train, loads.machine[0]
     )
-    conj_voltage = voltage.conjugate()
-    current = scale * complex(p, -q) / conj_voltage
+    # 1 / conj(V) = V / |V|²
+    current = scale * complex(p, -q) * (voltage / square)
     if start == FLAT:
         return current, 0j, 0j
     y1 = scale * complex(p_slope, -q_slope) / (2.0 * magnitude)
-    y2 = (y1 * voltage - current) / conj_voltage
+    y2 = (y1 * voltage - current) * (voltage / square)
     return current, y1, y2
 
 

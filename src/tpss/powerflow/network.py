@@ -68,6 +68,8 @@ NODE_FLOW = np.dtype(
         ("base_v", complex),  # where a Newton step starts
         ("direction_v", complex),  # the whole step
         ("good_v", complex),  # of the last solution that is known to be good
+        ("last_v", complex),  # of the last time step, and of the one before
+        ("before_v", complex),
     ],
     align=True,
 )
@@ -84,6 +86,8 @@ SECTION_FLOW = np.dtype(
         ("base_a", complex),
         ("direction_a", complex),
         ("good_a", complex),
+        ("last_a", complex),
+        ("before_a", complex),
         ("first", np.int64),  # bounds of its trains in `Flow.standing`
         ("end", np.int64),
         ("closing_m", float),  # line between its last train and its end node

@@ -13,6 +13,12 @@ from tpss.kernel import kernel
 
 
 @kernel
+def squared(z: complex) -> float:
+    """|z|², without the root that `abs` takes."""
+    return z.real * z.real + z.imag * z.imag
+
+
+@kernel
 def apply(p: complex, q: complex, delta: complex) -> complex:
     """The map (p, q) of a change."""
     return p * delta + q * delta.conjugate()
@@ -27,7 +33,7 @@ def compose(p1: complex, q1: complex, p2: complex, q2: complex) -> tuple[complex
 @kernel
 def determinant(p: complex, q: complex) -> float:
     """Determinant of the map as a 2 × 2 real matrix."""
-    return p.real * p.real + p.imag * p.imag - q.real * q.real - q.imag * q.imag
+    return squared(p) - squared(q)
 
 
 @kernel

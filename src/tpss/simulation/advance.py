@@ -2,6 +2,7 @@
 
 from tpss.kernel import inlined, kernel
 from tpss.powerflow.chain import place_trains, sort_by_position
+from tpss.powerflow.solve import predict, remember
 from tpss.simulation.converter_control import control_converters, note_loading
 from tpss.simulation.coupling import solve_step
 from tpss.simulation.driver import prepare
@@ -71,6 +72,8 @@ def advance(
     """
     for step in range(first, last):
         count = begin_step(step, model, state, recording)
+        if step > 0:
+            predict(state.flow)
         share, passes = solve_step(count, step > 0, model, state)
         recording.passes[step] = passes
         if share < 1.0:
@@ -78,6 +81,7 @@ def advance(
             return Status.COLLAPSED, step
         if find_stalled(count, state):
             return Status.STALLED, step
+        remember(step == 0, state.flow)
         end_step(step, count, model, state, recording)
         studied = model.options.studied_train
         if studied >= 0 and state.trains[studied].arrival_step == step + 1:

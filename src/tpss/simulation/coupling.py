@@ -8,7 +8,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 from typing import Any
 
 from tpss.kernel import inlined, kernel
-from tpss.physics.locomotive import acceleration, wheel_force
+from tpss.physics.locomotive import acceleration, electrical_demand, wheel_force
 from tpss.powerflow.network import Loads
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
@@ -59,7 +59,11 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     fixed_v, flow = model.options.fixed_voltage_v, state.flow
     if fixed_v > 0.0:
         for k in range(count):
-            state.trains[flow.standing[k].train].voltage_v = fixed_v
+            train = state.trains[flow.standing[k].train]
+            train.voltage_v = fixed_v
+            electrical_demand(
+                fixed_v, model.types[train.train_type], train, model.machine[0]
+            )
         return 1.0, 0
     loads = Loads(state.trains, model.types, model.machine)
     share, passes = solve(warm, model.network, flow, loads)

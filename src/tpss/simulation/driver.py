@@ -8,14 +8,12 @@ from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.kernel import kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
-from tpss.physics.locomotive import prove_free_band
-from tpss.physics.reactive_power import POWER_FACTOR, power_factor, reactive_ratio
+from tpss.physics.locomotive import prove_free_band, take_speed
 from tpss.physics.running_resistance import (
     DavisCoefficients,
     gradient_force,
     running_resistance,
 )
-from tpss.physics.tractive_effort import speed_and_current_bias
 from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
 from tpss.simulation.traffic import distance_to_stop
 
@@ -104,7 +102,7 @@ def aim(train: Any, model: Model) -> None:
         train.force_cap_n = max(0.0, min(wanted, adhesion))
         train.target_speed_m_s = target
         train.wanted_force_n = wanted
-    prove_free_band(train.voltage_v, kind, train, model.machine[0])
+    prove_free_band(kind, train, model.machine[0])
 
 
 @kernel
@@ -115,13 +113,8 @@ def prepare(train: Any, model: Model) -> None:
     ----------
     [Boullanger2009]_, appendix F.1.
     """
-    kind, options, machine = model.types[train.train_type], model.options, model.machine[0]
+    kind, options = model.types[train.train_type], model.options
     train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
-    if kind.reactive_model == POWER_FACTOR:
-        factor = power_factor(train.speed_m_s, machine.power_factor)
-        train.reactive_ratio = reactive_ratio(factor)
-    speed_and_current_bias(
-        train.speed_m_s, kind.highest_current_a, machine.tractive_effort, train.bias
-    )
+    take_speed(train.voltage_v, kind, train, model.machine[0])
     oppose(train, kind, model)
     aim(train, model)

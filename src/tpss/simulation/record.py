@@ -1,11 +1,11 @@
 """Keep everything: states at the instants, forces and powers over the intervals between them."""
 
 import cmath
+import math
 from typing import Any
 
 from tpss.kernel import inlined, kernel
 from tpss.physics.locomotive import (
-    electrical_demand,
     motor_state,
     train_armature_current,
 )
@@ -15,9 +15,9 @@ from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     TRANSFORMER_RATIO,
     bridge_outside_training,
-    bridge_sine,
 )
-from tpss.physics.tractive_effort import effort_outside_training, maximum_motor_force
+from tpss.physics.tractive_effort import effort_outside_training
+from tpss.powerflow.pairs import squared
 from tpss.simulation.converter_control import station_loading, station_power
 from tpss.simulation.state import (
     ARRIVED,
@@ -67,7 +67,6 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     motor, speed, _, _ = motor_state(train.force_n, kind, train)
     current = train_armature_current(motor, speed, kind, train)
     current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
-    active, reactive, _, _ = electrical_demand(train.voltage_v, kind, train, model.machine[0])
     recording.train_state[step, i] = state_code(train)
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n
@@ -77,8 +76,8 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.motor_current = motor_current(current, kind.current_model)
     row.pantograph_voltage = train.voltage_v
     row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
-    row.active_power = active
-    row.reactive_power = reactive
+    row.active_power = train.active_power_w
+    row.reactive_power = train.reactive_power_var
     if train.force_n > 0.0:
         count_limits(train, kind, model, recording.counters)
 
@@ -89,10 +88,8 @@ def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
     if effort_outside_training(speed, voltage, kind.highest_current_a, machine.tractive_effort):
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
-    if abs(voltage - train.free_voltage_v) >= train.free_band_v:
-        highest, _ = maximum_motor_force(voltage, train.bias, machine.tractive_effort)
-        if highest < 0.0:
-            counters[Counter.EFFORT_CLIPPED] += 1
+    if train.machine_force_n < 0.0:
+        counters[Counter.EFFORT_CLIPPED] += 1
     if kind.reactive_model != DOUBLE_BRIDGE:
         if outside(speed, machine.power_factor, 0):
             counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1
@@ -100,10 +97,9 @@ def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None
     motor_v = motor_voltage(
         speed, voltage, kind.base_speed_m_s, kind.highest_motor_voltage_v, kind.voltage_model
     )
-    sine, _, _ = bridge_sine(motor_v, voltage * TRANSFORMER_RATIO, machine.bridge_sine)
     if bridge_outside_training(motor_v, voltage * TRANSFORMER_RATIO, machine.bridge_sine):
         counters[Counter.BRIDGE_EXTRAPOLATED] += 1
-    if sine < 0.0 or sine > 1.0:
+    if train.bridge_sine < 0.0 or train.bridge_sine > 1.0:
         counters[Counter.BRIDGE_CLIPPED] += 1
 
 
@@ -125,9 +121,9 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     for b in range(network.branches.size):
         branch = network.branches[b]
         drop = flow.nodes[branch.start_node].voltage_v - flow.nodes[branch.end_node].voltage_v
-        current = abs(drop / branch.impedance_ohm)
-        recording.branch_current[step, b] = current
-        losses += current**2 * branch.impedance_ohm.real
+        square = squared(drop) / squared(branch.impedance_ohm)
+        recording.branch_current[step, b] = math.sqrt(square)
+        losses += square * branch.impedance_ohm.real
     lumped = network.branches.size
     for s in range(network.sections.size):
         found = flow.sections[s]
@@ -148,7 +144,7 @@ def section_losses(s: int, model: Model, state: State) -> float:
             after, length_m = flow.standing[k].voltage_v, flow.standing[k].piece_m
         else:
             after, length_m = flow.nodes[section.end_node].voltage_v, found.closing_m
-        z = section.impedance_ohm_per_m * length_m
-        losses += abs((voltage - after) / z) ** 2 * z.real
+        z = section.impedance_ohm_per_m
+        losses += squared(voltage - after) / squared(z) * z.real / length_m
         voltage = after
     return losses
