@@ -1,1 +1,54 @@
-"""TPSS, the Train Power System Simulator."""
+"""TPSS, the Train Power System Simulator: trains and their power supply, simulated together.
+
+>>> import tpss
+>>> result = tpss.simulate(tpss.load_scenario("line.toml"))  # doctest: +SKIP
+>>> result.trips  # doctest: +SKIP
+
+Names are imported when they are first used, so that ``import tpss`` and the command line start fast.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tpss.api import simulate
+    from tpss.errors import Finding, ResultError, ScenarioError, TpssError
+    from tpss.results.result import Result, load_result
+    from tpss.scenario import Scenario, load_scenario
+    from tpss.simulation.run import Progress
+
+_HOME = {
+    "Finding": "tpss.errors",
+    "Progress": "tpss.simulation.run",
+    "Result": "tpss.results.result",
+    "ResultError": "tpss.errors",
+    "Scenario": "tpss.scenario",
+    "ScenarioError": "tpss.errors",
+    "TpssError": "tpss.errors",
+    "load_result": "tpss.results.result",
+    "load_scenario": "tpss.scenario",
+    "simulate": "tpss.api",
+}
+
+__all__ = [
+    "Finding",
+    "Progress",
+    "Result",
+    "ResultError",
+    "Scenario",
+    "ScenarioError",
+    "TpssError",
+    "load_result",
+    "load_scenario",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'tpss' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -18,6 +18,16 @@ import numpy as np
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
+_config: Any = numba.config
+
+_OPTIONS: dict[str, Any] = {
+    "cache": True,
+    "nogil": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,  # nobody calls a kernel from C
+    "_nrt": False,  # kernels allocate nothing, so no references need counting
+}
+
 KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation")
 
 
@@ -47,7 +57,7 @@ def cache_folder() -> Path:
 
 def kernels_are_compiled() -> bool:
     """Whether compiled kernels of exactly this source exist on disk (or compilation is off)."""
-    return bool(numba.config.DISABLE_JIT) or any(cache_folder().rglob("advance-*.nbi"))
+    return bool(_config.DISABLE_JIT) or any(cache_folder().rglob("advance.advance-*.nbi"))
 
 
 def kernel(function: _Function) -> _Function:
@@ -67,19 +77,12 @@ def inlined(function: _Function) -> _Function:
 
 
 def _compiled(function: _Function, inline: str) -> _Function:
-    folder_before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder())
+    folder_before = _config.CACHE_DIR
+    _config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = numba.njit(
-            cache=True,
-            nogil=True,
-            error_model="numpy",
-            inline=inline,
-            no_cfunc_wrapper=True,
-            _nrt=False,
-        )(function)
+        compiled: _Function = numba.njit(inline=inline, **_OPTIONS)(function)
     finally:
-        numba.config.CACHE_DIR = folder_before
+        _config.CACHE_DIR = folder_before
     return compiled
 
 

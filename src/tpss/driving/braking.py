@@ -89,12 +89,12 @@ def braking_plan(
     [Boullanger2009]_, eq. (2.26)-(2.33).
     """
     whole = speed_m_s / (retardation_m_s2 * step_s)
-    n = int(math.floor(whole))
+    n = math.floor(whole)
     f = whole - n
     mean = distance_m / (retardation_m_s2 * step_s**2) + whole / 2.0
     mean = max(mean, n * (n + 1) / 2.0 + f * (n + 1))
     slide = mean - n * (n + 1) / 2.0
-    start = int(math.floor(slide / whole))
+    start = math.floor(slide / whole)
     rest = slide - start * whole
     if rest < f * (n + 1) and start > 0:
         moved = rest / (n + 1)

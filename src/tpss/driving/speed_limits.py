@@ -81,9 +81,7 @@ def highest_speed_before_limit(
 
     Parameters are those of `can_meet_limit`; `wanted_m_s` is what the driver wants after the step.
     """
-    if can_meet_limit(
-        speed_m_s, wanted_m_s, distance_m, limit_m_s, retardation_m_s2, step_s
-    ):
+    if can_meet_limit(speed_m_s, wanted_m_s, distance_m, limit_m_s, retardation_m_s2, step_s):
         return wanted_m_s
     low, high = 0.0, wanted_m_s
     for _ in range(BISECTIONS):

@@ -29,9 +29,7 @@ def wanted_acceleration(speed_m_s: float, wanted_m_s: float, step_s: float) -> f
 
 
 @kernel
-def ideal_force(
-    acceleration_m_s2: float, resistance_n: float, inertia_kg: float
-) -> float:
+def ideal_force(acceleration_m_s2: float, resistance_n: float, inertia_kg: float) -> float:
     r"""Force at the wheel rim that gives an acceleration; negative: the brakes give it. [N]
 
     .. math:: F_{ideal} = a_{ideal} [m_{adh} + (m - m_{adh})(1 + H)] + F_{res}

@@ -21,8 +21,9 @@ STEP_ROUNDING = 1e-9
 class Layout:
     """Names and places of what the arrays of a model hold."""
 
-    train_types: tuple[str, ...]
     supply: SupplyPlan
+    stations: tuple[str, ...]
+    station_m: tuple[float, ...]
 
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
@@ -37,7 +38,11 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         machine=build_machine(),
         network=network,
     )
-    return model, Layout(train_types=tuple(scenario.trains), supply=plan)
+    return model, Layout(
+        supply=plan,
+        stations=tuple(station.name for station in scenario.supply.converter_stations),
+        station_m=tuple(si(s, "position_km") for s in scenario.supply.converter_stations),
+    )
 
 
 def steps_of(duration_s: float, step_s: float) -> int:

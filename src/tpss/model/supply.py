@@ -30,6 +30,7 @@ class SupplyPlan:
     branch_names: list[str] = field(default_factory=list)
     sections: list[tuple[int, int, float, float, complex, float]] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
+    branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
 
     def add_node(self, name: str, position_km: float, level: float = 1.0) -> int:
@@ -39,10 +40,22 @@ class SupplyPlan:
         self.node_level.append(level)
         return len(self.nodes) - 1
 
-    def add_branch(self, name: str, start: int, end: int, impedance_ohm: complex) -> None:
+    def add_branch(
+        self, name: str, start: int, end: int, impedance_ohm: complex, level: float = 1.0
+    ) -> None:
         """Add a lumped branch."""
         self.branches.append((start, end, impedance_ohm))
         self.branch_names.append(name)
+        self.branch_level.append(level)
+
+    def branch_labels(self) -> list[str]:
+        """Names of what `Recording.branch_current` holds."""
+        ends = [f"{name}, {end}" for name in self.section_names for end in ("start", "end")]
+        return [*self.branch_names, *ends]
+
+    def branch_levels(self) -> list[float]:
+        """Own voltage of each of them over that of the contact line."""
+        return [*self.branch_level, *(1.0 for _ in self.section_names for _ in range(2))]
 
 
 def build_supply(scenario: Scenario) -> tuple[Network, SupplyPlan]:
@@ -135,7 +148,7 @@ def _lay_high_voltage_line(
         plan.add_branch(f"transformer {km:g} km", feeding[km], node[km], impedance)
     for start, end in zip(stands, stands[1:], strict=False):
         name = f"high-voltage line {start:g}-{end:g} km"
-        plan.add_branch(name, node[start], node[end], per_m * (end - start) * 1e3)
+        plan.add_branch(name, node[start], node[end], per_m * (end - start) * 1e3, level)
 
 
 def _sources(plan: SupplyPlan, stations: tuple[ConverterStation, ...]) -> Any:

@@ -1,5 +1,7 @@
 """The traffic of a scenario as services."""
 
+from typing import Any
+
 from tpss.driving.braking import shortest_stop
 from tpss.driving.speed_limits import can_meet_limit
 from tpss.errors import Finding, ScenarioError
@@ -31,7 +33,9 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
                 route=route,
                 start_m=position[entry.origin],
                 stops_m=stops,
-                initial=tuple((si(t, "position_km"), si(t, "speed_kmh")) for t in entry.initial_trains),
+                initial=tuple(
+                    (si(t, "position_km"), si(t, "speed_kmh")) for t in entry.initial_trains
+                ),
                 already_running=entry.already_running,
                 **_departures(entry),
             )
@@ -47,7 +51,7 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
     return services
 
 
-def _departures(entry: Traffic) -> dict[str, object]:
+def _departures(entry: Traffic) -> dict[str, Any]:
     if entry.departures_min is not None:
         return {"departures_s": tuple(60.0 * minute for minute in entry.departures_min)}
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
@@ -78,4 +82,3 @@ def _check_placed(service: Service, i: int, model: Model) -> list[Finding]:
         return []
     remedy = "lower the speed, or place the train earlier"
     return [Finding("scenario", key, f"{speed * 3.6:g}", problem, remedy)]
-

@@ -62,7 +62,7 @@ def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, floa
     [Boullanger2009]_, eq. (2.2), (F.39) and the first half of (2.3), (F.40).
     """
     q50_var = law.grid_reactive_power_var
-    square = law.motor_voltage_v ** 2
+    square = law.motor_voltage_v**2
     grid = law.grid_reactance_ohm / (square + law.grid_reactance_ohm * q50_var)
     x_motor = law.motor_reactance_ohm / converters
     motor = x_motor / (square + x_motor * q50_var)

@@ -190,9 +190,7 @@ def wheel_force(
     train.machine_force_n = force
     if force < 0.0:
         force, slope = 0.0, 0.0
-    limit = machine_force(
-        force, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
-    )
+    limit = machine_force(force, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
     if limit >= cap:
         return cap, 0.0
     if limit <= 0.0:
@@ -223,8 +221,7 @@ def motor_state(
         return 0.0, speed, 0.0, 0.0
     slip = kind.slip_factor
     slope = slip * (
-        (1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed
-        + motor * weight / kind.inertia_kg
+        (1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed + motor * weight / kind.inertia_kg
     )
     return motor, speed, motor * speed * slip, slope
 
@@ -324,15 +321,11 @@ def electrical_demand(
     power_slope *= slope
     active = power / kind.efficiency + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
-        reactive, reactive_slope = bridge_demand(
-            voltage_v, force, slope, kind, train, machine
-        )
+        reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)
     else:
         reactive = power * train.reactive_ratio
         reactive_slope = power_slope * train.reactive_ratio
-    filtered = filter_reactive_power(
-        voltage_v * TRANSFORMER_RATIO, kind.filter_reactance_ohm
-    )
+    filtered = filter_reactive_power(voltage_v * TRANSFORMER_RATIO, kind.filter_reactance_ohm)
     reactive += kind.auxiliary_reactive_power_var + filtered
     reactive_slope += 2.0 * filtered / voltage_v
     train.active_power_w, train.reactive_power_var = active, reactive

@@ -13,9 +13,7 @@ FORMER_VOLTAGE_KNEE_V = 14_000.0
 
 
 @kernel
-def motor_force(
-    wheel_force_n: float, acceleration_m_s2: float, rotor_mass_kg: float
-) -> float:
+def motor_force(wheel_force_n: float, acceleration_m_s2: float, rotor_mass_kg: float) -> float:
     r"""Force that the motors give for a force at the wheel rim, never negative. [N]
 
     .. math:: F_{motor} = F_{wheels} + 4 K_J a (\kappa + 1)

@@ -264,9 +264,7 @@ def voltages_are_plausible(flow: Flow) -> bool:
 
 
 @kernel
-def newton(
-    scale: float, start: int, network: Network, flow: Flow, loads: Loads
-) -> tuple[int, int]:
+def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
     Parameters

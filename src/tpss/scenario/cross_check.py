@@ -108,13 +108,20 @@ def _traffic(
     yield from _unknown(f"{key}.from", begin, list(places), "station")
     yield from _unknown(f"{key}.to", end, list(places), "station")
     for i, stop in _items(entry, "stops"):
-        yield from _unknown(f"{key}.stops.{i}.station", stop.get("station"), list(places), "station")
+        yield from _unknown(
+            f"{key}.stops.{i}.station", stop.get("station"), list(places), "station"
+        )
     if begin not in places or end not in places:
         return
     start_km, end_km = places[begin], places[end]
     if end_km <= start_km:
         problem = f"{end} ({end_km:g} km) does not lie beyond {begin} ({start_km:g} km)"
-        yield f"{key}.to", repr(end), problem, "trains run towards growing positions: swap or mirror"
+        yield (
+            f"{key}.to",
+            repr(end),
+            problem,
+            "trains run towards growing positions: swap or mirror",
+        )
         return
     yield from _stops(key, entry, places, start_km, end_km)
     for i, train in _items(entry, "initial_trains"):

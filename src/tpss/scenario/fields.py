@@ -95,5 +95,3 @@ def unique(field: str) -> AfterValidator:
         return items
 
     return AfterValidator(check)
-
-

@@ -60,9 +60,7 @@ def read_gradients(path: Path) -> list[dict[str, float]]:
         for number, text in enumerate(read_text(path, "line.gradients_file").splitlines(), 1)
         if text.strip() and not text.lstrip().startswith("#")
     ]
-    rows = [
-        (number, [cell.strip() for cell in next(csv.reader([text]))]) for number, text in lines
-    ]
+    rows = [(number, [cell.strip() for cell in next(csv.reader([text]))]) for number, text in lines]
     if not rows or tuple(rows[0][1]) != PROFILE_COLUMNS:
         found = ",".join(rows[0][1]) if rows else ""
         remedy = f"begin with the line {','.join(PROFILE_COLUMNS)}"

@@ -9,7 +9,9 @@ from typing import Any
 from tpss.errors import Finding, ScenarioError
 
 
-def override(document: Mapping[str, Any], changes: Mapping[str, Any], source: Path) -> dict[str, Any]:
+def override(
+    document: Mapping[str, Any], changes: Mapping[str, Any], source: Path
+) -> dict[str, Any]:
     """Copy of a document with values set by key path (``traffic.0.headway_min``); None removes.
 
     Raises

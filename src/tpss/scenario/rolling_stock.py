@@ -41,8 +41,10 @@ class Train(Part):
     resistance_c_n_s2_per_m2: Real = Field(ge=0, description="C.")
     max_speed_kmh: Real = Field(gt=0, le=500, description="Highest speed of the train.")
     max_motor_current_a: Real = Field(
-        gt=0, le=5_000, description="Highest current of one motor; the machine's curves end at 2080 A."
-    )  # fmt: skip
+        gt=0,
+        le=5_000,
+        description="Highest current of one motor; the machine's curves end at 2080 A.",
+    )
     max_retardation_m_s2: Real = Field(gt=0, le=5, description="Highest braking retardation.")
     efficiency: Real = Field(gt=0, le=1, description="From pantograph to motor shaft.")
     auxiliary_power_kw: Real = Field(ge=0, description="Active power of the auxiliaries.")

@@ -112,8 +112,11 @@ class ConverterStation(Part):
         default=0.0, description="Reactive power that the station delivers to the 50 Hz grid."
     )
     grid_angle_deg: Real = Field(
-        default=0.0, ge=-60, le=60, description="Angle of the 50 Hz grid, seen at the railway's frequency."
-    )  # fmt: skip
+        default=0.0,
+        ge=-60,
+        le=60,
+        description="Angle of the 50 Hz grid, seen at the railway's frequency.",
+    )
 
 
 class Supply(Part):

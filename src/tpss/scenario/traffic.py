@@ -7,6 +7,12 @@ from pydantic_core import PydanticCustomError
 
 from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers
 
+Times = Annotated[
+    tuple[Annotated[Real, Field(ge=0)], ...],
+    Field(min_length=1),
+    ascending_numbers("departures_min"),
+]
+
 
 class Stop(Part):
     """A stop on the way."""
@@ -30,9 +36,9 @@ class Traffic(Part):
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
     headway_min: Real | None = Field(default=None, gt=0, description="Time between departures.")
-    departures_min: Annotated[
-        tuple[Annotated[Real, Field(ge=0)], ...], Field(min_length=1), ascending_numbers("departures_min")
-    ] | None = Field(default=None, description="Times of departure, in place of a headway.")  # fmt: skip
+    departures_min: Times | None = Field(
+        default=None, description="Times of departure, in place of a headway."
+    )
     first_departure_min: Real = Field(
         default=0.0, ge=0, description="Time of the first departure, with a headway."
     )

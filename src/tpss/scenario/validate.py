@@ -68,6 +68,7 @@ def _insert_profile(document: dict[str, Any], source: Path) -> list[Finding]:
         problem = "gradients are given twice, as a file and as a list"
         remedy = "leave out gradients_file or gradients"
         return [Finding(str(source), "line.gradients_file", repr(name), problem, remedy)]
+    del line["gradients_file"]
     try:
         line["gradients"] = read_gradients(source.parent / name)
     except ScenarioError as error:

@@ -126,7 +126,7 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
     lone = departing_trains([replace(service, first_s=0.0)], h, 0, 1)
     capacity = foreseen_steps(model, service)
     run = Run(model._replace(options=options), lone, capacity)
-    trains = []
+    trains: list[Train] = []
     for n in range(1, math.ceil(LONGEST_RUN_S / service.headway_s)):
         step = round((n * service.headway_s - service.first_s) / h)
         if step < 1:
@@ -149,7 +149,9 @@ def foreseen_steps(model: Model, service: Service) -> int:
     )
     travel_s = (service.stops_m[-1] - service.start_m) / fastest
     dwell = int(model.stops[service.route].dwell_steps.sum())
-    return int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
+    return (
+        int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
+    )
 
 
 def run_services(

@@ -1,0 +1,78 @@
+"""From a scenario to its result, in one call."""
+
+import json
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from tpss.model import build_model
+from tpss.model.build import Layout, steps_of
+from tpss.model.traffic import build_services
+from tpss.results.audit import audit
+from tpss.results.dataset import build_dataset
+from tpss.results.result import Result
+from tpss.results.summary import provenance, summarise
+from tpss.scenario.scenario import Scenario
+from tpss.simulation.run import Outcome, Progress, run_services
+from tpss.simulation.state import Model
+from tpss.units import si
+
+
+def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = None) -> Result:
+    """Simulate trains and power supply together.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    progress : callable, optional
+        Called several times a second with the `Progress` of the run.
+
+    Returns
+    -------
+    Result
+        Its ``status`` says whether the run finished; a line that cannot carry its load or a train
+        that stalls ends it early, with everything up to then kept.
+
+    Raises
+    ------
+    ScenarioError
+        A train that the scenario places on the line could not stop or slow down in time.
+    """
+    model, layout = build_model(scenario)
+    services = build_services(scenario, model)
+    duration = scenario.simulation.duration_min
+    steps = (
+        None
+        if duration is None
+        else steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
+    )
+    started = time.perf_counter()
+    outcome = run_services(model, services, steps, progress)
+    elapsed_s = time.perf_counter() - started
+    return _result(scenario, outcome, model, layout, elapsed_s)
+
+
+def _result(
+    scenario: Scenario, outcome: Outcome, model: Model, layout: Layout, elapsed_s: float
+) -> Result:
+
+    dataset = build_dataset(outcome, model, layout)
+    checked = audit(outcome, model, np.array(layout.supply.node_level))
+    summary = summarise(scenario, outcome, model, dataset, checked)
+    summary["simulation_s"] = elapsed_s
+    summary["provenance"] = provenance()
+    energy = summary["station_energy_mwh"]
+    dataset.attrs = {
+        "title": scenario.name,
+        "status": outcome.status,
+        "time_step_s": model.options.step_s,
+        "trip_time_min": summary["trip_time_min"]
+        if summary["trip_time_min"] is not None
+        else np.nan,
+        "station_energy_mwh": np.array(list(energy.values())),
+        "losses_mwh": summary["losses_mwh"],
+        "audit": json.dumps(summary["audit"]),
+        **summary["provenance"],
+    }
+    return Result(scenario, dataset, summary)

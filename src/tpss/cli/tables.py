@@ -1,0 +1,185 @@
+"""What ``tpss run`` prints: tables that a traction engineer reads at a glance."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from tpss.results.result import Result
+
+MOST_TRAINS = 30
+
+_LIMITED = {
+    "effort_extrapolated": "the tractive-effort network was used outside its training range",
+    "effort_clipped": "the tractive-effort network was negative and cut to 0",
+    "bridge_extrapolated": "the reactive-power network was used outside its training range",
+    "bridge_clipped": "the reactive-power network left 0 to 1 and was cut",
+    "power_factor_extrapolated": "the power-factor network was used outside its training range",
+    "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
+}
+
+
+def print_result(result: Result, console: Console) -> None:
+    """Print the tables of trains and stations, the key figures and the warnings."""
+    summary = result.summary
+    title = f"\n[bold]{summary['name']}[/bold]  {summary['description']}"
+    console.print(title, highlight=False, soft_wrap=True)
+    console.print(_train_table(result))
+    console.print(_station_table(result))
+    for line in key_figures(summary):
+        console.print(line, highlight=False, soft_wrap=True)
+    for line in warnings(summary):
+        console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
+    if "problem" in summary:
+        status = summary["status"].capitalize()
+        console.print(f"[bold red]{status}.[/bold red] {summary['problem']}", highlight=False)
+        console.print(f"[bold]What would help:[/bold] {summary['advice']}", highlight=False)
+    for failure in summary["audit"]["failures"]:
+        console.print(f"[bold red]Audit failed:[/bold red] {failure}", highlight=False)
+
+
+def _number(value: float, digits: int) -> str:
+    return "-" if math.isnan(value) else f"{value:.{digits}f}"
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column of numbers: where they come from, and how they are shown."""
+
+    key: str
+    heading: str
+    unit: str
+    digits: int
+    scale: float = 1.0
+
+
+_TRAIN_COLUMNS = (
+    _Column("departure_min", "departs", "min", 2),
+    _Column("arrival_min", "arrives", "min", 2),
+    _Column("trip_min", "trip", "min", 2),
+    _Column("distance_km", "way", "km", 1),
+    _Column("mean_speed_kmh", "mean v", "km/h", 1),
+    _Column("energy_mwh", "energy", "MWh", 3),
+    _Column("lowest_voltage_kv", "low U", "kV", 2),
+    _Column("lowest_voltage_km", "at", "km", 1),
+)
+
+_STATION_COLUMNS = (
+    _Column("position_km", "at", "km", 1),
+    _Column("energy_mwh", "energy", "MWh", 3),
+    _Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
+    _Column("peak_power_mw", "peak P", "MW", 2),
+    _Column("mean_loading", "mean load", "%", 1, 100.0),
+    _Column("peak_loading", "peak load", "%", 1, 100.0),
+    _Column("mean_converters", "converters", "mean", 1),
+)
+
+_STEP_COLUMNS = (
+    _Column("position", "position", "km", 3, 1e-3),
+    _Column("speed", "speed", "km/h", 2, 3.6),
+    _Column("acceleration", "accel.", "m/s²", 4),
+    _Column("pantograph_voltage", "voltage", "kV", 3, 1e-3),
+    _Column("tractive_force", "traction", "kN", 2, 1e-3),
+    _Column("braking_force", "brakes", "kN", 2, 1e-3),
+    _Column("running_resistance", "resist.", "kN", 2, 1e-3),
+    _Column("gradient_force", "gradient", "kN", 2, 1e-3),
+    _Column("motor_current", "motor", "A", 1),
+    _Column("active_power", "P", "MW", 3, 1e-6),
+    _Column("reactive_power", "Q", "Mvar", 3, 1e-6),
+)
+
+
+def _table(
+    title: str,
+    first: str,
+    columns: Sequence[_Column],
+    rows: Iterable[tuple[str, Mapping[str, Any]]],
+) -> Table:
+    """Table with a name in the first column and numbers, with their units, in the others."""
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
+    table.add_column(first, no_wrap=True)
+    for column in columns:
+        heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
+        table.add_column(heading, justify="right", no_wrap=True)
+    for name, values in rows:
+        cells = [_number(values[column.key] * column.scale, column.digits) for column in columns]
+        table.add_row(name, *cells)
+    return table
+
+
+def _named_rows(frame: pd.DataFrame, name: str) -> list[tuple[str, dict[str, Any]]]:
+    rows: list[dict[str, Any]] = frame.to_dict("records")  # type: ignore[assignment]
+    return [(str(row[name]), row) for row in rows]
+
+
+def _train_table(result: Result) -> Table:
+    trips = result.trips
+    rows = _named_rows(trips.head(MOST_TRAINS), "train")
+    table = _table("Trains", "train", _TRAIN_COLUMNS, rows)
+    if len(trips) > MOST_TRAINS:
+        table.caption = f"... and {len(trips) - MOST_TRAINS} trains more, in the saved result"
+    return table
+
+
+def _station_table(result: Result) -> Table:
+    rows = _named_rows(result.stations, "station")
+    return _table("Converter stations", "station", _STATION_COLUMNS, rows)
+
+
+def key_figures(summary: dict[str, Any]) -> list[str]:
+    """Lines with trip time, energy, losses, lowest voltage and audit."""
+    lines = []
+    if summary["trip_time_min"] is not None:
+        lines.append(f"Trip time of {summary['studied_train']}: {summary['trip_time_min']:.2f} min")
+    total, losses = summary["total_energy_mwh"], summary["losses_mwh"]
+    share = f" ({100 * losses / total:.2f} %)" if total > 0 else ""
+    duration = summary["duration_min"]
+    lines.append(
+        f"Energy over {duration:.2f} min: {total:.3f} MWh, of which losses {losses:.3f} MWh{share}"
+    )
+    lowest = summary["lowest_voltage"]
+    if lowest is not None:
+        lines.append(
+            f"Lowest voltage: {lowest['voltage_kv']:.3f} kV, {lowest['train']} at "
+            f"{lowest['position_km']:.2f} km, {lowest['time_min']:.2f} min"
+        )
+    audit = summary["audit"]
+    lines.append(
+        f"Audit {'passed' if audit['passed'] else 'FAILED'}: power mismatch "
+        f"{audit['power_mismatch_va']:.1e} VA, converters {audit['converter_residual']:.1e}, "
+        f"energy balance {audit['network_balance']:.1e}, traction {audit['traction_balance']:.1e}"
+    )
+    lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
+    return lines
+
+
+def warnings(summary: dict[str, Any]) -> list[str]:
+    """What was limited or left its range, in words."""
+    return [
+        f"{_LIMITED[name]}, in {count} train-steps"
+        for name, count in summary["limited"].items()
+        if count
+    ]
+
+
+def print_train(result: Result, name: str, console: Console) -> None:
+    """Print a train's journey, a row a step."""
+    if name not in result.dataset.train:
+        known = ", ".join(result.dataset.train.to_numpy())
+        console.print(f"There is no train {name!r}; trains: {known}", highlight=False)
+        return
+    train = result.dataset.sel(train=name)
+    values = {column.key: train[column.key].to_numpy() for column in _STEP_COLUMNS}
+    rows = [
+        (f"{float(train.time[k]) / 60.0:.2f}", {key: array[k] for key, array in values.items()})
+        for k in np.flatnonzero(np.isfinite(values["position"]))
+    ]
+    table = _table(name, "time\n[dim]min[/dim]", _STEP_COLUMNS, rows)
+    # A row must stay on one line, however narrow the terminal.
+    Console(file=console.file, width=max(console.width, 110)).print(table)

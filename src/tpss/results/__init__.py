@@ -1,0 +1,1 @@
+"""What a run leaves behind: an audited dataset, tables, a summary, files."""

@@ -1,0 +1,256 @@
+r"""Every run audits itself: balances recomputed from what was recorded, by another way than solved.
+
+The solver pushes voltages and currents along chains; the audit starts from the recorded voltages,
+forms the current of every piece of line and every branch from the voltages at its ends (the nodal
+admittance equations), and compares the powers that this asks for with the recorded ones.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.chain import SHORTEST_PIECE_M
+from tpss.powerflow.network import Network
+from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
+from tpss.simulation.run import Outcome
+from tpss.simulation.state import Model
+
+Floats = npt.NDArray[np.float64]
+Complexes = npt.NDArray[np.complex128]
+
+LIMITS = {
+    "power_mismatch_va": 0.01,
+    "converter_residual": 1e-9,
+    "network_balance": 1e-9,
+    "traction_balance": 1e-9,
+    "stop_error_m": 1e-3,
+}
+"""Highest value that each figure of a sound run may have."""
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Figures of a run's audit, and what is wrong with them.
+
+    Attributes
+    ----------
+    power_mismatch_va : float
+        Largest power mismatch over nodes, trains and steps. [VA]
+    converter_residual : float
+        Largest residual of the converters' voltage [p.u.] and angle [rad].
+    network_balance : float
+        Energy of the stations less that of the trains and losses, relative to the first. [1]
+    traction_balance : float
+        Work of the motors less resistance, climb, kinetic energy and brakes, relative. [1]
+    stop_error_m : float
+        Largest distance between where a braking plan ended and its stop. [m]
+    lowest_voltage_v, highest_voltage_v : float
+        Range of all voltages at pantographs and contact-line nodes, if there are any. [V]
+    failures : tuple of str
+        Figures beyond their limits, in words; empty for a sound run.
+    """
+
+    power_mismatch_va: float
+    converter_residual: float
+    network_balance: float
+    traction_balance: float
+    stop_error_m: float
+    lowest_voltage_v: float | None
+    highest_voltage_v: float | None
+    failures: tuple[str, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every figure is within its limit."""
+        return not self.failures
+
+    def as_dict(self) -> dict[str, Any]:
+        """The figures by name."""
+        return {**asdict(self), "failures": list(self.failures), "passed": self.passed}
+
+
+def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
+    """Audit a run.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    model : Model
+    node_level : Floats, shape (nodes,)
+        Own voltage of each node over that of the contact line; nodes at another level do not count
+        for the voltage range.
+    """
+    trains, nodes = outcome.recording.trains, outcome.recording.nodes
+    at_line_level = nodes["node_voltage"][:, node_level == 1.0]
+    voltages = np.concatenate([trains["pantograph_voltage"].ravel(), at_line_level.ravel()])
+    voltages = voltages[np.isfinite(voltages)]
+    figures: dict[str, float] = {
+        "power_mismatch_va": power_mismatch_va(outcome, model.network),
+        "converter_residual": converter_residual(outcome, model.network),
+        "network_balance": network_balance(outcome, model.options.step_s),
+        "traction_balance": traction_balance(outcome, model),
+        "stop_error_m": float(outcome.state.clock[0].stop_error_m),
+    }
+    lowest = float(voltages.min()) if voltages.size else None
+    highest = float(voltages.max()) if voltages.size else None
+    failures = (*_beyond_limits(figures, model), *_out_of_range(lowest, highest))
+    return Audit(**figures, lowest_voltage_v=lowest, highest_voltage_v=highest, failures=failures)
+
+
+def _beyond_limits(figures: dict[str, float], model: Model) -> list[str]:
+    judged = dict(LIMITS)
+    if not model.options.mean_power:
+        del judged["traction_balance"]  # billed at the start of a step, it does not close
+    return [
+        f"{name} is {figures[name]:.3g}, limit {limit:g}"
+        for name, limit in judged.items()
+        if not figures[name] <= limit
+    ]
+
+
+def _out_of_range(lowest_v: float | None, highest_v: float | None) -> list[str]:
+    low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V
+    if lowest_v is None or highest_v is None or (low <= lowest_v and highest_v <= high):
+        return []
+    return [f"voltages leave the range of {low:g} to {high:g} V"]
+
+
+def _phasors(magnitude: Floats, angle: Floats) -> Complexes:
+    return np.asarray(magnitude * np.exp(1j * angle), dtype=complex)
+
+
+def _largest(values: npt.NDArray[Any]) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.abs(finite).max(initial=0.0))
+
+
+def power_mismatch_va(outcome: Outcome, network: Network) -> float:
+    """Largest mismatch between recorded powers and those that the recorded voltages ask for. [VA]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (F.35)-(F.38).
+    """
+    if outcome.steps == 0:
+        return 0.0
+    rows = slice(0, outcome.steps)
+    trains, nodes = outcome.recording.trains[rows], outcome.recording.nodes[rows]
+    stations = outcome.recording.stations[rows]
+    train_v = _phasors(trains["pantograph_voltage"], trains["pantograph_angle"])
+    node_v = _phasors(nodes["node_voltage"], nodes["node_angle"])
+    train_a, leaving_a = _contact_line_currents(trains["position"], train_v, node_v, network)
+    for branch in network.branches:
+        current = node_v[:, branch.start_node] - node_v[:, branch.end_node]
+        current = current / branch.impedance_ohm
+        leaving_a[:, branch.start_node] += current
+        leaving_a[:, branch.end_node] -= current
+    fed = np.zeros_like(node_v)
+    fed[:, network.sources.node] = (
+        stations["station_active_power"] + 1j * stations["station_reactive_power"]
+    )
+    drawn = trains["active_power"] + 1j * trains["reactive_power"]
+    return max(
+        _largest(node_v * leaving_a.conj() - fed), _largest(train_v * train_a.conj() - drawn)
+    )
+
+
+def _contact_line_currents(
+    position_m: Floats, train_v: Complexes, node_v: Complexes, network: Network
+) -> tuple[Complexes, Complexes]:
+    """Current into each train, and current that leaves each node into the contact line. [A]
+
+    All points of the line (nodes and trains) are sorted by position at every instant; a node comes
+    before a train at the same place, but the line's last node comes after it.
+    """
+    sections = network.sections
+    line_nodes = np.append(sections.start_node, sections.end_node[-1])
+    node_m = np.append(sections.start_m, sections.end_m[-1])
+    steps, count = position_m.shape
+    node_keys = np.tile(node_m, (steps, 1))
+    train_keys = np.where(np.isfinite(train_v), position_m, np.inf)
+    keys = np.concatenate([node_keys[:, :-1], train_keys, node_keys[:, -1:]], axis=1)
+    volts = np.concatenate(
+        [node_v[:, line_nodes[:-1]], train_v, node_v[:, line_nodes[-1:]]], axis=1
+    )
+    order = np.argsort(keys, axis=1, kind="stable")
+    keys, volts = np.take_along_axis(keys, order, 1), np.take_along_axis(volts, order, 1)
+    is_node = (order < len(line_nodes) - 1) | (order == keys.shape[1] - 1)
+    section = np.clip(np.cumsum(is_node, axis=1)[:, :-1] - 1, 0, len(sections) - 1)
+    on_line = np.isfinite(keys[:, 1:])
+    ahead_m = np.where(on_line, keys[:, 1:], 0.0) - np.where(on_line, keys[:, :-1], 0.0)
+    length_m = np.maximum(SHORTEST_PIECE_M, ahead_m)
+    impedance = sections.impedance_ohm_per_m[section] * length_m
+    half_shunt = 0.5j * sections.susceptance_s_per_m[section] * length_m
+    current = np.where(on_line, (volts[:, :-1] - volts[:, 1:]) / impedance, 0.0)
+    shunt = np.where(on_line, half_shunt, 0.0)
+    leaving = np.zeros_like(volts)
+    leaving[:, :-1] += current + shunt * volts[:, :-1]
+    leaving[:, 1:] += shunt * volts[:, 1:] - current
+    unsorted = np.zeros_like(leaving)
+    np.put_along_axis(unsorted, order, leaving, 1)
+    leaving_nodes = np.zeros_like(node_v)
+    leaving_nodes[:, line_nodes[:-1]] = unsorted[:, : len(line_nodes) - 1]
+    leaving_nodes[:, line_nodes[-1]] = unsorted[:, -1]
+    return -unsorted[:, len(line_nodes) - 1 : len(line_nodes) - 1 + count], leaving_nodes
+
+
+def converter_residual(outcome: Outcome, network: Network) -> float:
+    """Largest residual of the converters' equations, voltage in p.u. and angle in rad.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1)-(2.4).
+    """
+    rows = slice(0, outcome.steps)
+    stations, nodes = outcome.recording.stations[rows], outcome.recording.nodes[rows]
+    law = network.sources
+    p, q = stations["station_active_power"], stations["station_reactive_power"]
+    n = stations["active_converters"]
+    voltage = law.no_load_voltage_v - law.droop_v_per_var * q / n
+    square = law.motor_voltage_v**2
+    q50 = law.grid_reactive_power_var
+    grid = np.arctan(law.grid_reactance_ohm * p / (square + law.grid_reactance_ohm * q50)) / 3
+    x_motor, x_generator = law.motor_reactance_ohm / n, law.generator_reactance_ohm / n
+    motor = np.arctan(x_motor * p / (square + x_motor * q50)) / 3
+    generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
+    angle = law.grid_angle_rad - grid - motor - generator
+    return max(
+        _largest((nodes["node_voltage"][:, law.node] - voltage) / BASE_VOLTAGE_V),
+        _largest(nodes["node_angle"][:, law.node] - angle),
+    )
+
+
+def network_balance(outcome: Outcome, step_s: float) -> float:
+    """Relative difference between the stations' energy and that of trains and losses. [1]"""
+    recording = outcome.recording
+    fed = np.nansum(recording.stations["station_active_power"]) * step_s
+    drawn = np.nansum(recording.trains["active_power"]) * step_s
+    lost = np.nansum(recording.network_losses) * step_s
+    return float(abs(fed - drawn - lost) / max(abs(fed), 1.0))
+
+
+def traction_balance(outcome: Outcome, model: Model) -> float:
+    """Relative difference between the motors' work and where it went. [1]
+
+    The motors' work is that of the recorded electric power; it goes into slip, the rotors, running
+    resistance, climb, kinetic energy and brakes.
+    """
+    trains, h = outcome.recording.trains, model.options.step_s
+    kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
+    before, after = trains[:-1], trains[1:]
+    way_m = after["position"] - before["position"]
+    power_w = (before["active_power"] - kind.auxiliary_power_w) * kind.efficiency
+    work = power_w * h / kind.slip_factor
+    force = before["tractive_force"]
+    rotor = np.where(
+        force > 0.0, np.maximum(-force, kind.rotor_mass_kg * before["acceleration"]), 0.0
+    )
+    opposing = before["running_resistance"] + before["gradient_force"] + before["braking_force"]
+    moving = np.where(way_m > 0.0, (rotor + opposing) * way_m, 0.0)
+    kinetic = kind.inertia_kg / 2.0 * (after["speed"] ** 2 - before["speed"] ** 2)
+    total = np.nansum(work)
+    difference = total - np.nansum(moving) - np.nansum(kinetic)
+    return float(abs(difference) / max(total, 1.0))

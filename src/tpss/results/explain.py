@@ -1,0 +1,75 @@
+"""Why a run ended early, and what would help, in words."""
+
+import numpy as np
+
+from tpss.simulation.run import INTERRUPTED, Outcome
+from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
+
+
+def explain(outcome: Outcome, model: Model) -> dict[str, str]:
+    """Problem and advice of a run that did not finish; empty for one that did."""
+    time_min = outcome.steps * model.options.step_s / 60.0
+    if outcome.status == "collapsed":
+        return _collapse(outcome, time_min)
+    if outcome.status == "stalled":
+        return _stall(outcome, time_min)
+    if outcome.status == INTERRUPTED:
+        problem = (
+            f"Interrupted at {time_min:.2f} min; the result holds what was simulated until then."
+        )
+        return {"problem": problem, "advice": "Run it again for the whole."}
+    return {}
+
+
+def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
+    flow, state = outcome.state.flow, outcome.state
+    share = float(state.clock[0].carried_share)
+    places = flow.standing[: flow.sections[-1].end]
+    drawing = state.trains[places.train]
+    active_mw = drawing.active_power_w.sum() / 1e6
+    reactive_mvar = drawing.reactive_power_var.sum() / 1e6
+    problem = (
+        f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains ask for "
+        f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and no solution of the load flow exists "
+        f"beyond {100 * share:.1f} % of that."
+    )
+    advice = (
+        "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or "
+        "converter stations), or lighten the traffic (longer headway, lower speed or current "
+        "limit)."
+    )
+    if len(places) and share > 0.0:
+        k = int(np.argmin(np.abs(places.voltage_v)))
+        train, voltage = int(places[k].train), abs(places[k].voltage_v)
+        place_km = state.trains[train].position_m / 1e3
+        name = outcome.trains[train].name
+        problem += f" There, {name} at {place_km:.2f} km has {voltage / 1e3:.2f} kV, the lowest."
+        advice += f" The weakest place is near {place_km:.0f} km."
+    return {"problem": problem, "advice": advice}
+
+
+def _stall(outcome: Outcome, time_min: float) -> dict[str, str]:
+    clock = outcome.state.clock[0]
+    if clock.stalled_train < 0:
+        problem = f"The studied train has not arrived after {time_min / 1440:.1f} days."
+        return {"problem": problem, "advice": "Give simulation.duration_min, or check the traffic."}
+    train = outcome.state.trains[clock.stalled_train]
+    name = outcome.trains[clock.stalled_train].name
+    doing = (
+        "stands and cannot start" if train.speed_m_s <= 0.0 else "slows down and would roll back"
+    )
+    problem = (
+        f"At {time_min:.2f} min {name} {doing} at {train.position_m / 1e3:.2f} km: resistance and "
+        f"gradient ask for {clock.force_needed_n / 1e3:.1f} kN, its machine and the rails give "
+        f"{clock.force_available_n / 1e3:.1f} kN at {train.voltage_v / 1e3:.2f} kV and "
+        f"{train.speed_m_s * 3.6:.1f} km/h."
+    )
+    on_line = np.isin(outcome.state.trains.phase, (DRIVING, PLANNED, DWELLING))
+    lowest_kv = outcome.state.trains.voltage_v[on_line].min() / 1e3
+    problem += f" The lowest voltage on the line is {lowest_kv:.2f} kV."
+    advice = (
+        "Lower the train's mass, raise its current limit (max_motor_current_a) or adhesive mass, "
+        "run on dry rails, or strengthen the supply if the voltage is low; with long time steps, "
+        "try a shorter one."
+    )
+    return {"problem": problem, "advice": advice}

@@ -1,0 +1,85 @@
+"""The result of a simulation."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from tpss.results import store, tables
+from tpss.scenario.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a simulation gave.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        The scenario as run.
+    dataset : xarray.Dataset
+        Everything that was recorded; each variable carries its unit and a long name.
+    summary : dict
+        Key figures, the audit and the run's provenance.
+    """
+
+    scenario: Scenario
+    dataset: xr.Dataset
+    summary: dict[str, Any]
+
+    @property
+    def status(self) -> str:
+        """``finished``, ``collapsed``, ``stalled`` or ``interrupted``."""
+        return str(self.summary["status"])
+
+    @property
+    def audit(self) -> dict[str, Any]:
+        """Figures of the audit; ``passed`` says whether all are within their limits."""
+        audit: dict[str, Any] = self.summary["audit"]
+        return audit
+
+    @cached_property
+    def trips(self) -> pd.DataFrame:
+        """One row a train: times, distance, energy, lowest voltage."""
+        return tables.trips(self.dataset)
+
+    @cached_property
+    def stations(self) -> pd.DataFrame:
+        """One row a converter station: energy, peaks, loading, converters."""
+        return tables.stations(self.dataset)
+
+    def save(self, folder: str | Path, *, force: bool = False) -> Path:
+        """Save into a folder, which is written whole or not at all.
+
+        Parameters
+        ----------
+        folder : path
+            Folder to make.
+        force : bool
+            Whether an existing result folder may be replaced.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        ResultError
+            The folder exists, or cannot be written.
+        """
+        return store.save(self.scenario, self.dataset, self.summary, Path(folder), force)
+
+
+def load_result(folder: str | Path) -> Result:
+    """Load a result that `Result.save` or ``tpss run`` has written.
+
+    Raises
+    ------
+    ResultError
+        The folder holds no result, or a damaged one.
+    """
+    return Result(*store.load(Path(folder)))

@@ -1,0 +1,71 @@
+"""Tables that a traction engineer reads: a row a train, a row a station."""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+J_PER_MWH = 3.6e9
+
+
+def trips(dataset: xr.Dataset) -> pd.DataFrame:
+    """One row a train: times, distance, energy, and where its voltage was lowest.
+
+    Trains that were on the line at the start have no departure, those still on it no arrival.
+    """
+    h = step_s(dataset)
+    time_min = dataset.time.to_numpy() / 60.0
+    position_km = dataset.position.to_numpy() / 1e3
+    voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
+    lowest = np.argmin(np.where(np.isfinite(voltage_kv), voltage_kv, np.inf), axis=0)
+    each = np.arange(dataset.sizes["train"])
+    drawn = np.isfinite(voltage_kv).any(axis=0)
+    departure_min = dataset.departure_time.to_numpy() / 60.0
+    arrival_min = dataset.arrival_time.to_numpy() / 60.0
+    distance_km = np.nan_to_num(np.nanmax(position_km, axis=0) - np.nanmin(position_km, axis=0))
+    moving_min = np.isfinite(voltage_kv).sum(axis=0) * h / 60.0
+    return pd.DataFrame(
+        {
+            "train": dataset.train.to_numpy(),
+            "service": dataset.service.to_numpy(),
+            "departure_min": departure_min,
+            "arrival_min": arrival_min,
+            "trip_min": arrival_min - departure_min,
+            "distance_km": distance_km,
+            "mean_speed_kmh": distance_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
+            "energy_mwh": np.nansum(dataset.active_power.to_numpy(), axis=0) * h / J_PER_MWH,
+            "lowest_voltage_kv": np.where(drawn, voltage_kv[lowest, each], np.nan),
+            "lowest_voltage_km": np.where(drawn, position_km[lowest, each], np.nan),
+            "lowest_voltage_min": np.where(drawn, time_min[lowest], np.nan),
+        }
+    )
+
+
+def stations(dataset: xr.Dataset) -> pd.DataFrame:
+    """One row a converter station: energy, peaks, loading, converters."""
+    h = step_s(dataset)
+    active = dataset.station_active_power.to_numpy()
+    reactive = dataset.station_reactive_power.to_numpy()
+    loading = dataset.converter_loading.to_numpy()
+    converters = dataset.active_converters.to_numpy()
+    steps = max(dataset.sizes["time"] - 1, 1)
+
+    def peak(values: np.ndarray) -> np.ndarray:
+        return np.asarray(np.max(np.where(np.isfinite(values), values, -np.inf), axis=0))
+
+    return pd.DataFrame(
+        {
+            "station": dataset.station.to_numpy(),
+            "position_km": dataset.station_position.to_numpy() / 1e3,
+            "energy_mwh": np.nansum(active, axis=0) * h / J_PER_MWH,
+            "reactive_energy_mvarh": np.nansum(reactive, axis=0) * h / J_PER_MWH,
+            "peak_power_mw": peak(active) / 1e6,
+            "mean_loading": np.nansum(loading, axis=0) / steps,
+            "peak_loading": peak(loading),
+            "mean_converters": np.nansum(converters, axis=0) / steps,
+        }
+    ).replace(-np.inf, np.nan)
+
+
+def step_s(dataset: xr.Dataset) -> float:
+    """Length of a time step. [s]"""
+    return float(dataset.attrs["time_step_s"])

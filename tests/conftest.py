@@ -1,0 +1,21 @@
+"""Fixtures shared by all tests."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+SHARED = Path(__file__).parents[2] / "shared"
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+
+def plain(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """The kernel as plain Python, whether or not compilation is on."""
+    return getattr(kernel, "py_func", kernel)
+
+
+@pytest.fixture(params=["compiled", "plain"])
+def as_run(request: pytest.FixtureRequest) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Gives a kernel once compiled, once as plain Python."""
+    return plain if request.param == "plain" else lambda kernel: kernel

@@ -1,0 +1,94 @@
+"""Hand-worked station used below: two Q48/Q49 feed 10 MW and 4 Mvar, so 5 MW and 2 Mvar each.
+
+    X_q^g = 0.53 · 16.5²/10   = 14.42925 Ω,   X_q^m = 0.49 · 16.5²/10.7 = 12.46752 Ω
+    U_m   = 16.5 kV, so U_m²  = 272.25 kV²
+    U_g   = 16.5 - 4/(2 · 20) = 16.4 kV                                                        (2.1)
+    motor:      arctan(12.46752 · 5/272.25)/3             = arctan(0.228972)/3 = 0.0750306     (2.3)
+    generator:  arctan(14.42925 · 5/(268.96 + 28.8585))   = arctan(0.242249)   = 0.2376705
+    θ     = -0.0750306 - 0.2376705                        = -0.3127011 rad = -17.92°           (2.4)
+
+Behind a grid of X_50 = 1 Ω to which Q_50 = 6 Mvar are delivered:
+
+    grid:       arctan(1 · 10/(272.25 + 6))/3             = arctan(0.035939)/3 = 0.0119745     (2.2)
+    motor:      arctan(62.3376/(272.25 + 12.46752 · 3))/3 = arctan(0.201315)/3 = 0.0662198
+    θ     = -0.0119745 - 0.0662198 - 0.2376705            = -0.3158647 rad
+"""
+
+import pytest
+
+from alternatives import central_difference
+from tpss.kernel import records
+from tpss.physics.converter import CONVERTER_LAW, converter_voltage, grid_angle, terminal_voltage
+
+
+def station(grid_ohm=0.0, grid_var=0.0, grid_angle_rad=0.0):
+    law = (16_500.0, 50e-6, 14.42925, 12.467523, 16_500.0, grid_ohm, grid_var, grid_angle_rad)
+    return records([law], CONVERTER_LAW)[0]
+
+
+STRONG, WEAK = station(), station(grid_ohm=1.0, grid_var=6e6)
+
+
+def test_terminal_voltage_droops_by_50_volt_a_megavar(as_run):
+    assert as_run(converter_voltage)(4e6, 2.0, STRONG) == pytest.approx(16_400.0)
+
+
+def test_angle_lags_by_17_92_degrees(as_run):
+    voltage, angle, *_ = as_run(terminal_voltage)(10e6, 4e6, 2.0, STRONG)
+    assert voltage == pytest.approx(16_400.0)
+    assert angle == pytest.approx(-0.3127011, abs=1e-7)
+
+
+def test_weak_grid_adds_its_own_angle_of_the_whole_power(as_run):
+    _, angle, *_ = as_run(terminal_voltage)(10e6, 4e6, 2.0, WEAK)
+    behind, _ = as_run(grid_angle)(10e6, 2.0, WEAK)
+    assert angle == pytest.approx(-0.3158647, abs=1e-7)
+    assert behind == pytest.approx(-0.0119745 - 0.0662198, abs=1e-7)
+
+
+def test_idle_station_stands_at_16_5_kilovolt_and_angle_zero(as_run):
+    voltage, angle, *_ = as_run(terminal_voltage)(0.0, 0.0, 1.0, STRONG)
+    assert (voltage, angle) == (16_500.0, 0.0)
+
+
+def test_angle_of_the_grid_shifts_the_station(as_run):
+    _, angle, *_ = as_run(terminal_voltage)(0.0, 0.0, 1.0, station(grid_angle_rad=0.1))
+    assert angle == 0.1
+
+
+@pytest.mark.parametrize("converters", [1.0, 3.0, 6.0])
+def test_converters_on_a_strong_grid_share_the_power_equally(as_run, converters):
+    alone = as_run(terminal_voltage)(5e6, 2e6, 1.0, STRONG)
+    together = as_run(terminal_voltage)(5e6 * converters, 2e6 * converters, converters, STRONG)
+    assert together[:2] == pytest.approx(alone[:2], rel=1e-12)
+
+
+def test_a_station_that_receives_power_leads(as_run):
+    _, angle, *_ = as_run(terminal_voltage)(-10e6, 0.0, 2.0, STRONG)
+    assert angle > 0.0
+
+
+@pytest.mark.parametrize("law", [STRONG, WEAK], ids=["strong", "weak"])
+@pytest.mark.parametrize("converters", [1.0, 4.0])
+@pytest.mark.parametrize(
+    ("power", "reactive"), [(0.0, 0.0), (10e6, 4e6), (-3e6, 8e6), (30e6, -5e6)]
+)
+def test_slopes_are_those_of_voltage_and_angle(as_run, law, converters, power, reactive):
+    def angle(p, q):
+        return as_run(terminal_voltage)(p, q, converters, law)[1]
+
+    _, _, voltage_slope, by_power, by_reactive = as_run(terminal_voltage)(
+        power, reactive, converters, law
+    )
+    assert voltage_slope == -50e-6 / converters
+    expected_by_power = central_difference(lambda p: angle(p, reactive), power, 1e4)
+    expected_by_reactive = central_difference(lambda q: angle(power, q), reactive, 1e4)
+    assert by_power == pytest.approx(expected_by_power, rel=1e-5)
+    assert by_reactive == pytest.approx(expected_by_reactive, rel=1e-5, abs=1e-14)
+
+
+@pytest.mark.parametrize("law", [STRONG, WEAK], ids=["strong", "weak"])
+def test_slope_behind_the_machines_is_that_of_their_angle(as_run, law):
+    _, slope = as_run(grid_angle)(10e6, 2.0, law)
+    expected = central_difference(lambda p: as_run(grid_angle)(p, 2.0, law)[0], 10e6, 1e4)
+    assert slope == pytest.approx(expected, rel=1e-5)

@@ -1,0 +1,336 @@
+"""Hand-worked train used below: an Rc4 before 1470 t, on level track at 60 km/h, R = 33 717 N.
+
+At the machine's limit F_max = 169 170 N the rotors, 10 750 kg, take their share:
+
+    c/M = 10 750/1 470 000 = 0.00731293
+    F = (169 170 + 0.00731293 · 33 717)/1.00731293 = 168 186.6 N
+    a = (168 186.6 - 33 717)/1 470 000 = 0.0914759 m/s²;  F + 10 750 a = 169 170 N again
+
+When the driver wants 100 kN:
+
+    a = (100 000 - 33 717)/1 470 000 = 0.0450905 m/s²
+    F_motor = 100 000 + 10 750 · 0.0450905 = 100 484.7 N
+    P_motor = 100 484.7 · 16.6667 = 1 674 745 W
+    P_D = 1 674 745/0.8 + 151 500 = 2 244 932 W
+    Q_D = 1 674 745 · 0.960636 + 113 625 = 1 722 446 var               (λ = 0.721158)
+
+and over a step of 60 s, with the step's mean speed 16.6667 + 30 · 0.0450905 = 18.0194 m/s:
+
+    P_motor = 100 484.7 · 18.0194 = 1 810 672 W;  P_D = 2 414 841 W
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from alternatives import central_difference
+from tpss.kernel import blank_records, records
+from tpss.model.trains import build_machine
+from tpss.physics.adhesion import WET, adhesion_limit
+from tpss.physics.locomotive import (
+    DEMAND,
+    TRAIN_TYPE,
+    acceleration,
+    bridge_demand,
+    electrical_demand,
+    machine_force,
+    motor_state,
+    prove_free_band,
+    take_speed,
+    train_armature_current,
+    train_bridge_sine,
+    wheel_force,
+)
+from tpss.physics.motor import FORMER, NEW
+from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR
+
+MACHINE = build_machine()[0]
+RESISTANCE_N = 33_717.0
+NO_LIMIT_N = 1e6
+
+FREIGHT = {
+    "mass_kg": 1.47e6,
+    "adhesive_mass_kg": 79e3,
+    "inertia_kg": 1.47e6,
+    "rotor_mass_kg": 10_750.0,
+    "slip_factor": 1.0,
+    "highest_current_a": 1250.0,
+    "efficiency": 0.8,
+    "auxiliary_power_w": 151_500.0,
+    "auxiliary_reactive_power_var": 113_625.0,
+    "base_speed_m_s": 78 / 3.6,
+    "highest_motor_voltage_v": 770.0,
+    "filter_reactance_ohm": math.inf,
+    "reactive_model": POWER_FACTOR,
+    "voltage_model": NEW,
+}
+
+
+def freight(**changes):
+    values = FREIGHT | changes
+    names = TRAIN_TYPE.names
+    return records([tuple(values.get(name, 0.0) for name in names)], TRAIN_TYPE)[0]
+
+
+def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, kind=None):
+    """A train in a step; the machine's limit is evaluated at every voltage."""
+    train = blank_records(1, DEMAND)[0]
+    train.force_cap_n, train.resistance_n = cap_n, resistance_n
+    train.speed_m_s, train.mean_speed_weight_s = speed_kmh / 3.6, mean_over_s / 2.0
+    train.bias_speed_m_s = train.free_band_v = -1.0
+    take_speed(15e3, kind or freight(), train, MACHINE)
+    return train
+
+
+def test_rotors_take_their_share_of_the_machine_limit(as_run):
+    force = as_run(machine_force)(169_170.0, RESISTANCE_N, 10_750.0, 1.47e6)
+    a = as_run(acceleration)(force, RESISTANCE_N, 1.47e6)
+    assert force == pytest.approx(168_186.6, abs=0.1)
+    assert a == pytest.approx(0.0914759, abs=1e-7)
+    assert force + 10_750.0 * a == pytest.approx(169_170.0)
+
+
+def test_machine_limits_a_driver_who_wants_more(as_run):
+    """F_max at 60 km/h, 15 kV and 1250 A is 169 170.16 N."""
+    force, slope = as_run(wheel_force)(15e3, freight(), demand(NO_LIMIT_N), MACHINE)
+    assert force == pytest.approx(168_186.8, abs=0.1)
+    assert slope != 0.0
+
+
+def test_driver_who_wants_less_has_it_at_any_voltage(as_run):
+    for voltage_v in (12e3, 15e3, 16.5e3):
+        assert as_run(wheel_force)(voltage_v, freight(), demand(1e5), MACHINE) == (1e5, 0.0)
+
+
+def test_wet_rail_takes_73_kilonewton_of_the_machine_s_168(as_run):
+    cap_n = adhesion_limit(79e3, 60 / 3.6, WET)
+    force, _ = as_run(wheel_force)(15e3, freight(), demand(cap_n), MACHINE)
+    assert force == pytest.approx(72_752, abs=1.0)
+
+
+def test_coasting_or_braking_train_has_no_tractive_force(as_run):
+    assert as_run(wheel_force)(15e3, freight(), demand(0.0), MACHINE) == (0.0, 0.0)
+
+
+def test_network_below_zero_at_high_speed_gives_no_force(as_run):
+    """At 250 km/h, 16.5 kV and 2080 A the network is at -8 N."""
+    kind = freight(highest_current_a=2080.0)
+    train = demand(NO_LIMIT_N, speed_kmh=250.0, resistance_n=0.0, kind=kind)
+    assert as_run(wheel_force)(16.5e3, kind, train, MACHINE) == (0.0, 0.0)
+
+
+def test_power_at_the_start_of_the_step(as_run):
+    motor, speed, power, _ = as_run(motor_state)(1e5, freight(), demand(1e5))
+    assert motor == pytest.approx(100_484.7, abs=0.1)
+    assert speed == pytest.approx(60 / 3.6)
+    assert power == pytest.approx(1_674_745, abs=1.0)
+
+
+def test_power_at_the_mean_speed_of_the_step(as_run):
+    train = demand(1e5, mean_over_s=60.0)
+    _, speed, power, _ = as_run(motor_state)(1e5, freight(), train)
+    assert speed == pytest.approx(18.0194, abs=1e-4)
+    assert power == pytest.approx(1_810_672, abs=1.0)
+
+
+def test_slip_turns_the_rotors_faster_and_costs_power(as_run):
+    """κ = 0.02: F_motor = 100 000 + 10 965 · 0.0450905 = 100 494.4 N, P = F_motor · 17 m/s."""
+    kind = freight(slip_factor=1.02, rotor_mass_kg=1.02 * 10_750.0)
+    motor, _, power, _ = as_run(motor_state)(1e5, kind, demand(1e5))
+    assert motor == pytest.approx(100_494.4, abs=0.1)
+    assert power == pytest.approx(100_494.42 * 17.0, abs=1.0)
+
+
+@pytest.mark.parametrize("force_n", [0.0, 100.0, 1000.0])
+def test_motor_takes_no_negative_power_on_a_slope_that_slows_the_train(as_run, force_n):
+    """On 20 ‰ the rotors alone would give 10 750 · 0.22 = 2300 N back."""
+    train = demand(force_n, mean_over_s=60.0, resistance_n=322e3)
+    motor, _, power, _ = as_run(motor_state)(force_n, freight(), train)
+    assert (motor, power) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("mean_over_s", [0.0, 60.0])
+@pytest.mark.parametrize("slip", [0.0, 0.02])
+def test_slope_of_the_power_is_that_over_the_force(as_run, mean_over_s, slip):
+    kind = freight(slip_factor=1.0 + slip, rotor_mass_kg=(1.0 + slip) * 10_750.0)
+    train = demand(1e5, mean_over_s=mean_over_s)
+    slope = as_run(motor_state)(1e5, kind, train)[3]
+    power = central_difference(lambda f: as_run(motor_state)(f, kind, train)[2], 1e5, 10.0)
+    assert slope == pytest.approx(power, rel=1e-8)
+
+
+def test_efficiency_and_auxiliaries_come_on_top_of_the_motors(as_run):
+    active, reactive, _, _ = as_run(electrical_demand)(15e3, freight(), demand(1e5), MACHINE)
+    assert active == pytest.approx(2_244_932, abs=1.0)
+    assert reactive == pytest.approx(1_722_446, abs=1.0)
+
+
+def test_mean_speed_is_billed_to_the_line(as_run):
+    train = demand(1e5, mean_over_s=60.0)
+    active, *_ = as_run(electrical_demand)(15e3, freight(), train, MACHINE)
+    assert active == pytest.approx(2_414_841, abs=1.0)
+
+
+@pytest.mark.parametrize("reactive_model", [POWER_FACTOR, DOUBLE_BRIDGE])
+def test_train_without_traction_draws_its_auxiliaries(as_run, reactive_model):
+    kind = freight(reactive_model=reactive_model)
+    drawn = as_run(electrical_demand)(15e3, kind, demand(0.0), MACHINE)
+    assert drawn == (151_500.0, 113_625.0, 0.0, 0.0)
+
+
+def test_filter_gives_600_kilovar_back_at_16_kilovolt(as_run):
+    kind = freight(filter_reactance_ohm=-0.45)
+    _, reactive, _, _ = as_run(electrical_demand)(16e3, kind, demand(0.0), MACHINE)
+    assert reactive == pytest.approx(113_625 - 599_657, abs=1.0)
+
+
+def test_bridges_draw_reactive_power_by_their_firing_angle(as_run):
+    """Above base speed U_di = 770 V; at 15 kV β = 0.859368 by the network.
+
+    100 kN at 100 km/h with R = 100 kN: 4 I_D = 100 000 · 27.7778/770 = 3607.50 A
+    Q = 487 · 3607.50 · √2/π · 0.859368 = 679 650 var
+    """
+    kind = freight(reactive_model=DOUBLE_BRIDGE)
+    train = demand(1e5, speed_kmh=100.0, resistance_n=1e5)
+    reactive, _ = as_run(bridge_demand)(15e3, 1e5, 0.0, kind, train, MACHINE)
+    assert as_run(train_armature_current)(1e5, 100 / 3.6, kind, train) == pytest.approx(
+        3607.50, abs=0.01
+    )
+    assert as_run(train_bridge_sine)(15e3, kind, train, MACHINE)[0] == pytest.approx(
+        0.859368, abs=1e-6
+    )
+    assert reactive == pytest.approx(679_650, abs=20.0)
+
+
+def test_former_motor_voltage_draws_more_current_below_14_kilovolt(as_run):
+    """The same power at 13/14 of the motor voltage takes 14/13 of the current, by another β."""
+    new, former = (freight(reactive_model=DOUBLE_BRIDGE, voltage_model=m) for m in (NEW, FORMER))
+    train = demand(1e5)
+    ratio = 14 / 13
+    for kind in (new, former):
+        sine, _ = as_run(train_bridge_sine)(13e3, kind, train, MACHINE)
+        ratio = ratio / sine if kind is new else ratio * sine
+    reactive = [
+        as_run(bridge_demand)(13e3, 1e5, 0.0, kind, train, MACHINE)[0] for kind in (new, former)
+    ]
+    assert reactive[1] / reactive[0] == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(("shift", "clipped"), [(-2.0, 0.0), (2.0, 1.0)])
+def test_sine_of_a_network_that_errs_is_clipped_to_0_and_1(as_run, shift, clipped):
+    erring = build_machine()[0]
+    erring.bridge_sine.output_bias += shift
+    sine, slope = as_run(train_bridge_sine)(15e3, freight(), demand(1e5), erring)
+    assert (sine, slope) == (clipped, 0.0)
+
+
+@pytest.mark.parametrize("filter_ohm", [math.inf, -0.45], ids=["no filter", "filter"])
+@pytest.mark.parametrize("cap_n", [6e4, NO_LIMIT_N], ids=["wanted", "limit"])
+@pytest.mark.parametrize("mean_over_s", [0.0, 60.0], ids=["start", "mean"])
+@pytest.mark.parametrize("speed_kmh", [60.0, 100.0])
+@pytest.mark.parametrize("voltage_v", [13.2e3, 15.2e3])
+@pytest.mark.parametrize("voltage_model", [NEW, FORMER], ids=["new", "former"])
+@pytest.mark.parametrize("reactive_model", [POWER_FACTOR, DOUBLE_BRIDGE], ids=["factor", "bridge"])
+def test_slopes_of_the_demand_are_those_over_voltage(
+    as_run, reactive_model, voltage_model, voltage_v, speed_kmh, mean_over_s, cap_n, filter_ohm
+):
+    kind = freight(
+        reactive_model=reactive_model,
+        voltage_model=voltage_model,
+        filter_reactance_ohm=filter_ohm,
+        slip_factor=1.02,
+    )
+    train = demand(cap_n, speed_kmh, mean_over_s)
+
+    def drawn(at_v):
+        return as_run(electrical_demand)(at_v, kind, train, MACHINE)
+
+    _, _, active_slope, reactive_slope = drawn(voltage_v)
+    active = central_difference(lambda v: drawn(v)[0], voltage_v, 0.1)
+    reactive = central_difference(lambda v: drawn(v)[1], voltage_v, 0.1)
+    assert active_slope == pytest.approx(active, rel=1e-6, abs=1e-6)
+    assert reactive_slope == pytest.approx(reactive, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("speed_kmh", [0.0, 40.0, 90.0, 130.0])
+def test_slope_of_the_wheel_force_is_that_over_voltage(as_run, speed_kmh):
+    train = demand(NO_LIMIT_N, speed_kmh)
+    _, slope = as_run(wheel_force)(14.3e3, freight(), train, MACHINE)
+    expected = central_difference(
+        lambda v: as_run(wheel_force)(v, freight(), train, MACHINE)[0], 14.3e3, 1.0
+    )
+    assert slope == pytest.approx(expected, rel=1e-6)
+
+
+def random_trains(count):
+    """Kinds and trains at 15 kV, some near the machine's limit, some far from it."""
+    random = np.random.default_rng(2)
+    for _ in range(count):
+        kind = freight(highest_current_a=random.uniform(300.0, 2080.0))
+        cap_n, resistance_n = random.uniform(1e3, 2e5), random.uniform(-1e5, 2e5)
+        yield kind, demand(cap_n, random.uniform(0.0, 140.0), 60.0, resistance_n, kind)
+
+
+def test_inside_the_proven_band_the_force_is_what_the_driver_wants(as_run):
+    """The machine alone, evaluated anew with the band taken away, says the same."""
+    proven = 0
+    for kind, train in random_trains(300):
+        as_run(prove_free_band)(kind, train, MACHINE)
+        band_v, train.free_band_v = train.free_band_v, -1.0
+        if band_v > 0.0:
+            proven += 1
+            for at_v in 15e3 + band_v * np.linspace(-0.999, 0.999, 5):
+                assert as_run(wheel_force)(at_v, kind, train, MACHINE) == (train.force_cap_n, 0.0)
+    assert proven > 50
+
+
+def test_force_does_not_depend_on_the_voltages_tried_before(as_run):
+    """The band stays where it was proven, whatever is evaluated outside it."""
+    for kind, train in random_trains(100):
+        as_run(prove_free_band)(kind, train, MACHINE)
+        fresh = train.copy()
+        for at_v in (11e3, 16.5e3, 13e3, 13.01e3, 15.2e3):
+            force, _ = as_run(wheel_force)(at_v, kind, train, MACHINE)
+            assert force == as_run(wheel_force)(at_v, kind, fresh.copy(), MACHINE)[0]
+
+
+def test_band_is_used_within_and_not_beyond(as_run):
+    """A band of 100 V is set by hand where the machine gives far less than is wanted."""
+    train = demand(NO_LIMIT_N)
+    train.free_voltage_v, train.free_band_v = 15e3, 100.0
+    assert as_run(wheel_force)(15_099.0, freight(), train, MACHINE) == (NO_LIMIT_N, 0.0)
+    assert as_run(wheel_force)(15_101.0, freight(), train, MACHINE)[0] < 2e5
+
+
+def test_nothing_is_proven_at_the_limit(as_run):
+    train = demand(NO_LIMIT_N)
+    as_run(prove_free_band)(freight(), train, MACHINE)
+    assert train.free_band_v < 0.0
+
+
+def test_what_depends_on_the_speed_is_taken_anew_when_the_speed_changes(as_run):
+    """λ = 0.721158 at 60 km/h, 0.809358 at 100 km/h; F_max = 169 170 N, 127 030 N at 15 kV."""
+    train = demand(1e5)
+    for speed_kmh, factor, force_n in ((60.0, 0.721158, 169_170), (100.0, 0.809358, 127_030)):
+        train.speed_m_s = speed_kmh / 3.6
+        as_run(take_speed)(15e3, freight(), train, MACHINE)
+        assert train.reactive_ratio == pytest.approx(math.sqrt(factor**-2 - 1.0), rel=1e-5)
+        assert train.free_force_n == pytest.approx(force_n, abs=1.0)
+
+
+def test_the_same_speed_is_not_evaluated_twice(as_run):
+    train = demand(1e5)
+    train.free_force_n = 7.0
+    as_run(take_speed)(15e3, freight(), train, MACHINE)
+    assert train.free_force_n == 7.0
+
+
+def test_demand_notes_what_it_found_before_clipping(as_run):
+    """Powers; and at standstill the network's β = -0.00045, which counts as an excess."""
+    kind = freight(reactive_model=DOUBLE_BRIDGE)
+    train = demand(NO_LIMIT_N, speed_kmh=0.0)
+    active, reactive, _, _ = as_run(electrical_demand)(15e3, kind, train, MACHINE)
+    assert (train.active_power_w, train.reactive_power_var) == (active, reactive)
+    assert train.machine_force_n == pytest.approx(175_057.06, abs=0.01)
+    assert train.bridge_sine == pytest.approx(-0.00045134, abs=1e-8)

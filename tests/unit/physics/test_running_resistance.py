@@ -1,0 +1,37 @@
+"""Hand-worked train used below.
+
+A = 15 400 N, B = 279 N s/m, C = 49.2 N s²/m², v = 60 km/h = 16.667 m/s
+R = 15 400 + 279 · 16.667 + 49.2 · 277.78 = 15 400 + 4 650 + 13 666.7 = 33 716.7 N
+
+1470 t on 10 ‰: 1 470 000 · 9.81 · 0.010 = 144 207 N
+"""
+
+import pytest
+
+from tpss.physics.running_resistance import (
+    DavisCoefficients,
+    gradient_force,
+    running_resistance,
+)
+
+FREIGHT = DavisCoefficients(15_400.0, 279.0, 49.2)
+
+
+def test_freight_train_meets_33_717_newton_at_60_km_h(as_run):
+    assert as_run(running_resistance)(60 / 3.6, FREIGHT) == pytest.approx(33_716.7, abs=0.1)
+
+
+def test_standing_train_meets_the_constant_part_alone(as_run):
+    assert as_run(running_resistance)(0.0, FREIGHT) == 15_400.0
+
+
+def test_ten_per_mille_uphill_hold_1470_tonnes_back_by_144_kilonewton(as_run):
+    assert as_run(gradient_force)(1_470_000.0, 0.010) == pytest.approx(144_207.0)
+
+
+def test_downhill_pushes_as_uphill_holds_back(as_run):
+    assert as_run(gradient_force)(1_470_000.0, -0.010) == pytest.approx(-144_207.0)
+
+
+def test_level_track_adds_nothing(as_run):
+    assert as_run(gradient_force)(1_470_000.0, 0.0) == 0.0
