@@ -19,6 +19,7 @@ import numpy as np
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 _config: Any = numba.config
+_njit: Any = numba.njit
 
 _OPTIONS: dict[str, Any] = {
     "cache": True,
@@ -80,7 +81,7 @@ def _compiled(function: _Function, inline: str) -> _Function:
     folder_before = _config.CACHE_DIR
     _config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = numba.njit(inline=inline, **_OPTIONS)(function)
+        compiled: _Function = _njit(inline=inline, **_OPTIONS)(function)
     finally:
         _config.CACHE_DIR = folder_before
     return compiled

@@ -1,0 +1,39 @@
+"""The examples against an independent, slow implementation of the same model."""
+
+import pytest
+from conftest import EXAMPLES
+
+import tpss
+
+REFERENCE = {
+    # name: (trip or duration [min], station energies [MWh], lowest pantograph voltage [kV])
+    "thesis_160km": (99.5, (24.423, 24.285), 14.571),
+    "thesis_3_3": (101.6, (7.675, 7.771), 16.078),
+    "thesis_3_7_2": (106.0, (27.688, 25.393), 14.020),
+    "at_headway_3": (60.0, (17.143, 16.398), 14.286),
+    "at_hv_headway_3": (60.0, (15.868, 15.660), 15.853),
+}
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+def test_an_example_agrees_with_the_independent_figures(name):
+    """Times equal, energies within 0.2 %, voltages within 5 V; the reference has three decimals."""
+    minutes, energies, lowest_kv = REFERENCE[name]
+    result = tpss.simulate(tpss.load_scenario(EXAMPLES / f"{name}.toml"))
+    assert result.status == "finished"
+    assert result.audit["passed"]
+    assert result.summary["duration_min"] == pytest.approx(minutes, abs=1e-9)
+    assert result.stations.energy_mwh.to_list() == pytest.approx(energies, rel=2e-3)
+    assert result.summary["lowest_voltage"]["voltage_kv"] == pytest.approx(lowest_kv, abs=5e-3)
+
+
+def test_the_overloaded_example_ends_without_a_solution():
+    result = tpss.simulate(tpss.load_scenario(EXAMPLES / "overloaded.toml"))
+    assert result.status == "collapsed"
+    assert result.summary["duration_min"] == 0.0
+    assert "At 0.00 min the line cannot carry its load" in result.summary["problem"]
+
+
+def test_every_example_is_one_of_the_above():
+    names = {file.stem for file in EXAMPLES.glob("*.toml")}
+    assert names == {*REFERENCE, "overloaded"}
