@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from networks import BT, ROTARY, constant_loads, place, sources
 from scipy.optimize import fsolve
 
 from tpss.kernel import blank_records
@@ -12,6 +11,8 @@ from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import find_pattern, solve_blocks
 from tpss.powerflow.network import BLOCK, NODE_FLOW, assemble
 from tpss.powerflow.solve import solve
+
+from networks import BT, ROTARY, constant_loads, place, sources
 
 
 def random_ladder(rng, n_points, n_trains):

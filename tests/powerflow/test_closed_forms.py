@@ -5,9 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from networks import BT, ROTARY, STIFF, simple_line
 
 from tpss.powerflow.solve import solve
+
+from networks import BT, ROTARY, STIFF, simple_line
 
 COLD = False
 

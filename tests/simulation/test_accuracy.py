@@ -1,6 +1,7 @@
 """Order of accuracy of the coupled step, and what its options change."""
 
 import pytest
+
 from scenarios import run
 
 

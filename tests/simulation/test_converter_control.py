@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from scenarios import run
 
 from tpss.simulation.converter_control import converters_needed, station_loading
+
+from scenarios import run
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Runs that cannot finish say so, and keep what they have."""
 
 import tpss
+
 from scenarios import short_line
 
 

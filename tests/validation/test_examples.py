@@ -1,9 +1,10 @@
 """The examples against an independent, slow implementation of the same model."""
 
 import pytest
-from conftest import EXAMPLES
 
 import tpss
+
+from conftest import EXAMPLES
 
 REFERENCE = {
     # name: (trip or duration [min], station energies [MWh], lowest pantograph voltage [kV])

@@ -65,7 +65,7 @@ def fold_scaling(
 
     References
     ----------
-    [Boullanger2009]_, eq. (C.1), (C.10), (D.1), (D.8), (E.1), (E.6).
+    [Boullanger2009]_, eq. (B.1), (B.2), (C.1), (C.10), (D.1), (D.8), (E.1), (E.6).
     """
     to_si = np.array(input_to_si, dtype=float)
     low = np.array(coefficients["input_min"], dtype=float) * to_si

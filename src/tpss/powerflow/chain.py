@@ -9,14 +9,14 @@ current I (towards the section's end),
 where b joins the half shunts of the two pieces that meet there.  The sensitivities to the start
 voltage and the start current go along by the same rules, as pairs (see `pairs`); a train's is
 
-    δi = y₁ δV + y₂ δV̄,   y₁ = conj(S') / (2 |V|),   y₂ = conj(S') V / (2 |V| V̄) - conj(S) / V̄²
+    δi = y₁ δV + y₂ δV̄,   y₁ = conj(S') / (2 |V|),   y₂ = y₁ V / V̄ - conj(S) / V̄²
 
 with S' = dP/d|V| + j dQ/d|V|.  A train costs one visit; pieces may be arbitrarily short, and the
 state (start voltage, start current) does not depend on which trains stand in between.
 
 References
 ----------
-[Boullanger2009]_, eq. (F.31), (F.35)-(F.38): the same balances, written with an admittance matrix.
+[Boullanger2009]_, eq. (F.31), (F.32), (F.35)-(F.38), there with an admittance matrix.
 """
 
 import math

@@ -14,7 +14,6 @@ import math
 import numpy as np
 import pytest
 
-from alternatives import least_remaining_distances, positions, way_of_full_braking
 from tpss.driving.braking import (
     braking_plan,
     highest_speed_that_stops,
@@ -22,6 +21,8 @@ from tpss.driving.braking import (
     plan_length,
     shortest_stop,
 )
+
+from alternatives import least_remaining_distances, positions, way_of_full_braking
 
 STEPS_S = [0.6, 1.0, 3.0, 6.0, 30.0, 60.0, 120.0, 300.0]
 

@@ -13,7 +13,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from alternatives import full_braking, positions, way_of_full_braking
 from tpss.driving.speed_limits import (
     can_meet_limit,
     heed_limits_ahead,
@@ -21,6 +20,8 @@ from tpss.driving.speed_limits import (
     slowing_distance,
 )
 from tpss.physics.gradient import step_index
+
+from alternatives import full_braking, positions, way_of_full_braking
 
 STEPS_S = [0.6, 1.0, 6.0, 30.0, 60.0, 300.0]
 

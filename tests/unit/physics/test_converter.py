@@ -16,9 +16,10 @@ Behind a grid of X_50 = 1 Ω to which Q_50 = 6 Mvar are delivered:
 
 import pytest
 
-from alternatives import central_difference
 from tpss.kernel import records
 from tpss.physics.converter import CONVERTER_LAW, converter_voltage, grid_angle, terminal_voltage
+
+from alternatives import central_difference
 
 
 def station(grid_ohm=0.0, grid_var=0.0, grid_angle_rad=0.0):

@@ -6,8 +6,9 @@ from 500 m over 3000 m: 500 · 0.010 - 2000 · 0.005 + 500 · 0.002 = 5 - 10 + 1
 import numpy as np
 import pytest
 
-from alternatives import climb
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
+
+from alternatives import climb
 
 FROM_M = np.array([0.0, 1000.0, 3000.0])
 GRADIENT = np.array([0.010, -0.005, 0.002])

@@ -24,7 +24,6 @@ import math
 import numpy as np
 import pytest
 
-from alternatives import central_difference
 from tpss.kernel import blank_records, records
 from tpss.model.trains import build_machine
 from tpss.physics.adhesion import WET, adhesion_limit
@@ -44,6 +43,8 @@ from tpss.physics.locomotive import (
 )
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR
+
+from alternatives import central_difference
 
 MACHINE = build_machine()[0]
 RESISTANCE_N = 33_717.0

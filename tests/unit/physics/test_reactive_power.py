@@ -8,7 +8,6 @@ X_f = -0.45 Ω at 16 kV:     U_locoRc = 487 · 16/15 = 519.47 V; Q_f = -599 657 
 import numpy as np
 import pytest
 
-from alternatives import central_difference, exact_bridge_sine
 from tpss.model.trains import build_machine
 from tpss.physics.reactive_power import (
     TRANSFORMER_RATIO,
@@ -19,6 +18,8 @@ from tpss.physics.reactive_power import (
     power_factor,
     reactive_ratio,
 )
+
+from alternatives import central_difference, exact_bridge_sine
 
 MACHINE = build_machine()[0]
 

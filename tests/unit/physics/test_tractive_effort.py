@@ -5,7 +5,6 @@ import itertools
 import numpy as np
 import pytest
 
-from alternatives import central_difference
 from tpss.model.trains import build_machine
 from tpss.physics.tractive_effort import (
     NEURONS,
@@ -14,6 +13,8 @@ from tpss.physics.tractive_effort import (
     speed_and_current_bias,
     steepest_slope,
 )
+
+from alternatives import central_difference
 
 NETWORK = build_machine()[0].tractive_effort
 

@@ -1,0 +1,73 @@
+"""Every equation leads to its code, and every citation to the bibliography."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "tpss"
+ROWS = re.findall(
+    r"^\| (\(.*?) \| .*? \| `(\S+\.py)` (.*?) \|$",
+    (ROOT / "docs/equations.md").read_text("utf-8"),
+    re.M,
+)
+
+
+def numbers(text):
+    """Equation numbers in a text, ranges written out: (F.2)-(F.4) gives F.2, F.3, F.4."""
+    found = set()
+    for first, last in re.findall(r"\(([2-3A-F]\.\d+a?)\)(?:-\(([2-3A-F]\.\d+)\))?", text):
+        found.add(first)
+        if last:
+            chapter, low = first.split(".")
+            found.update(f"{chapter}.{k}" for k in range(int(low), int(last.split(".")[1]) + 1))
+    return found
+
+
+def docstring(file, name):
+    tree = ast.parse((SOURCE / file).read_text("utf-8"))
+    if name.startswith("("):
+        return ast.get_docstring(tree) or ""
+    functions = {n.name: n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
+    return ast.get_docstring(functions[name.strip("`")]) or ""
+
+
+@pytest.mark.parametrize(("equations", "file", "name"), ROWS)
+def test_a_row_of_the_table_leads_to_a_function_that_cites_its_equations(equations, file, name):
+    assert numbers(equations) <= numbers(docstring(file, name))
+
+
+def test_the_table_covers_the_thesis():
+    thesis = {f"2.{k}" for k in range(1, 34)} | {f"3.{k}" for k in range(1, 10)}
+    thesis |= {f"F.{k}" for k in range(1, 42)}
+    text = (ROOT / "docs/equations.md").read_text("utf-8")
+    assert thesis <= numbers(text)
+
+
+def test_every_citation_stands_in_the_bibliography():
+    entries = set(
+        re.findall(r"\*\*\[(\w+)\]\*\*", (ROOT / "docs/bibliography.md").read_text("utf-8"))
+    )
+    files = [*SOURCE.rglob("*.py"), *SOURCE.rglob("*.toml"), *SOURCE.rglob("*.json")]
+    cited = {
+        name for file in files for name in re.findall(r"\[(\w+\d{4})\]_", file.read_text("utf-8"))
+    }
+    assert cited <= entries
+
+
+def test_every_function_of_physics_cites_a_source():
+    """Helpers that compute no equation of their own are named here."""
+    helpers = {
+        "mean_gradient", "step_index", "outside", "network_record", "steepest_slope", "exponential",
+        "effort_outside_training", "bridge_outside_training", "take_speed", "prove_free_band",
+        "train_armature_current", "train_bridge_sine",
+    }  # fmt: skip
+    for file in (SOURCE / "physics").glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.FunctionDef) and node.name not in helpers:
+                assert "[Boullanger2009]_" in (ast.get_docstring(node) or ""), (
+                    file.name,
+                    node.name,
+                )
