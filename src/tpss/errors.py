@@ -34,5 +34,9 @@ class ScenarioError(TpssError):
         super().__init__("\n".join([head, *(str(finding) for finding in self.findings)]))
 
 
+class TooLargeError(TpssError):
+    """A run would not fit into memory."""
+
+
 class ResultError(TpssError):
     """A result folder cannot be written or read."""

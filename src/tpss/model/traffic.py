@@ -44,7 +44,7 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
         finding
         for service in services
         for i in range(len(service.initial))
-        for finding in _check_placed(service, i, model)
+        for finding in _check_placed(service, i, model, str(scenario.source))
     ]
     if findings:
         raise ScenarioError(findings)
@@ -57,7 +57,7 @@ def _departures(entry: Traffic) -> dict[str, Any]:
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 
-def _check_placed(service: Service, i: int, model: Model) -> list[Finding]:
+def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Finding]:
     """Faults of the `i`-th train that a service places on the line."""
     position_m, speed = service.initial[i]
     key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
@@ -81,4 +81,4 @@ def _check_placed(service: Service, i: int, model: Model) -> list[Finding]:
     if not problem:
         return []
     remedy = "lower the speed, or place the train earlier"
-    return [Finding("scenario", key, f"{speed * 3.6:g}", problem, remedy)]
+    return [Finding(file, key, f"{speed * 3.6:g}", problem, remedy)]

@@ -38,6 +38,7 @@ BRANCH = np.dtype(
         ("start_node", np.int64),
         ("end_node", np.int64),
         ("impedance_ohm", complex),
+        ("admittance_s", complex),
         ("block_aa", np.int64),
         ("block_ab", np.int64),
         ("block_ba", np.int64),
@@ -186,7 +187,7 @@ def assemble(
 
     return Network(
         sections=records([(*section, *blocks(*section[:2])) for section in sections], SECTION),
-        branches=records([(*branch, *blocks(*branch[:2])) for branch in branches], BRANCH),
+        branches=records([(a, b, z, 1.0 / z, *blocks(a, b)) for a, b, z in branches], BRANCH),
         sources=sources,
         source_of_node=source_of_node,
         pattern=pattern,

@@ -120,7 +120,7 @@ def _stamp_branches(network: Network, flow: Flow) -> None:
     for b in range(network.branches.size):
         branch = network.branches[b]
         start, end = flow.nodes[branch.start_node], flow.nodes[branch.end_node]
-        admittance = 1.0 / branch.impedance_ohm
+        admittance = branch.admittance_s
         current = (start.voltage_v - end.voltage_v) * admittance
         flow.blocks[branch.block_aa].p += admittance
         flow.blocks[branch.block_ab].p -= admittance

@@ -51,7 +51,7 @@ def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
 def _stall(outcome: Outcome, time_min: float) -> dict[str, str]:
     clock = outcome.state.clock[0]
     if clock.stalled_train < 0:
-        problem = f"The studied train has not arrived after {time_min / 1440:.1f} days."
+        problem = f"The studied train has not arrived after {time_min:.0f} min."
         return {"problem": problem, "advice": "Give simulation.duration_min, or check the traffic."}
     train = outcome.state.trains[clock.stalled_train]
     name = outcome.trains[clock.stalled_train].name

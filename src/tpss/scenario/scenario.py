@@ -1,5 +1,6 @@
 """A whole scenario: the line, its supply, its trains, its traffic, and how to simulate them."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -58,6 +59,11 @@ class Scenario(Part):
         scenario._source = Path(source)
         return scenario
 
+    @property
+    def source(self) -> Path:
+        """File that the scenario was read from, or a name in its place."""
+        return self._source
+
     def with_(self, changes: Mapping[str, Any]) -> Self:
         """Validated copy with some values changed.
 
@@ -74,6 +80,13 @@ class Scenario(Part):
         """
         document = override(self._document, changes, self._source)
         return type(self).from_document(document, self._source)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two scenarios say the same, wherever they were read from."""
+        return isinstance(other, Scenario) and self.as_document() == other.as_document()
+
+    def __hash__(self) -> int:
+        return hash(json.dumps(self.as_document(), sort_keys=True))
 
     def as_document(self) -> dict[str, Any]:
         """The scenario as run, with everything it took from files, library and defaults."""

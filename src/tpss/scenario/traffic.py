@@ -35,7 +35,7 @@ class Traffic(Part):
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
-    headway_min: Real | None = Field(default=None, gt=0, description="Time between departures.")
+    headway_min: Real | None = Field(default=None, ge=0.01, description="Time between departures.")
     departures_min: Times | None = Field(
         default=None, description="Times of departure, in place of a headway."
     )

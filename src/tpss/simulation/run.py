@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tpss.errors import TooLargeError
 from tpss.physics.constants import NOMINAL_VOLTAGE_V
 from tpss.simulation.advance import advance
 from tpss.simulation.state import (
@@ -23,6 +24,7 @@ from tpss.simulation.state import (
     Status,
     new_recording,
     new_state,
+    recording_bytes,
 )
 from tpss.simulation.timetable import (
     Service,
@@ -38,6 +40,9 @@ STRETCH_S = 0.05
 
 LONGEST_RUN_S = 7 * 24 * 3600.0
 """A run that waits for a train to arrive gives up after this simulated time. [s]"""
+
+MOST_MEMORY_BYTES = 8 * 2**30
+"""A recording larger than this is refused. [byte]"""
 
 INTERRUPTED = "interrupted"
 STATUS_NAME = {
@@ -172,6 +177,11 @@ def run_services(
     report : callable, optional
         Called with the `Progress` after every stretch of steps.
 
+    Raises
+    ------
+    TooLargeError
+        The recording would not fit into memory.
+
     Returns
     -------
     Outcome
@@ -195,7 +205,15 @@ def run_services(
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
     model = model._replace(options=model.options._replace(studied_train=ends_with))
-    run = Run(model, [*on_line, *departing], capacity)
+    trains = [*on_line, *departing]
+    needed = recording_bytes(model, capacity, len(trains))
+    if needed > MOST_MEMORY_BYTES:
+        raise TooLargeError(
+            f"{capacity} steps with {len(trains)} trains need {needed / 2**30:.0f} GiB of memory, more "
+            f"than {MOST_MEMORY_BYTES / 2**30:.0f}; take a longer time step, a shorter duration or a "
+            "longer headway"
+        )
+    run = Run(model, trains, capacity)
     status = _advance_to_end(run, services, steps, report)
     return _outcome(run, status, studied)
 
@@ -214,7 +232,11 @@ def _advance_to_end(
         while run.step < last:
             if run.step == run.capacity:
                 more = min(last, run.capacity + run.capacity // 2 + 1)
-                run.grow(more, departing_trains(services, h, run.capacity, more))
+                departing = departing_trains(services, h, run.capacity, more)
+                trains = len(run.trains) + len(departing)
+                if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
+                    break
+                run.grow(more, departing)
             started = time.perf_counter()
             run.advance_to(min(run.step + stretch, run.capacity, last))
             elapsed = time.perf_counter() - started

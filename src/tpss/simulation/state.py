@@ -209,6 +209,16 @@ def new_state(model: Model, trains: Any) -> State:
     )
 
 
+def recording_bytes(model: Model, steps: int, trains: int) -> int:
+    """Memory that a recording takes. [byte]"""
+    network = model.network
+    row = trains * (TRAIN_ROW.itemsize + 1)
+    row += network.source_of_node.size * NODE_ROW.itemsize
+    row += network.sources.size * STATION_ROW.itemsize
+    row += 8 * (network.branches.size + 2 * network.sections.size + 2)
+    return (steps + 1) * row
+
+
 def new_recording(model: Model, steps: int, trains: int) -> Recording:
     """Recording with room for `steps` steps and one instant more."""
     network, rows = model.network, steps + 1
