@@ -14,7 +14,7 @@ from tpss.results.dataset import build_dataset
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.run import Outcome, Progress, run_services
+from tpss.simulation.run import Outcome, Progress, compile_kernels, run_services
 from tpss.simulation.state import Model
 from tpss.units import si
 
@@ -47,6 +47,7 @@ def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = N
         if duration is None
         else steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
     )
+    compile_kernels(model)
     started = time.perf_counter()
     outcome = run_services(model, services, steps, progress)
     elapsed_s = time.perf_counter() - started

@@ -5,8 +5,11 @@ recording grows when a run is longer than was foreseen.
 """
 
 import math
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,6 +78,34 @@ class Outcome:
     arrival_step: np.ndarray
     recording: Recording
     state: State
+
+
+@contextmanager
+def interruptible() -> Iterator[list[int]]:
+    """Give a list that a Ctrl-C fills, in place of an exception in the midst of a kernel.
+
+    A second Ctrl-C interrupts as usual.  Outside the main thread nothing is changed.
+    """
+    received: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield received
+        return
+    usual = signal.getsignal(signal.SIGINT)
+
+    def note(number: int, _: object) -> None:
+        received.append(number)
+        signal.signal(signal.SIGINT, usual)
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield received
+    finally:
+        signal.signal(signal.SIGINT, usual)
+
+
+def compile_kernels(model: Model) -> None:
+    """Compile the clock, or load it from the cache, without simulating anything."""
+    Run(model, [], 0).advance_to(0)
 
 
 class Run:
@@ -228,7 +259,7 @@ def _advance_to_end(
     h = run.model.options.step_s
     last = steps if steps is not None else int(LONGEST_RUN_S / h)
     stretch = 32
-    try:
+    with interruptible() as interrupted:
         while run.step < last:
             if run.step == run.capacity:
                 more = min(last, run.capacity + run.capacity // 2 + 1)
@@ -245,8 +276,8 @@ def _advance_to_end(
                 report(_progress(run, steps))
             if run.status != Status.RUNNING:
                 return STATUS_NAME[run.status]
-    except KeyboardInterrupt:
-        return INTERRUPTED
+            if interrupted:
+                return INTERRUPTED
     return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
 
 

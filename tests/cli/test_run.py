@@ -1,0 +1,427 @@
+"""The command ``tpss run``: what it prints and saves, and the exit code by which it tells how it went.
+
+Exit codes: 0 done, 2 bad input, 3 no solution or a stalled train, 4 the audit failed,
+130 interrupted.
+"""
+
+import itertools
+import json
+import os
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import tomli_w
+import xarray as xr
+
+import tpss.api
+from tpss import load_result
+from tpss.cli.main import main
+from tpss.results import audit
+from tpss.simulation import run as clock
+
+from conftest import EXAMPLES
+from scenarios import SHORT_LINE
+
+HEADWAY = EXAMPLES / "at_headway_3.toml"
+OVERLOADED = EXAMPLES / "overloaded.toml"
+SHORT = ("--set", "simulation.duration_min=3")
+STEEP = ("--set", "line.gradients=[{from_km = 0.0, permille = 30.0}]")
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a call of the command line printed, its white space made even, and its exit code."""
+
+    code: int | str | None
+    out: str
+    err: str
+
+
+@pytest.fixture
+def tpss_command(monkeypatch, tmp_path, capsys):
+    """The command line in an empty folder; no call of it may print a traceback."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.delenv("TPSS_DEBUG", raising=False)
+
+    def call(*arguments: object) -> Said:
+        capsys.readouterr()
+        monkeypatch.setattr("sys.argv", ["tpss", *map(str, arguments)])
+        with pytest.raises(SystemExit) as exited:
+            main()
+        out, err = (" ".join(text.split()) for text in capsys.readouterr())
+        assert "Traceback" not in out + err
+        return Said(exited.value.code, out, err)
+
+    return call
+
+
+@pytest.fixture
+def short_file(tmp_path):
+    """The short line as a file."""
+    file = tmp_path / "short_line.toml"
+    file.write_text(tomli_w.dumps(SHORT_LINE), encoding="utf-8")
+    return file
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    """Contents of all files below a folder."""
+    return {str(f.relative_to(folder)): f.read_bytes() for f in folder.rglob("*") if f.is_file()}
+
+
+def folders_in(folder: Path) -> list[str]:
+    return sorted(str(f.relative_to(folder)) for f in folder.rglob("*") if f.is_dir())
+
+
+# --------------------------------------------------------------------------- a run that finishes
+
+
+def test_a_run_is_saved_into_numbered_folders(tpss_command, tmp_path):
+    for number in (1, 2, 3):
+        said = tpss_command("run", HEADWAY, *SHORT)
+        assert said.code == 0
+        assert f"Saved in {Path('results', f'at-headway-3-00{number}')}" in said.out
+    assert folders_in(tmp_path / "results") == [f"at-headway-3-00{n}" for n in (1, 2, 3)]
+
+
+def test_the_saved_folder_is_a_result(tpss_command, tmp_path):
+    tpss_command("run", HEADWAY, *SHORT)
+    folder = tmp_path / "results" / "at-headway-3-001"
+    assert sorted(files_in(folder)) == ["result.nc", "scenario.toml", "summary.json"]
+    result = load_result(folder)
+    assert result.status == "finished"
+    assert result.dataset.sizes["time"] == 16  # 3 min / 0.2 min, and the start
+
+
+def test_a_run_prints_what_matters(tpss_command, short_file):
+    said = tpss_command("run", short_file)
+    assert said.code == 0
+    for words in (
+        "short-line",
+        "eastbound 1",
+        "West",
+        "East",
+        "Trip time of eastbound 1:",
+        "Energy over",
+        "of which losses",
+        "Lowest voltage:",
+        "Audit passed",
+    ):
+        assert words in said.out
+
+
+def test_quiet_prints_nothing(tpss_command, tmp_path):
+    said = tpss_command("run", HEADWAY, *SHORT, "--quiet")
+    assert said == Said(0, "", "")
+    assert folders_in(tmp_path) == ["results", "results/at-headway-3-001"]
+
+
+def test_set_changes_the_scenario_that_is_run_and_saved(tpss_command, tmp_path):
+    changes = ("traffic.0.headway_min=12", "supply.catenary=BT", "name=study")
+    options = [word for change in changes for word in ("--set", change)]
+    assert tpss_command("run", HEADWAY, *SHORT, *options, "--quiet").code == 0
+    saved = tomllib.loads((tmp_path / "results/study-001/scenario.toml").read_text("utf-8"))
+    assert saved["traffic"][0]["headway_min"] == 12
+    assert saved["supply"]["catenary"]["r_ohm_per_km"] == 0.21
+    assert saved["simulation"]["duration_min"] == 3
+
+
+# --------------------------------------------------------------------------- where it is saved
+
+
+def test_out_names_the_folder(tpss_command, tmp_path):
+    assert tpss_command("run", HEADWAY, *SHORT, "--out", "a/b", "--quiet").code == 0
+    assert folders_in(tmp_path) == ["a", "a/b"]
+
+
+def test_an_existing_folder_is_refused_and_left_alone(tpss_command, tmp_path):
+    tpss_command("run", HEADWAY, *SHORT, "--out", "a", "--quiet")
+    before = files_in(tmp_path)
+    said = tpss_command("run", HEADWAY, *SHORT, "--set", "traffic.0.headway_min=5", "--out", "a")
+    assert said.code == 2
+    assert "a exists already" in said.err
+    assert "--force" in said.err
+    assert files_in(tmp_path) == before
+
+
+def test_a_refused_folder_is_found_out_before_the_run(tpss_command, tmp_path, monkeypatch):
+    monkeypatch.setattr(tpss.api, "simulate", lambda *_: pytest.fail("it has run"))
+    (tmp_path / "a").mkdir()
+    assert tpss_command("run", HEADWAY, "--out", "a").code == 2
+
+
+def test_force_replaces_a_result(tpss_command, tmp_path):
+    tpss_command("run", HEADWAY, *SHORT, "--out", "a", "--quiet")
+    said = tpss_command("run", HEADWAY, *SHORT, "--set", "name=new", "--out", "a", "--force")
+    assert said.code == 0
+    assert load_result(tmp_path / "a").scenario.name == "new"
+    assert folders_in(tmp_path) == ["a"]
+
+
+def test_force_fills_an_empty_folder(tpss_command, tmp_path):
+    (tmp_path / "a").mkdir()
+    assert tpss_command("run", HEADWAY, *SHORT, "--out", "a", "--force", "--quiet").code == 0
+    assert load_result(tmp_path / "a").status == "finished"
+
+
+@pytest.mark.parametrize("out", ["thesis", ".", "thesis/chapter.txt"])
+def test_force_deletes_nothing_but_results(tpss_command, tmp_path, out):
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.txt").write_text("Years of work.")
+    before = files_in(tmp_path)
+    said = tpss_command("run", HEADWAY, *SHORT, "--out", out, "--force")
+    assert said.code == 2
+    assert "is not a result folder" in said.err
+    assert files_in(tmp_path) == before
+
+
+def test_a_folder_below_a_file_is_refused(tpss_command, tmp_path):
+    (tmp_path / "notes.txt").touch()
+    said = tpss_command("run", HEADWAY, *SHORT, "--out", "notes.txt/a")
+    assert said.code == 2
+    assert "notes.txt is not a folder that can be written; give another --out" in said.err
+    assert list(files_in(tmp_path)) == ["notes.txt"]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="the administrator may write anywhere")
+def test_a_folder_that_may_not_be_written_is_refused(tpss_command, tmp_path):
+    (tmp_path / "locked").mkdir(mode=0o500)
+    said = tpss_command("run", HEADWAY, *SHORT, "--out", "locked/a")
+    assert said.code == 2
+    assert "locked is not a folder that can be written" in said.err
+
+
+def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkeypatch):
+    """The disc of ``results`` is full; the hours of computing are not lost."""
+    written = xr.Dataset.to_netcdf
+
+    def to_netcdf(dataset, path, **options):
+        if "results" in Path(path).parts:
+            raise OSError(28, "No space left on device")
+        return written(dataset, path, **options)
+
+    (tmp_path / "spare").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    said = tpss_command("run", HEADWAY, *SHORT)
+    assert said.code == 2
+    assert "No space left on device" in said.err
+    (rescued,) = (tmp_path / "spare").glob("*/at-headway-3-001")
+    assert f"saved into {rescued} instead" in said.err
+    assert load_result(rescued).status == "finished"
+    assert folders_in(tmp_path / "results") == []
+
+
+# --------------------------------------------------------------------------- --show TRAIN
+
+
+def test_show_prints_a_row_for_every_step(tpss_command, capsys, monkeypatch):
+    """3 min of 0.2 min are 15 steps, and one row more for the last instant."""
+    said = tpss_command("run", HEADWAY, *SHORT, "--show", "eastbound 1")
+    assert said.code == 0
+    table = said.out[said.out.rindex("eastbound 1 ") :]
+    for heading in ("speed", "voltage", "traction", "brakes", "motor"):
+        assert heading in table
+    rows = re.findall(r"\b(\d\.\d\d) \d+\.\d{3} \d+\.\d\d (?=\d\.\d{4}|-)", table)
+    assert [float(row) for row in rows] == pytest.approx([0.2 * k for k in range(16)])
+
+
+def test_show_of_an_unknown_train_names_those_there_are(tpss_command, tmp_path):
+    said = tpss_command("run", HEADWAY, *SHORT, "--show", "westbound 1")
+    assert said.code == 2
+    assert "There is no train 'westbound 1'" in said.out + said.err
+    assert "eastbound 1" in said.out + said.err
+    assert load_result(tmp_path / "results" / "at-headway-3-001").status == "finished"
+
+
+# --------------------------------------------------------------------------- bad input
+
+
+def test_bad_input_is_reported_whole_and_nothing_is_written(tpss_command, tmp_path):
+    faults = ("supply.catenary=BTX", "line.length_km='160 km'", "traffic.0.to=Eats")
+    options = [word for fault in faults for word in ("--set", fault)]
+    said = tpss_command("run", HEADWAY, *options)
+    assert (said.code, said.out) == (2, "")
+    assert f"{HEADWAY}: supply.catenary = 'BTX'" in said.err
+    assert "did you mean BT?" in said.err
+    assert "line.length_km = '160 km'" in said.err
+    assert "traffic.0.to = 'Eats'" in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bad_input_is_reported_by_a_quiet_run_too(tpss_command):
+    said = tpss_command("run", HEADWAY, "--set", "supply.catenary=BTX", "--quiet")
+    assert (said.code, said.out) == (2, "")
+    assert "did you mean BT?" in said.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nowhere.toml"], "there is no such file"),
+        (["."], "the file cannot be read"),
+        ([HEADWAY, "--set", "simulation.time_step_min"], "not of the form KEY=VALUE"),
+        ([HEADWAY, "--set", "traffic.7.headway_min=3"], "no such place in the scenario"),
+        ([HEADWAY, "--set", "trafic.headway_min=3"], "did you mean traffic?"),
+        ([HEADWAY, "--outt", "a"], "No such option"),
+        ([], "Missing argument"),
+    ],
+)
+def test_a_wrong_call_is_explained(tpss_command, tmp_path, arguments, words):
+    said = tpss_command("run", *arguments)
+    assert (said.code, said.out) == (2, "")
+    assert words in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_train_placed_too_fast_is_bad_input(tpss_command, tmp_path):
+    trains = "traffic.0.initial_trains=[{position_km = 3.0, speed_kmh = 120.0}]"
+    changes = ("--set", "traffic.0.already_running=false", "--set", trains)
+    said = tpss_command("run", HEADWAY, *changes)
+    assert said.code == 2
+    assert "faster than the limit here, 60 km/h" in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+# --------------------------------------------------------------------------- no solution, stall
+
+
+def test_an_overloaded_line_ends_with_the_reason_and_advice(tpss_command, tmp_path):
+    said = tpss_command("run", OVERLOADED)
+    assert said.code == 3
+    for pattern in (
+        r"Collapsed\. At 0\.00 min the line cannot carry its load",
+        r"\d+ trains ask for \d+\.\d+ MW and \d+\.\d+ Mvar",
+        r"beyond \d+\.\d % of that",
+        r"eastbound initial \d at \d+\.\d+ km has \d+\.\d+ kV, the lowest",
+        r"What would help: Strengthen the supply",
+        r"weakest place is near \d+ km",
+        r"Saved in results.overloaded-001",
+    ):
+        assert re.search(pattern, said.out), pattern
+    assert load_result(tmp_path / "results" / "overloaded-001").status == "collapsed"
+
+
+def test_what_was_simulated_before_the_collapse_is_saved(tpss_command, tmp_path):
+    """Trains enter an empty line one after the other until there are too many."""
+    said = tpss_command("run", OVERLOADED, "--set", "traffic.0.already_running=false")
+    assert said.code == 3
+    result = load_result(tmp_path / "results" / "overloaded-001")
+    minutes = float(result.dataset.time[-1]) / 60.0
+    assert minutes > 10.0
+    assert f"Collapsed. At {minutes:.2f} min" in said.out
+    assert result.summary["total_energy_mwh"] > 0.0
+
+
+def test_a_stalled_train_ends_the_run_with_forces_and_advice(tpss_command, tmp_path):
+    """1470 t on 30 ‰ ask for 1470 · 9.81 · 0.030 + 15.4 = 432.6 + 15.4 = 448.0 kN."""
+    said = tpss_command("run", HEADWAY, *STEEP)
+    assert said.code == 3
+    for words in (
+        "Stalled. At 0.00 min eastbound 1 stands and cannot start at 0.00 km",
+        "ask for 448.0 kN",
+        "kV and 0.0 km/h",
+        "What would help: Lower the train's mass",
+    ):
+        assert words in said.out
+    assert load_result(tmp_path / "results" / "at-headway-3-001").status == "stalled"
+
+
+@pytest.mark.parametrize("arguments", [(OVERLOADED,), (HEADWAY, *STEEP)], ids=["load", "stall"])
+def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_path, arguments):
+    said = tpss_command("run", *arguments, "--quiet")
+    assert (said.code, said.out) == (3, "")
+    assert len(folders_in(tmp_path / "results")) == 1
+
+
+# --------------------------------------------------------------------------- interruption
+
+
+def interrupt_after(calls: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Press Ctrl-C in place of one stretch of the clock."""
+    advance, count = clock.advance, itertools.count()
+
+    def interrupted(*arguments):
+        if next(count) == calls:
+            raise KeyboardInterrupt
+        return advance(*arguments)
+
+    monkeypatch.setattr(clock, "advance", interrupted)
+
+
+def test_an_interrupted_run_is_saved(tpss_command, tmp_path, short_file, monkeypatch):
+    interrupt_after(1, monkeypatch)
+    said = tpss_command("run", short_file)
+    assert said.code == 130
+    assert "Interrupted at" in said.out
+    assert "Run it again for the whole." in said.out
+    result = load_result(tmp_path / "results" / "short-line-001")
+    assert result.status == "interrupted"
+    assert result.dataset.sizes["time"] > 1
+    assert result.dataset.speed.max() > 1.0
+    assert result.audit["passed"]
+
+
+def test_an_interruption_before_there_are_trains_saves_nothing(tpss_command, tmp_path, monkeypatch):
+    interrupt_after(0, monkeypatch)
+    said = tpss_command("run", HEADWAY, *SHORT)
+    assert said.code == 130
+    assert "Interrupted before there was a result" in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+# --------------------------------------------------------------------------- the audit
+
+
+@pytest.mark.parametrize("figure", sorted(audit.LIMITS))
+def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
+    monkeypatch.setitem(audit.LIMITS, figure, -1.0)
+    said = tpss_command("run", HEADWAY, *SHORT)
+    assert said.code == 4
+    assert "Audit FAILED" in said.out
+    assert f"Audit failed: {figure} is" in said.out
+    saved = json.loads((tmp_path / "results/at-headway-3-001/summary.json").read_text("utf-8"))
+    assert saved["audit"]["passed"] is False
+
+
+def test_a_failed_audit_counts_more_than_an_early_end(tpss_command, monkeypatch):
+    monkeypatch.setitem(audit.LIMITS, "power_mismatch_va", -1.0)
+    assert tpss_command("run", OVERLOADED, "--quiet").code == 4
+
+
+# --------------------------------------------------------------------------- around the command
+
+
+def test_help_and_version(tpss_command):
+    assert tpss_command("--version").out.startswith("tpss ")
+    said = tpss_command("run", "--help")
+    assert said.code == 0
+    assert "Example: tpss run examples/thesis_160km.toml" in said.out
+    for option in ("--out", "--set", "--force", "--quiet", "--show"):
+        assert option in said.out
+
+
+def break_the_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
+    def simulate(*_):
+        raise RuntimeError("a wheel came off")
+
+    monkeypatch.setattr(tpss.api, "simulate", simulate)
+
+
+def test_a_fault_of_the_program_says_so_without_a_traceback(tpss_command, monkeypatch):
+    break_the_simulation(monkeypatch)
+    said = tpss_command("run", HEADWAY, "--quiet")
+    assert (said.code, said.out) == (1, "")
+    assert "Internal error: RuntimeError: a wheel came off" in said.err
+    assert "please report it" in said.err
+
+
+def test_a_fault_of_the_program_can_be_traced(tpss_command, monkeypatch):
+    break_the_simulation(monkeypatch)
+    monkeypatch.setenv("TPSS_DEBUG", "1")
+    monkeypatch.setattr("sys.argv", ["tpss", "run", str(HEADWAY), "--quiet"])
+    with pytest.raises(RuntimeError, match="a wheel came off"):
+        main()
