@@ -4,10 +4,10 @@ Exit codes: 0 done, 2 bad input, 3 no solution or a stalled train, 4 the audit f
 130 interrupted.
 """
 
-import itertools
 import json
 import os
 import re
+import signal
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -286,6 +286,15 @@ def test_a_train_placed_too_fast_is_bad_input(tpss_command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_run_that_memory_cannot_hold_is_refused(tpss_command, tmp_path):
+    """Ten weeks in steps of 12 s with a train every 3 minutes."""
+    said = tpss_command("run", HEADWAY, "--set", "simulation.duration_min=100000")
+    assert (said.code, said.out) == (2, "")
+    assert "GiB of memory" in said.err
+    assert "a longer time step, a shorter duration or a longer headway" in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
 # --------------------------------------------------------------------------- no solution, stall
 
 
@@ -340,36 +349,41 @@ def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_pat
 # --------------------------------------------------------------------------- interruption
 
 
-def interrupt_after(calls: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Press Ctrl-C in place of one stretch of the clock."""
-    advance, count = clock.advance, itertools.count()
+def press_ctrl_c(towards: int, monkeypatch: pytest.MonkeyPatch, times: int = 1) -> None:
+    """Press Ctrl-C when the clock sets out for a step; to step 0 it goes to compile the kernels."""
+    advance, left = clock.advance, [signal.SIGINT] * times
 
-    def interrupted(*arguments):
-        if next(count) == calls:
-            raise KeyboardInterrupt
-        return advance(*arguments)
+    def interrupted(step, last, *arguments):
+        while last >= towards and left:
+            signal.raise_signal(left.pop())
+        return advance(step, last, *arguments)
 
     monkeypatch.setattr(clock, "advance", interrupted)
 
 
 def test_an_interrupted_run_is_saved(tpss_command, tmp_path, short_file, monkeypatch):
-    interrupt_after(1, monkeypatch)
+    press_ctrl_c(1, monkeypatch)
     said = tpss_command("run", short_file)
     assert said.code == 130
-    assert "Interrupted at" in said.out
-    assert "Run it again for the whole." in said.out
     result = load_result(tmp_path / "results" / "short-line-001")
     assert result.status == "interrupted"
-    assert result.dataset.sizes["time"] > 1
-    assert result.dataset.speed.max() > 1.0
     assert result.audit["passed"]
+    minutes = float(result.dataset.time[-1]) / 60.0
+    assert 0.0 < minutes < 20.0
+    assert f"Interrupted. Stopped at {minutes:.2f} min" in said.out
+    assert "Run it again for the whole." in said.out
+
+
+def test_a_second_ctrl_c_does_not_wait(tpss_command, tmp_path, short_file, monkeypatch):
+    press_ctrl_c(1, monkeypatch, times=2)
+    assert tpss_command("run", short_file).code == 130
+    assert list(tmp_path.iterdir()) == [short_file]
 
 
 def test_an_interruption_before_there_are_trains_saves_nothing(tpss_command, tmp_path, monkeypatch):
-    interrupt_after(0, monkeypatch)
+    press_ctrl_c(0, monkeypatch)
     said = tpss_command("run", HEADWAY, *SHORT)
-    assert said.code == 130
-    assert "Interrupted before there was a result" in said.err
+    assert (said.code, said.out) == (130, "")
     assert list(tmp_path.iterdir()) == []
 
 

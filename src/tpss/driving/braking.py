@@ -33,7 +33,8 @@ import math
 from tpss.kernel import kernel
 
 ROUNDING = 1e-10
-"""Fractions of a step closer than this to 0 count as 0: a stop is then off by less than 10 µm."""
+"""Fractions of a step closer than this to 0 or 1 count as such: a stop is then off by about this
+share of b h², 8 µm at steps of five minutes."""
 
 
 @kernel
@@ -100,7 +101,7 @@ def braking_plan(
         moved = rest / (n + 1)
         hold, first, full, last = start - 1, f - moved, n, moved
     else:
-        moved = max(0.0, rest - f * (n + 1)) / max(n, 1)
+        moved = (rest - f * (n + 1)) / max(n, 1)
         hold, first, full, last = start, 1.0 - moved, n - 1, f + moved
         if n == 0:
             first, full, last = f, 0, 0.0

@@ -25,6 +25,10 @@ SLACK_M = 1e-9
 SLACK_STEPS = 1e-12
 """Rounding allowed where a speed is counted in steps of full braking. [1]"""
 
+SLACK_M_S = 1e-9
+"""Rounding by which a train may enter a limit too fast: a limit met a step before is one of these
+above it, and must not call for another, impossible, step of braking. [m/s]"""
+
 BISECTIONS = 60
 """Halvings after which the bracket of a speed is as wide as a rounding."""
 
@@ -65,7 +69,7 @@ def can_meet_limit(
     limit_m_s, retardation_m_s2, step_s : float
         As in `slowing_distance`.
     """
-    if speed_m_s <= limit_m_s and next_speed_m_s <= limit_m_s:
+    if speed_m_s <= limit_m_s + SLACK_M_S and next_speed_m_s <= limit_m_s:
         return True
     way = step_s * (speed_m_s + next_speed_m_s) / 2.0
     slowing = slowing_distance(next_speed_m_s, limit_m_s, retardation_m_s2, step_s)
@@ -83,7 +87,7 @@ def highest_speed_before_limit(
     """
     if can_meet_limit(speed_m_s, wanted_m_s, distance_m, limit_m_s, retardation_m_s2, step_s):
         return wanted_m_s
-    low, high = 0.0, wanted_m_s
+    low, high = max(0.0, speed_m_s - retardation_m_s2 * step_s), wanted_m_s
     for _ in range(BISECTIONS):
         middle = (low + high) / 2.0
         if can_meet_limit(speed_m_s, middle, distance_m, limit_m_s, retardation_m_s2, step_s):

@@ -100,6 +100,13 @@ def test_train_stands_within_a_millimetre_of_its_stop_and_never_brakes_too_hard(
         assert retardation.max() <= b * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("error", [-1e-12, 0.0, 1e-12])
+def test_whole_number_of_steps_that_rounding_has_moved_is_whole_again(as_run, error):
+    """30 m/s, 450 m before its stop, takes three full steps, not four and not a fraction."""
+    plan = as_run(braking_plan)(30.0 * (1.0 + error), 450.0, 1.0, 10.0)
+    assert plan == pytest.approx((0, 1.0, 2, 0.0))
+
+
 def test_shortage_by_rounding_counts_as_none(as_run):
     exact = as_run(braking_plan)(25.0, 325.0, 1.0, 10.0)
     assert as_run(braking_plan)(25.0, 325.0 - 1e-9, 1.0, 10.0) == pytest.approx(exact)

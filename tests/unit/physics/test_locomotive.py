@@ -43,6 +43,7 @@ from tpss.physics.locomotive import (
 )
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR
+from tpss.physics.tractive_effort import steepest_slope
 
 from alternatives import central_difference
 
@@ -114,11 +115,17 @@ def test_coasting_or_braking_train_has_no_tractive_force(as_run):
     assert as_run(wheel_force)(15e3, freight(), demand(0.0), MACHINE) == (0.0, 0.0)
 
 
-def test_network_below_zero_at_high_speed_gives_no_force(as_run):
-    """At 250 km/h, 16.5 kV and 2080 A the network is at -8 N."""
+@pytest.mark.parametrize(("resistance_n", "force_n"), [(-1e5, 0.0), (0.0, 0.0), (1e5, 725.98)])
+def test_network_below_zero_counts_as_zero(as_run, resistance_n, force_n):
+    """At 250 km/h, 16.5 kV and 2080 A the network is at -8 N.
+
+    Rotors that slow down with the train give 10 750/1 480 750 · 100 kN = 725.98 N by eq. (2.5).
+    """
     kind = freight(highest_current_a=2080.0)
-    train = demand(NO_LIMIT_N, speed_kmh=250.0, resistance_n=0.0, kind=kind)
-    assert as_run(wheel_force)(16.5e3, kind, train, MACHINE) == (0.0, 0.0)
+    train = demand(NO_LIMIT_N, speed_kmh=250.0, resistance_n=resistance_n, kind=kind)
+    force, slope = as_run(wheel_force)(16.5e3, kind, train, MACHINE)
+    assert force == pytest.approx(force_n, abs=0.01)
+    assert slope == 0.0
 
 
 def test_power_at_the_start_of_the_step(as_run):
@@ -147,8 +154,20 @@ def test_slip_turns_the_rotors_faster_and_costs_power(as_run):
 def test_motor_takes_no_negative_power_on_a_slope_that_slows_the_train(as_run, force_n):
     """On 20 ‰ the rotors alone would give 10 750 · 0.22 = 2300 N back."""
     train = demand(force_n, mean_over_s=60.0, resistance_n=322e3)
-    motor, _, power, _ = as_run(motor_state)(force_n, freight(), train)
-    assert (motor, power) == (0.0, 0.0)
+    motor, speed, power, slope = as_run(motor_state)(force_n, freight(), train)
+    assert (motor, power, slope) == (0.0, 0.0, 0.0)
+    assert speed == pytest.approx(60 / 3.6 + 30.0 * (force_n - 322e3) / 1.47e6)
+
+
+def test_train_that_gathers_speed_downhill_without_traction_takes_no_power(as_run):
+    train = demand(0.0, resistance_n=-1e5)
+    assert as_run(motor_state)(0.0, freight(), train) == (0.0, 60 / 3.6, 0.0, 0.0)
+
+
+def test_billed_speed_is_never_negative(as_run):
+    """From 1 km/h at -0.22 m/s², half a minute on."""
+    train = demand(100.0, speed_kmh=1.0, mean_over_s=60.0, resistance_n=322e3)
+    assert as_run(motor_state)(100.0, freight(), train) == (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("mean_over_s", [0.0, 60.0])
@@ -271,6 +290,15 @@ def random_trains(count):
         kind = freight(highest_current_a=random.uniform(300.0, 2080.0))
         cap_n, resistance_n = random.uniform(1e3, 2e5), random.uniform(-1e5, 2e5)
         yield kind, demand(cap_n, random.uniform(0.0, 140.0), 60.0, resistance_n, kind)
+
+
+def test_band_is_the_margin_of_force_over_the_steepest_slope(as_run):
+    """For 100 kN at the rim the motors need 100 484.7 N of the 169 170.2 N that they can give."""
+    train = demand(1e5)
+    as_run(prove_free_band)(freight(), train, MACHINE)
+    margin_n = train.free_band_v * steepest_slope(MACHINE.tractive_effort)
+    assert margin_n == pytest.approx(169_170.2 - 100_484.7, abs=0.1)
+    assert train.free_voltage_v == 15e3
 
 
 def test_inside_the_proven_band_the_force_is_what_the_driver_wants(as_run):
