@@ -76,9 +76,6 @@ def folders_in(folder: Path) -> list[str]:
     return sorted(str(f.relative_to(folder)) for f in folder.rglob("*") if f.is_dir())
 
 
-# --------------------------------------------------------------------------- a run that finishes
-
-
 def test_a_run_is_saved_into_numbered_folders(tpss_command, tmp_path):
     for number in (1, 2, 3):
         said = tpss_command("run", HEADWAY, *SHORT)
@@ -127,9 +124,6 @@ def test_set_changes_the_scenario_that_is_run_and_saved(tpss_command, tmp_path):
     assert saved["traffic"][0]["headway_min"] == 12
     assert saved["supply"]["catenary"]["r_ohm_per_km"] == 0.21
     assert saved["simulation"]["duration_min"] == 3
-
-
-# --------------------------------------------------------------------------- where it is saved
 
 
 def test_out_names_the_folder(tpss_command, tmp_path):
@@ -215,9 +209,6 @@ def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkey
     assert folders_in(tmp_path / "results") == []
 
 
-# --------------------------------------------------------------------------- --show TRAIN
-
-
 def test_show_prints_a_row_for_every_step(tpss_command, capsys, monkeypatch):
     """3 min of 0.2 min are 15 steps, and one row more for the last instant."""
     said = tpss_command("run", HEADWAY, *SHORT, "--show", "eastbound 1")
@@ -235,9 +226,6 @@ def test_show_of_an_unknown_train_names_those_there_are(tpss_command, tmp_path):
     assert "There is no train 'westbound 1'" in said.out + said.err
     assert "eastbound 1" in said.out + said.err
     assert load_result(tmp_path / "results" / "at-headway-3-001").status == "finished"
-
-
-# --------------------------------------------------------------------------- bad input
 
 
 def test_bad_input_is_reported_whole_and_nothing_is_written(tpss_command, tmp_path):
@@ -295,9 +283,6 @@ def test_a_run_that_memory_cannot_hold_is_refused(tpss_command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-# --------------------------------------------------------------------------- no solution, stall
-
-
 def test_an_overloaded_line_ends_with_the_reason_and_advice(tpss_command, tmp_path):
     said = tpss_command("run", OVERLOADED)
     assert said.code == 3
@@ -346,9 +331,6 @@ def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_pat
     assert len(folders_in(tmp_path / "results")) == 1
 
 
-# --------------------------------------------------------------------------- interruption
-
-
 def press_ctrl_c(towards: int, monkeypatch: pytest.MonkeyPatch, times: int = 1) -> None:
     """Press Ctrl-C when the clock sets out for a step; to step 0 it goes to compile the kernels."""
     advance, left = clock.advance, [signal.SIGINT] * times
@@ -387,9 +369,6 @@ def test_an_interruption_before_there_are_trains_saves_nothing(tpss_command, tmp
     assert list(tmp_path.iterdir()) == []
 
 
-# --------------------------------------------------------------------------- the audit
-
-
 @pytest.mark.parametrize("figure", sorted(audit.LIMITS))
 def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
     monkeypatch.setitem(audit.LIMITS, figure, -1.0)
@@ -404,9 +383,6 @@ def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
 def test_a_failed_audit_counts_more_than_an_early_end(tpss_command, monkeypatch):
     monkeypatch.setitem(audit.LIMITS, "power_mismatch_va", -1.0)
     assert tpss_command("run", OVERLOADED, "--quiet").code == 4
-
-
-# --------------------------------------------------------------------------- around the command
 
 
 def test_help_and_version(tpss_command):

@@ -38,9 +38,6 @@ def test_a_path_may_be_text():
     assert load_scenario(str(FILE)) == load_scenario(FILE)
 
 
-# --------------------------------------------------------------------------- defaults
-
-
 @pytest.mark.parametrize(
     ("path", "default"),
     [
@@ -85,9 +82,6 @@ def test_a_high_voltage_line_has_132_kv_and_the_library_s_transformers():
     assert high_voltage.station_transformer.rating_mva == 25.0
 
 
-# --------------------------------------------------------------------------- the library
-
-
 def test_a_train_starts_from_its_model_and_overrides_what_it_gives():
     scenario = short_line({"trains.freight.mass_t": 900.0, "trains.freight.slip": 0.02})
     train = scenario.trains["freight"]
@@ -105,9 +99,6 @@ def test_a_converter_type_is_a_library_name_or_a_table_of_one_s_own():
     own = short_line({"supply.converter_stations.0.type": {**table, "rating_mva": 15.0}})
     assert own.supply.converter_stations[0].type.rating_mva == 15.0
     assert own.supply.converter_stations[1].type.rating_mva == 10.0
-
-
-# --------------------------------------------------------------------------- transformers
 
 
 def with_stations_and_transformers(positions_km: list[float], line: dict[str, Any]) -> Scenario:
@@ -153,9 +144,6 @@ def test_without_a_high_voltage_line_there_are_no_transformers():
     assert transformer_positions_km(short_line().supply) == []
 
 
-# --------------------------------------------------------------------------- gradients
-
-
 PROFILE = """# metres above the sea are lost; their differences are not
 position_km,gradient_permille
 
@@ -182,9 +170,6 @@ def test_a_profile_is_looked_for_beside_the_scenario_wherever_one_stands(monkeyp
     gradients = load_scenario(FILE).line.gradients
     assert len(gradients) == 320
     assert (gradients[1].from_km, gradients[1].permille) == (0.5, 0.0462)
-
-
-# --------------------------------------------------------------------------- changed copies
 
 
 def test_with_gives_a_changed_copy_and_leaves_the_original():
@@ -256,9 +241,6 @@ def test_no_part_of_a_scenario_can_be_changed(path):
         setattr(part, key, value_at(scenario, path))
 
 
-# --------------------------------------------------------------------------- the document
-
-
 @pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
 def test_the_document_of_a_scenario_gives_an_equal_scenario(file):
     scenario = load_scenario(file)
@@ -288,9 +270,6 @@ def test_the_document_is_whole():
 )
 def test_scenarios_that_differ_are_not_equal(changes):
     assert short_line(changes) != short_line()
-
-
-# --------------------------------------------------------------------------- --set KEY=VALUE
 
 
 @pytest.mark.parametrize(

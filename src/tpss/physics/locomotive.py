@@ -143,15 +143,19 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
 def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machine) -> None:
     """Evaluate what depends on the speed alone, if the speed has changed since that was done last.
 
-    A train that holds its speed limit has the same speed, to the last digit, step after step.
+    A train that holds its speed limit has the same speed, to the last digit, step after step.  What
+    the machine gives is evaluated anew at `voltage_v` too, if that has left the band of the last step.
     """
+    network = machine.tractive_effort
     if train.speed_m_s == train.bias_speed_m_s:
+        if 0.0 < train.free_band_v <= abs(voltage_v - train.free_voltage_v):
+            train.free_voltage_v = voltage_v
+            train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
         return
     train.bias_speed_m_s = train.speed_m_s
     if kind.reactive_model == POWER_FACTOR:
         factor = power_factor(train.speed_m_s, machine.power_factor)
         train.reactive_ratio = reactive_ratio(factor)
-    network = machine.tractive_effort
     speed_and_current_bias(train.speed_m_s, kind.highest_current_a, network, train.bias)
     train.free_voltage_v = voltage_v
     train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
