@@ -95,6 +95,8 @@ DEMAND = np.dtype(
         ("free_force_n", float),  # what the machine gives there
         ("free_band_v", float),  # how far from it that is proven; negative: nowhere
         ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
+        ("cap_power_w", float),  # of the motors at the force cap
+        ("cap_current_a", float),
         ("active_power_w", float),  # what came of it at the voltage last tried
         ("reactive_power_var", float),
         ("machine_force_n", float),  # of all motors at most, before clipping
@@ -246,6 +248,43 @@ def train_armature_current(
 
 
 @kernel
+def note_cap(kind: TrainType, train: Demand) -> None:
+    """Evaluate power and current of a train at its force cap, which no voltage moves, once a step."""
+    motor, speed, power, _ = motor_state(train.force_cap_n, kind, train)
+    train.cap_power_w = power
+    train.cap_current_a = train_armature_current(motor, speed, kind, train)
+
+
+@kernel
+def motor_power_demand(
+    force_n: float, slope_n_per_v: float, kind: TrainType, train: Demand
+) -> tuple[float, float]:
+    """Motor power at a force, and its slope over the line voltage. [W], [W/V]"""
+    if force_n == train.force_cap_n:
+        return train.cap_power_w, 0.0
+    _, _, power, power_slope = motor_state(force_n, kind, train)
+    return power, power_slope * slope_n_per_v
+
+
+@kernel
+def armature_demand(
+    force_n: float, slope_n_per_v: float, kind: TrainType, train: Demand
+) -> tuple[float, float]:
+    """Armature current at a force and full line voltage, and its slope. [A], [A/V]"""
+    if force_n == train.force_cap_n:
+        return train.cap_current_a, 0.0
+    motor, speed, _, _ = motor_state(force_n, kind, train)
+    current = train_armature_current(motor, speed, kind, train)
+    if current <= 0.0:
+        return 0.0, 0.0
+    # The current follows the force: by the motor force and, above base speed, by the speed too.
+    relative = (1.0 + kind.rotor_mass_kg / kind.inertia_kg) / motor
+    if train.speed_m_s >= kind.base_speed_m_s:
+        relative += train.mean_speed_weight_s / kind.inertia_kg / speed
+    return current, current * relative * slope_n_per_v
+
+
+@kernel
 def train_bridge_sine(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
@@ -282,23 +321,17 @@ def bridge_demand(
     ----------
     [Boullanger2009]_, eq. (2.19) and (F.24).
     """
-    motor, speed, _, _ = motor_state(force_n, kind, train)
-    factor = line_voltage_factor(voltage_v, kind.voltage_model)
-    current = train_armature_current(motor, speed, kind, train) / factor
+    current, current_slope = armature_demand(force_n, slope_n_per_v, kind, train)
     if current <= 0.0:
         return 0.0, 0.0
+    factor = line_voltage_factor(voltage_v, kind.voltage_model)
     sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
-    reactive = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, current, sine)
-    unit = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, current, 1.0)
-    slope = unit * sine_slope
-    if factor == 1.0:
-        slope += reactive / voltage_v
-    # The current follows the force: by the motor force and, above base speed, by the speed too.
-    inertia = kind.inertia_kg
-    current_slope = (1.0 + kind.rotor_mass_kg / inertia) / motor
-    if train.speed_m_s >= kind.base_speed_m_s:
-        current_slope += train.mean_speed_weight_s / inertia / speed
-    return reactive, slope + reactive * current_slope * slope_n_per_v
+    inner_v = voltage_v * TRANSFORMER_RATIO
+    unit = bridge_reactive_power(inner_v, current / factor, 1.0)
+    slope = unit * sine_slope + bridge_reactive_power(inner_v, current_slope / factor, sine)
+    if factor == 1.0:  # below the knee of the former voltage, current times voltage is constant
+        slope += unit * sine / voltage_v
+    return unit * sine, slope
 
 
 @kernel
@@ -321,8 +354,7 @@ def electrical_demand(
     [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
-    _, _, power, power_slope = motor_state(force, kind, train)
-    power_slope *= slope
+    power, power_slope = motor_power_demand(force, slope, kind, train)
     active = power / kind.efficiency + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
         reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)

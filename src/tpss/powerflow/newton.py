@@ -42,7 +42,7 @@ from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
 from tpss.powerflow.chain import FLAT, WARM, run_chain
 from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.pairs import apply, compose, determinant, inverse
+from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude, squared
 
 TOLERANCE = 1e-10
 """Largest mismatch of a solution, in per unit of base power or base voltage."""
@@ -181,9 +181,9 @@ def evaluate(
         gap -= flow.nodes[section.end_node].voltage_v
         flow.sections[s].gap_v = gap
         sign *= _stamp_section(s, network, flow)
-        impedance = abs(section.impedance_ohm_per_m) * (section.end_m - section.start_m)
-        mismatch = max(mismatch, abs(gap) * BASE_VOLTAGE_V / impedance / BASE_POWER_VA)
-        merit += (abs(gap) / BASE_VOLTAGE_V) ** 2
+        impedance = magnitude(section.impedance_ohm_per_m) * (section.end_m - section.start_m)
+        mismatch = max(mismatch, magnitude(gap) * BASE_VOLTAGE_V / impedance / BASE_POWER_VA)
+        merit += squared(gap / BASE_VOLTAGE_V)
     # 3. Current balance of the nodes (F.29), (F.30), (F.37), (F.38); the law of the sources.
     for n in range(flow.nodes.size):
         node = flow.nodes[n]
@@ -192,8 +192,8 @@ def evaluate(
         else:
             node.residual_pu = node.leaving_current_a * (BASE_VOLTAGE_V / BASE_POWER_VA)
             node.right_side -= node.leaving_current_a
-        mismatch = max(mismatch, abs(node.residual_pu))
-        merit += abs(node.residual_pu) ** 2
+        mismatch = max(mismatch, magnitude(node.residual_pu))
+        merit += squared(node.residual_pu)
     if not math.isfinite(merit):
         return math.inf, math.inf, 0.0
     return mismatch, merit, sign
@@ -255,10 +255,10 @@ def voltages_are_plausible(flow: Flow) -> bool:
     """Whether every node and train lies in the band that a sound line never leaves."""
     low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V
     for n in range(flow.nodes.size):
-        if not low <= abs(flow.nodes[n].voltage_v) <= high:
+        if not low <= magnitude(flow.nodes[n].voltage_v) <= high:
             return False
     for k in range(flow.sections[flow.sections.size - 1].end):
-        if not low <= abs(flow.standing[k].voltage_v) <= high:
+        if not low <= magnitude(flow.standing[k].voltage_v) <= high:
             return False
     return True
 

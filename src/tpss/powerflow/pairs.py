@@ -9,13 +9,21 @@ Every 2 × 2 real matrix is such a pair, an impedance is the pair (z, 0), and th
 composition (p₁p₂ + q₁q̄₂, p₁q₂ + q₁p̄₂), determinant |p|² - |q|², inverse (p̄, -q) / determinant.
 """
 
+import math
+
 from tpss.kernel import kernel
 
 
 @kernel
 def squared(z: complex) -> float:
-    """|z|², without the root that `abs` takes."""
+    """|z|²."""
     return z.real * z.real + z.imag * z.imag
+
+
+@kernel
+def magnitude(z: complex) -> float:
+    """|z|, without the care for overflow that makes `abs` five times slower."""
+    return math.sqrt(squared(z))
 
 
 @kernel

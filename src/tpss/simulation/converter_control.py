@@ -3,6 +3,7 @@
 import math
 
 from tpss.kernel import inlined, kernel
+from tpss.powerflow.pairs import magnitude
 from tpss.simulation.state import CONTROL_PERIOD_S, Model, State
 
 HIGHEST_LOADING = 0.85
@@ -29,7 +30,7 @@ def station_loading(power: complex, converters: float, rating_va: float) -> floa
     ----------
     [Boullanger2009]_, eq. (3.6).
     """
-    return abs(power) / (converters * rating_va)
+    return magnitude(power) / (converters * rating_va)
 
 
 @kernel

@@ -10,6 +10,7 @@ from typing import Any
 from tpss.kernel import inlined, kernel
 from tpss.physics.locomotive import acceleration, electrical_demand, wheel_force
 from tpss.powerflow.network import Loads
+from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
 from tpss.simulation.state import DWELLING, Model, State
@@ -66,7 +67,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     loads = Loads(state.trains, model.types, model.machine)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
-        state.trains[flow.standing[k].train].voltage_v = abs(flow.standing[k].voltage_v)
+        state.trains[flow.standing[k].train].voltage_v = magnitude(flow.standing[k].voltage_v)
     return share, passes
 
 

@@ -8,7 +8,7 @@ from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.kernel import kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
-from tpss.physics.locomotive import prove_free_band, take_speed
+from tpss.physics.locomotive import note_cap, prove_free_band, take_speed
 from tpss.physics.running_resistance import (
     DavisCoefficients,
     gradient_force,
@@ -103,6 +103,7 @@ def aim(train: Any, model: Model) -> None:
         train.target_speed_m_s = target
         train.wanted_force_n = wanted
     prove_free_band(kind, train, model.machine[0])
+    note_cap(kind, train)
 
 
 @kernel

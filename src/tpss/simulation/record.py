@@ -17,7 +17,7 @@ from tpss.physics.reactive_power import (
     bridge_outside_training,
 )
 from tpss.physics.tractive_effort import effort_outside_training
-from tpss.powerflow.pairs import squared
+from tpss.powerflow.pairs import magnitude, squared
 from tpss.simulation.converter_control import station_loading, station_power
 from tpss.simulation.state import (
     ARRIVED,
@@ -108,7 +108,7 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
     network, flow = model.network, state.flow
     for n in range(flow.nodes.size):
-        recording.nodes[step, n].node_voltage = abs(flow.nodes[n].voltage_v)
+        recording.nodes[step, n].node_voltage = magnitude(flow.nodes[n].voltage_v)
         recording.nodes[step, n].node_angle = cmath.phase(flow.nodes[n].voltage_v)
     for s in range(network.sources.size):
         row, power = recording.stations[step, s], station_power(s, model, state)
@@ -127,8 +127,8 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     lumped = network.branches.size
     for s in range(network.sections.size):
         found = flow.sections[s]
-        recording.branch_current[step, lumped + 2 * s] = abs(found.current_a)
-        recording.branch_current[step, lumped + 2 * s + 1] = abs(found.end_current_a)
+        recording.branch_current[step, lumped + 2 * s] = magnitude(found.current_a)
+        recording.branch_current[step, lumped + 2 * s + 1] = magnitude(found.end_current_a)
         losses += section_losses(s, model, state)
     recording.network_losses[step] = losses
 

@@ -35,6 +35,7 @@ from tpss.physics.locomotive import (
     electrical_demand,
     machine_force,
     motor_state,
+    note_cap,
     prove_free_band,
     take_speed,
     train_armature_current,
@@ -82,6 +83,7 @@ def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, ki
     train.speed_m_s, train.mean_speed_weight_s = speed_kmh / 3.6, mean_over_s / 2.0
     train.bias_speed_m_s = train.free_band_v = -1.0
     take_speed(15e3, kind or freight(), train, MACHINE)
+    note_cap(kind or freight(), train)
     return train
 
 
