@@ -29,8 +29,11 @@ from tpss.powerflow.network import Complexes, Flow, Loads, Network
 from tpss.powerflow.pairs import squared
 
 WARM = 0
+"""A pass takes the trains' currents at the voltages of the state, and finds all derivatives."""
 FLAT = 1
-"""Whether a pass takes the trains' currents at the voltages of the state, or at base voltage."""
+"""... takes the currents at base voltage, as if they did not depend on the voltage."""
+CHECK = 2
+"""... is a warm one without derivatives: for a state that is expected to be the solution."""
 
 SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
@@ -98,8 +101,8 @@ def train_current(
         Voltage at its pantograph. [V]
     scale : float
         Factor on its load, 1 for the whole. [1]
-    flat : bool
-        Take the current at base voltage instead, as if it did not depend on the voltage.
+    start : int
+        `WARM`, `FLAT` or `CHECK`.
     """
     if start == FLAT:
         voltage = complex(BASE_VOLTAGE_V, 0.0)
@@ -156,23 +159,28 @@ def run_chain(
         # 1. The piece before the train, with its half shunt at the start.
         place = flow.standing[k]
         shunt += half_jb * place.piece_m
+        impedance = z * place.piece_m
         current -= shunt * voltage
-        _push_load(shunt, 0j, w)
-        voltage -= z * place.piece_m * current
-        _push_piece(z * place.piece_m, w)
+        voltage -= impedance * current
         # 2. The train; the half shunt at the piece's end waits for that of the next piece.
         load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
         place.voltage_v = voltage
         current -= load
-        _push_load(y1, y2, w)
+        if start != CHECK:
+            _push_load(shunt, 0j, w)
+            _push_piece(impedance, w)
+            _push_load(y1, y2, w)
         shunt = half_jb * place.piece_m
     # 3. The piece before the end node.
-    shunt += half_jb * found.closing_m
+    half_shunt = half_jb * found.closing_m
+    impedance = z * found.closing_m
+    shunt += half_shunt
     current -= shunt * voltage
-    _push_load(shunt, 0j, w)
-    voltage -= z * found.closing_m * current
-    _push_piece(z * found.closing_m, w)
-    current -= half_jb * found.closing_m * voltage
-    _push_load(half_jb * found.closing_m, 0j, w)
+    voltage -= impedance * current
+    current -= half_shunt * voltage
+    if start != CHECK:
+        _push_load(shunt, 0j, w)
+        _push_piece(impedance, w)
+        _push_load(half_shunt, 0j, w)
     found.end_current_a = current
     return voltage

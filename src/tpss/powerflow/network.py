@@ -64,7 +64,6 @@ NODE_FLOW = np.dtype(
     [
         ("voltage_v", complex),
         ("leaving_current_a", complex),  # into sections and branches
-        ("residual_pu", complex),
         ("right_side", complex),  # of the linear system, then its solution
         ("base_v", complex),  # where a Newton step starts
         ("direction_v", complex),  # the whole step

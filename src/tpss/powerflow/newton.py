@@ -40,12 +40,16 @@ from tpss.kernel import kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
-from tpss.powerflow.chain import FLAT, WARM, run_chain
+from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
 from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude, squared
+from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude
 
 TOLERANCE = 1e-10
 """Largest mismatch of a solution, in per unit of base power or base voltage."""
+
+CLOSE = 1e-4
+"""Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
+its sign on so short a way but at the turning point itself. [p.u.]"""
 
 LOWEST_VOLTAGE = 0.5
 HIGHEST_VOLTAGE = 1.2
@@ -98,45 +102,49 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     _add(flow.blocks[section.block_ab], bi_p, bi_q)
     _add(flow.blocks[section.block_ba], dba_p - w[1, 0, 0], dba_q - w[1, 0, 1])
     _add(flow.blocks[section.block_bb], -db_p, -db_q)
-    start, end = flow.nodes[section.start_node], flow.nodes[section.end_node]
-    start.leaving_current_a += found.current_a
-    end.leaving_current_a -= found.end_current_a
-    start.right_side += apply(bi_p, bi_q, found.gap_v)
-    end.right_side -= apply(db_p, db_q, found.gap_v)
+    flow.nodes[section.start_node].right_side += apply(bi_p, bi_q, found.gap_v)
+    flow.nodes[section.end_node].right_side -= apply(db_p, db_q, found.gap_v)
     found.inverse_p, found.inverse_q = bi_p, bi_q
     found.transfer_p, found.transfer_q = a_p, a_q
     return math.copysign(1.0, determinant(w[0, 1, 0], w[0, 1, 1]))
 
 
 @kernel
-def _stamp_branches(network: Network, flow: Flow) -> None:
-    """Start the node system with the lumped branches."""
-    for k in range(flow.blocks.size):
-        flow.blocks[k].p = 0.0
-        flow.blocks[k].q = 0.0
+def _leave_by_branches(network: Network, flow: Flow) -> None:
+    """Start the nodes' leaving currents with those into the lumped branches."""
     for n in range(flow.nodes.size):
         flow.nodes[n].leaving_current_a = 0.0
-        flow.nodes[n].right_side = 0.0
     for b in range(network.branches.size):
         branch = network.branches[b]
         start, end = flow.nodes[branch.start_node], flow.nodes[branch.end_node]
-        admittance = branch.admittance_s
-        current = (start.voltage_v - end.voltage_v) * admittance
-        flow.blocks[branch.block_aa].p += admittance
-        flow.blocks[branch.block_ab].p -= admittance
-        flow.blocks[branch.block_ba].p -= admittance
-        flow.blocks[branch.block_bb].p += admittance
+        current = (start.voltage_v - end.voltage_v) * branch.admittance_s
         start.leaving_current_a += current
         end.leaving_current_a -= current
 
 
 @kernel
-def _turn_source_row(s: int, network: Network, flow: Flow) -> None:
+def _stamp_branches(network: Network, flow: Flow) -> None:
+    """Start the linear system with the lumped branches."""
+    for k in range(flow.blocks.size):
+        flow.blocks[k].p = 0.0
+        flow.blocks[k].q = 0.0
+    for n in range(flow.nodes.size):
+        flow.nodes[n].right_side = 0.0
+    for b in range(network.branches.size):
+        branch = network.branches[b]
+        flow.blocks[branch.block_aa].p += branch.admittance_s
+        flow.blocks[branch.block_ab].p -= branch.admittance_s
+        flow.blocks[branch.block_ba].p -= branch.admittance_s
+        flow.blocks[branch.block_bb].p += branch.admittance_s
+
+
+@kernel
+def _turn_source_row(
+    number: int, law: complex, s1: complex, s2: complex, network: Network, flow: Flow
+) -> None:
     """Replace the current balance of a source's node by the converter law, linearised."""
-    number = network.sources[s].node
     node, own = flow.nodes[number], flow.blocks[number]
     voltage, current = node.voltage_v, node.leaving_current_a
-    law, s1, s2 = source_law(s, voltage, current, network, flow)
     t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
     for k in range(network.pattern.row_start[number], network.pattern.row_start[number + 1]):
         block = flow.blocks[network.pattern.places[k]]
@@ -144,9 +152,26 @@ def _turn_source_row(s: int, network: Network, flow: Flow) -> None:
         block.p, block.q = -p, -q
     own.p += 1.0 - s1 * current.conjugate()
     own.q -= s2 * current
-    node.residual_pu = (voltage - law) / BASE_VOLTAGE_V
     # The right side holds minus the change of the leaving current that closes the gaps.
     node.right_side = law - voltage - apply(t_p, t_q, node.right_side)
+
+
+@kernel
+def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
+    """Residual of node `n`, and its row of the linear system. [p.u.]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (F.29), (F.30), (F.33), (F.37)-(F.41).
+    """
+    node, s = flow.nodes[n], network.source_of_node[n]
+    if s < 0:
+        node.right_side -= node.leaving_current_a
+        return magnitude(node.leaving_current_a) * (BASE_VOLTAGE_V / BASE_POWER_VA)
+    law, s1, s2 = source_law(s, node.voltage_v, node.leaving_current_a, network, flow)
+    if start != CHECK:
+        _turn_source_row(n, law, s1, s2, network, flow)
+    return magnitude(node.voltage_v - law) / BASE_VOLTAGE_V
 
 
 @kernel
@@ -159,8 +184,8 @@ def evaluate(
     ----------
     scale : float
         Factor on all loads. [1]
-    flat : bool
-        Take all trains' currents at base voltage.
+    start : int
+        `WARM`, `FLAT` or `CHECK`.
 
     Returns
     -------
@@ -169,31 +194,31 @@ def evaluate(
     merit : float
         Sum of squares that a step has to lower; infinite where the pass has no result.
     sign : float
-        Sign of the product of the sections' determinants.
+        Sign of the product of the sections' determinants (not with `CHECK`).
     """
     # 1. Lumped branches.
-    _stamp_branches(network, flow)
+    _leave_by_branches(network, flow)
+    if start != CHECK:
+        _stamp_branches(network, flow)
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     mismatch, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        section = network.sections[s]
+        section, found = network.sections[s], flow.sections[s]
         gap = run_chain(s, scale, start, network, flow, loads)
-        gap -= flow.nodes[section.end_node].voltage_v
-        flow.sections[s].gap_v = gap
-        sign *= _stamp_section(s, network, flow)
+        found.gap_v = gap - flow.nodes[section.end_node].voltage_v
+        flow.nodes[section.start_node].leaving_current_a += found.current_a
+        flow.nodes[section.end_node].leaving_current_a -= found.end_current_a
+        if start != CHECK:
+            sign *= _stamp_section(s, network, flow)
+        residual = magnitude(found.gap_v) / BASE_VOLTAGE_V
         impedance = magnitude(section.impedance_ohm_per_m) * (section.end_m - section.start_m)
-        mismatch = max(mismatch, magnitude(gap) * BASE_VOLTAGE_V / impedance / BASE_POWER_VA)
-        merit += squared(gap / BASE_VOLTAGE_V)
-    # 3. Current balance of the nodes (F.29), (F.30), (F.37), (F.38); the law of the sources.
+        mismatch = max(mismatch, residual * BASE_VOLTAGE_V**2 / impedance / BASE_POWER_VA)
+        merit += residual**2
+    # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
-        node = flow.nodes[n]
-        if network.source_of_node[n] >= 0:
-            _turn_source_row(network.source_of_node[n], network, flow)
-        else:
-            node.residual_pu = node.leaving_current_a * (BASE_VOLTAGE_V / BASE_POWER_VA)
-            node.right_side -= node.leaving_current_a
-        mismatch = max(mismatch, magnitude(node.residual_pu))
-        merit += squared(node.residual_pu)
+        residual = _evaluate_node(n, start, network, flow)
+        mismatch = max(mismatch, residual)
+        merit += residual**2
     if not math.isfinite(merit):
         return math.inf, math.inf, 0.0
     return mismatch, merit, sign
@@ -264,6 +289,15 @@ def voltages_are_plausible(flow: Flow) -> bool:
 
 
 @kernel
+def _conclude(sign: float, flow: Flow) -> int:
+    """Status of a state without mismatch."""
+    _close_gaps(flow)
+    if not voltages_are_plausible(flow):
+        return IMPLAUSIBLE_VOLTAGE
+    return SOLVED if sign > 0.0 else WRONG_BRANCH
+
+
+@kernel
 def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
@@ -271,19 +305,23 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     ----------
     scale : float
         Factor on all loads. [1]
-    flat : bool
-        Begin with all trains' currents at base voltage, whatever the state.
+    start : int
+        `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
     """
     mismatch, merit, chains = evaluate(scale, start, network, flow, loads)
     passes = 1
     while passes < MOST_PASSES and math.isfinite(merit):
         sign = chains * _find_direction(network, flow)
         if mismatch < TOLERANCE and start == WARM:
-            _close_gaps(flow)
-            if not voltages_are_plausible(flow):
-                return IMPLAUSIBLE_VOLTAGE, passes
-            return (SOLVED if sign > 0.0 else WRONG_BRANCH), passes
+            return _conclude(sign, flow), passes
         _mark_base(flow)
+        if mismatch < CLOSE and start == WARM:
+            # One step from here is likely the solution: look, without derivatives, before going on.
+            _take_step(1.0, flow)
+            mismatch, _, _ = evaluate(scale, CHECK, network, flow, loads)
+            passes += 1
+            if mismatch < TOLERANCE:
+                return _conclude(sign, flow), passes
         size = 1.0
         for _ in range(MOST_HALVINGS):
             _take_step(size, flow)
