@@ -79,7 +79,12 @@ def run(
     """
     from tpss.cli.run import run_scenario
 
-    raise typer.Exit(run_scenario(file, out, set_ or [], force, quiet, show))
+    try:
+        code = run_scenario(file, out, set_ or [], force, quiet, show)
+    except KeyboardInterrupt:
+        typer.echo("Interrupted before there was a result; nothing was written.", err=True)
+        code = 130
+    raise typer.Exit(code)
 
 
 def main() -> None:
@@ -91,9 +96,6 @@ def main() -> None:
     except TpssError as error:
         typer.echo(str(error), err=True)
         sys.exit(2)
-    except KeyboardInterrupt:
-        typer.echo("Interrupted before there was a result.", err=True)
-        sys.exit(130)
     except Exception as error:
         if os.environ.get("TPSS_DEBUG"):
             raise

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as ProgressBar
 
@@ -35,11 +36,13 @@ def run_scenario(
     store.check_target(folder, force)
     result = _simulate(scenario, quiet)
     folder, as_asked = _save(result, folder, force)
+    known = result.dataset.train.to_numpy().tolist()
     if not quiet:
-        _report(result, folder, show)
-    if not as_asked or (show is not None and show not in result.dataset.train):
+        _report(result, folder, show if show in known else None)
+    if show is not None and show not in known:
+        print(f"There is no train {show!r}; trains: {', '.join(known)}", file=sys.stderr)
         return BAD_INPUT
-    return exit_code(result)
+    return exit_code(result) if as_asked else BAD_INPUT
 
 
 def exit_code(result: "Result") -> int:
@@ -72,7 +75,7 @@ def _progress_bar(name: str, console: Console) -> Iterator[Callable[["Progress"]
         TimeRemainingColumn(),
     )
     with ProgressBar(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(name, total=1.0, clock="")
+        task = bar.add_task(escape(name), total=1.0, clock="")
 
         def report(state: "Progress") -> None:
             clock = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
@@ -101,4 +104,4 @@ def _report(result: "Result", folder: Path, show: str | None) -> None:
     tables.print_result(result, console)
     if show is not None:
         tables.print_train(result, show, console)
-    console.print(f"Saved in {folder}", highlight=False, soft_wrap=True)
+    console.print(f"Saved in {folder}", highlight=False, soft_wrap=True, markup=False)

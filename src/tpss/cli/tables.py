@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from rich import box
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from tpss.results.result import Result
@@ -28,18 +29,20 @@ _LIMITED = {
 def print_result(result: Result, console: Console) -> None:
     """Print the tables of trains and stations, the key figures and the warnings."""
     summary = result.summary
-    title = f"\n[bold]{summary['name']}[/bold]  {summary['description']}"
+    title = f"\n[bold]{summary['name']}[/bold]  {escape(summary['description'])}"
     console.print(title, highlight=False, soft_wrap=True)
     console.print(_train_table(result))
     console.print(_station_table(result))
     for line in key_figures(summary):
-        console.print(line, highlight=False, soft_wrap=True)
+        console.print(line, highlight=False, soft_wrap=True, markup=False)
     for line in warnings(summary):
         console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
     if "problem" in summary:
         status = summary["status"].capitalize()
-        console.print(f"[bold red]{status}.[/bold red] {summary['problem']}", highlight=False)
-        console.print(f"[bold]What would help:[/bold] {summary['advice']}", highlight=False)
+        console.print(
+            f"[bold red]{status}.[/bold red] {escape(summary['problem'])}", highlight=False
+        )
+        console.print(f"[bold]What would help:[/bold] {escape(summary['advice'])}", highlight=False)
     for failure in summary["audit"]["failures"]:
         console.print(f"[bold red]Audit failed:[/bold red] {failure}", highlight=False)
 
@@ -102,14 +105,14 @@ def _table(
     rows: Iterable[tuple[str, Mapping[str, Any]]],
 ) -> Table:
     """Table with a name in the first column and numbers, with their units, in the others."""
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
+    table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left", padding=0)
     table.add_column(first, no_wrap=True)
     for column in columns:
         heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
         table.add_column(heading, justify="right", no_wrap=True)
     for name, values in rows:
         cells = [_number(values[column.key] * column.scale, column.digits) for column in columns]
-        table.add_row(name, *cells)
+        table.add_row(escape(name), *cells)
     return table
 
 
@@ -170,10 +173,6 @@ def warnings(summary: dict[str, Any]) -> list[str]:
 
 def print_train(result: Result, name: str, console: Console) -> None:
     """Print a train's journey, a row a step."""
-    if name not in result.dataset.train:
-        known = ", ".join(result.dataset.train.to_numpy())
-        console.print(f"There is no train {name!r}; trains: {known}", highlight=False)
-        return
     train = result.dataset.sel(train=name)
     values = {column.key: train[column.key].to_numpy() for column in _STEP_COLUMNS}
     rows = [

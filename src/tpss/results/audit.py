@@ -11,12 +11,18 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.physics.constants import BASE_VOLTAGE_V, GRAVITY_M_S2
 from tpss.powerflow.chain import SHORTEST_PIECE_M
 from tpss.powerflow.network import Network
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.simulation.run import Outcome
-from tpss.simulation.state import Model
+from tpss.simulation.state import (
+    STATE_ARRIVED,
+    STATE_BRAKING,
+    STATE_COASTING,
+    STATE_MOTORING,
+    Model,
+)
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -26,6 +32,8 @@ LIMITS = {
     "converter_residual": 1e-9,
     "network_balance": 1e-9,
     "traction_balance": 1e-9,
+    "force_balance": 1e-9,
+    "motion_error_m": 1e-6,
     "stop_error_m": 1e-3,
 }
 """Highest value that each figure of a sound run may have."""
@@ -45,6 +53,11 @@ class Audit:
         Energy of the stations less that of the trains and losses, relative to the first. [1]
     traction_balance : float
         Work of the motors less resistance, climb, kinetic energy and brakes, relative. [1]
+    force_balance : float
+        Largest difference between the forces on a train and its mass times acceleration, relative to
+        its weight. [1]
+    motion_error_m : float
+        Largest difference between a train's way in a step and that of its speeds. [m]
     stop_error_m : float
         Largest distance between where a braking plan ended and its stop. [m]
     lowest_voltage_v, highest_voltage_v : float
@@ -57,6 +70,8 @@ class Audit:
     converter_residual: float
     network_balance: float
     traction_balance: float
+    force_balance: float
+    motion_error_m: float
     stop_error_m: float
     lowest_voltage_v: float | None
     highest_voltage_v: float | None
@@ -92,6 +107,8 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
         "converter_residual": converter_residual(outcome, model.network),
         "network_balance": network_balance(outcome, model.options.step_s),
         "traction_balance": traction_balance(outcome, model),
+        "force_balance": force_balance(outcome, model),
+        "motion_error_m": motion_error_m(outcome, model.options.step_s),
         "stop_error_m": float(outcome.state.clock[0].stop_error_m),
     }
     lowest = float(voltages.min()) if voltages.size else None
@@ -123,8 +140,12 @@ def _phasors(magnitude: Floats, angle: Floats) -> Complexes:
 
 
 def _largest(values: npt.NDArray[Any]) -> float:
-    finite = values[np.isfinite(values)]
-    return float(np.abs(finite).max(initial=0.0))
+    """Largest magnitude; NaN, which no limit admits, if one of the values is NaN."""
+    return float(np.abs(values).max(initial=0.0))
+
+
+def _nan_is_largest(value: float) -> float:
+    return np.inf if np.isnan(value) else value
 
 
 def power_mismatch_va(outcome: Outcome, network: Network) -> float:
@@ -151,9 +172,13 @@ def power_mismatch_va(outcome: Outcome, network: Network) -> float:
     fed[:, network.sources.node] = (
         stations["station_active_power"] + 1j * stations["station_reactive_power"]
     )
+    on_line = outcome.recording.train_state[rows] >= 0
+    on_line &= outcome.recording.train_state[rows] != STATE_ARRIVED
     drawn = trains["active_power"] + 1j * trains["reactive_power"]
     return max(
-        _largest(node_v * leaving_a.conj() - fed), _largest(train_v * train_a.conj() - drawn)
+        _largest(node_v * leaving_a.conj() - fed),
+        _largest((train_v * train_a.conj() - drawn)[on_line]),
+        key=_nan_is_largest,
     )
 
 
@@ -220,6 +245,7 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     return max(
         _largest((nodes["node_voltage"][:, law.node] - voltage) / BASE_VOLTAGE_V),
         _largest(nodes["node_angle"][:, law.node] - angle),
+        key=_nan_is_largest,
     )
 
 
@@ -229,7 +255,9 @@ def network_balance(outcome: Outcome, step_s: float) -> float:
     fed = np.nansum(recording.stations["station_active_power"]) * step_s
     drawn = np.nansum(recording.trains["active_power"]) * step_s
     lost = np.nansum(recording.network_losses) * step_s
-    return float(abs(fed - drawn - lost) / max(abs(fed), 1.0))
+    # Relative to at least a kilowatt on average: an idle line feeds nothing but rounding.
+    least = 1e3 * step_s * max(outcome.steps, 1)
+    return float(abs(fed - drawn - lost) / max(abs(fed), least))
 
 
 def traction_balance(outcome: Outcome, model: Model) -> float:
@@ -254,3 +282,37 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     total = np.nansum(work)
     difference = total - np.nansum(moving) - np.nansum(kinetic)
     return float(abs(difference) / max(total, 1.0))
+
+
+def force_balance(outcome: Outcome, model: Model) -> float:
+    """Largest |F - F_res - F_brake - M a| of a moving train, relative to its weight. [1]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11) and (F.19).
+    """
+    rows = slice(0, outcome.steps)
+    trains, state = outcome.recording.trains[rows], outcome.recording.train_state[rows]
+    kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
+    rest = trains["tractive_force"] - trains["braking_force"]
+    rest = rest - trains["running_resistance"] - trains["gradient_force"]
+    rest = rest - kind.inertia_kg * trains["acceleration"]
+    driven = (state == STATE_MOTORING) | (state == STATE_COASTING) | (state == STATE_BRAKING)
+    return _largest((rest / (kind.mass_kg * GRAVITY_M_S2))[driven])
+
+
+def motion_error_m(outcome: Outcome, step_s: float) -> float:
+    """Largest |x' - x - h (v + v')/2|, and |v' - v - a h| h, of a train. [m]
+
+    References
+    ----------
+    [Boullanger2009]_, implied by eq. (2.29) and (2.30).
+    """
+    trains = outcome.recording.trains
+    before, after = trains[:-1], trains[1:]
+    # Present at both instants; positions that are not numbers stay, and fail.
+    both = (outcome.recording.train_state[:-1] >= 0) & (outcome.recording.train_state[:-1] != STATE_ARRIVED)
+    way = after["position"] - before["position"]
+    way = way - step_s * (before["speed"] + after["speed"]) / 2.0
+    speed = after["speed"] - before["speed"] - step_s * before["acceleration"]
+    return max(_largest(way[both]), _largest(speed[both]) * step_s, key=_nan_is_largest)

@@ -49,6 +49,7 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         for name, (dims, unit, label) in VARIABLES.items()
     }
     states = {
+        "units": "1",
         "long_name": "state of the train; -1: not on the line",
         "flag_values": list(range(len(TRAIN_STATES))),
         "flag_meanings": " ".join(TRAIN_STATES),
@@ -81,16 +82,19 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
     # A train that was on the line at the start has no departure.
     placed = np.array([train.phase != PENDING for train in trains], dtype=bool)
     departure_s = np.array([train.departure_step * h for train in trains], dtype=float)
-    seconds, metres = {"units": "s"}, {"units": "m"}
+    def of(unit: str, long_name: str) -> dict[str, str]:
+        return {"units": unit, "long_name": long_name}
+
+    node_m = np.array(plan.node_km) * 1e3
     return {
-        "time": ("time", np.arange(outcome.steps + 1) * h, {**seconds, "long_name": "time"}),
-        "train": ("train", [train.name for train in trains]),
-        "service": ("train", [train.service for train in trains]),
-        "departure_time": ("train", np.where(placed, np.nan, departure_s), seconds),
-        "arrival_time": ("train", arrival_s, seconds),
-        "node": ("node", plan.nodes),
-        "node_position": ("node", np.array(plan.node_km) * 1e3, metres),
-        "station": ("station", list(layout.stations)),
-        "station_position": ("station", np.array(layout.station_m), metres),
-        "branch": ("branch", plan.branch_labels()),
+        "time": ("time", np.arange(outcome.steps + 1) * h, of("s", "time from the start")),
+        "train": ("train", [train.name for train in trains], of("", "train")),
+        "service": ("train", [train.service for train in trains], of("", "service of the train")),
+        "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
+        "arrival_time": ("train", arrival_s, of("s", "arrival")),
+        "node": ("node", plan.nodes, of("", "node")),
+        "node_position": ("node", node_m, of("m", "position of the node")),
+        "station": ("station", list(layout.stations), of("", "converter station")),
+        "station_position": ("station", np.array(layout.station_m), of("m", "position")),
+        "branch": ("branch", plan.branch_labels(), of("", "branch")),
     }

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 import xarray as xr
 
@@ -83,9 +84,20 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
             dataset = stored.load()
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         scenario = load_scenario(folder / SCENARIO)
-    except (OSError, ValueError, KeyError, ScenarioError) as error:
+        _demand_a_result(dataset, summary)
+        # An attribute of one number comes back as that number.
+        dataset.attrs["station_energy_mwh"] = np.atleast_1d(dataset.attrs["station_energy_mwh"])
+    except (OSError, ValueError, KeyError, RuntimeError, ScenarioError) as error:
         raise ResultError(f"{folder} is damaged ({error}); run the scenario again") from error
     return scenario, dataset, summary
+
+
+def _demand_a_result(dataset: xr.Dataset, summary: Any) -> None:
+    """Raise a `ValueError` if the files are sound, but not those of a result."""
+    if not isinstance(summary, dict) or not {"status", "audit"} <= set(summary):
+        raise ValueError(f"{SUMMARY} is not the summary of a run")
+    if not {"position", "pantograph_voltage", "station_active_power"} <= set(dataset.data_vars):
+        raise ValueError(f"{DATASET} is not the dataset of a run")
 
 
 def next_folder(name: str, parent: Path = Path("results")) -> Path:

@@ -15,7 +15,10 @@ from tpss.errors import Finding
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     """All faults between the parts of a document."""
     line, supply = _table(document, "line"), _table(document, "supply")
-    findings = [*_line(line), *_supply(supply, _number(line, "length_km"))]
+    length = _number(line, "length_km")
+    if length is not None and length <= 0.0:
+        length = None  # a fault of its own; nothing can be measured against it
+    findings = [*_line(line, length), *_supply(supply, length)]
     places = {
         station["name"]: position
         for _, station in _items(line, "stations")
@@ -23,12 +26,16 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
         and (position := _number(station, "position_km")) is not None
     }
     trains = list(_table(document, "trains"))
+    findings += _service_names(document)
     for i, entry in _items(document, "traffic"):
         findings += _traffic(f"traffic.{i}", entry, trains, places)
     return [Finding(file, *finding) for finding in findings]
 
 
 _Fault = tuple[str, str, str, str]
+
+LARGEST = 1e300
+"""Numbers beyond it are no numbers here; a whole number may have any number of digits."""
 
 
 def _table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -45,9 +52,9 @@ def _items(document: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping
 
 def _number(table: Mapping[str, Any], key: str) -> float | None:
     value = table.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > LARGEST:
         return None
-    return float(value)
+    return float(value) if math.isfinite(value) else None
 
 
 def _outside(key: str, position: float | None, length: float | None) -> Iterator[_Fault]:
@@ -56,8 +63,7 @@ def _outside(key: str, position: float | None, length: float | None) -> Iterator
         yield key, f"{position:g}", problem, f"place it between 0 and {length:g} km"
 
 
-def _line(line: Mapping[str, Any]) -> Iterator[_Fault]:
-    length = _number(line, "length_km")
+def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     for i, station in _items(line, "stations"):
         yield from _outside(
             f"line.stations.{i}.position_km", _number(station, "position_km"), length
@@ -91,6 +97,24 @@ def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]
         yield key, str(high_voltage["transformers"]), problem, "give transformers_km instead"
 
 
+def _is_named(entry: Mapping[str, Any]) -> bool:
+    return isinstance(entry.get("name"), str)
+
+
+def _service_names(document: Mapping[str, Any]) -> Iterator[_Fault]:
+    """The n-th train of a service is called "<service> n" or "<service> initial n"."""
+    names = {entry.get("name") for _, entry in _items(document, "traffic") if _is_named(entry)}
+    for i, entry in _items(document, "traffic"):
+        name = entry.get("name")
+        if (
+            isinstance(name, str)
+            and name.endswith(" initial")
+            and name[: -len(" initial")] in names
+        ):
+            problem = "its trains would have the names of another service's initial trains"
+            yield f"traffic.{i}.name", repr(name), problem, "give it another name"
+
+
 def _unknown(key: str, name: object, known: list[str], kind: str) -> Iterator[_Fault]:
     if isinstance(name, str) and name not in known:
         near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
@@ -111,6 +135,8 @@ def _traffic(
         yield from _unknown(
             f"{key}.stops.{i}.station", stop.get("station"), list(places), "station"
         )
+    if not (isinstance(begin, str) and isinstance(end, str)):
+        return
     if begin not in places or end not in places:
         return
     start_km, end_km = places[begin], places[end]
@@ -126,7 +152,7 @@ def _traffic(
     yield from _stops(key, entry, places, start_km, end_km)
     for i, train in _items(entry, "initial_trains"):
         position = _number(train, "position_km")
-        if position is not None and not start_km <= position < end_km:
+        if position is not None and position >= 0.0 and not start_km <= position < end_km:
             problem = f"not between {begin} ({start_km:g} km) and {end} ({end_km:g} km)"
             place = f"{key}.initial_trains.{i}.position_km"
             yield place, f"{position:g}", problem, "place it on the way of its trains"
@@ -138,7 +164,7 @@ def _stops(
     before_km = start_km
     for i, stop in _items(entry, "stops"):
         name = stop.get("station")
-        if name not in places:
+        if not isinstance(name, str) or name not in places:
             continue
         if not before_km < places[name] < end_km:
             problem = f"at {places[name]:g} km, not between {before_km:g} and {end_km:g} km"

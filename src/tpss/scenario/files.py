@@ -1,6 +1,5 @@
 """Read the files of a scenario: TOML, and CSV profiles beside it."""
 
-import csv
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,8 @@ def read_text(path: Path, named_by: str = "") -> str:
         problem, remedy = "there is no such file", _remedy_for_missing(path)
     except UnicodeDecodeError:
         problem, remedy = "the file is not text in UTF-8", "save it as UTF-8"
+    except ValueError:
+        problem, remedy = "not a file name", "name a file"
     except OSError as error:
         problem = f"the file cannot be read: {error.strerror}"
         remedy = "check that it is a file and that you may read it"
@@ -42,7 +43,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     text = read_text(path)
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         remedy = "mend the file at that place; https://toml.io describes the format"
         raise ScenarioError([Finding(str(path), "", "", f"not TOML: {error}", remedy)]) from error
 
@@ -60,7 +61,7 @@ def read_gradients(path: Path) -> list[dict[str, float]]:
         for number, text in enumerate(read_text(path, "line.gradients_file").splitlines(), 1)
         if text.strip() and not text.lstrip().startswith("#")
     ]
-    rows = [(number, [cell.strip() for cell in next(csv.reader([text]))]) for number, text in lines]
+    rows = [(number, [cell.strip() for cell in text.split(",")]) for number, text in lines]
     if not rows or tuple(rows[0][1]) != PROFILE_COLUMNS:
         found = ",".join(rows[0][1]) if rows else ""
         remedy = f"begin with the line {','.join(PROFILE_COLUMNS)}"

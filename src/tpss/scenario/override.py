@@ -69,6 +69,6 @@ def parse_assignment(text: str) -> tuple[str, Any]:
         raise ScenarioError([Finding("--set", text, "", "not of the form KEY=VALUE", remedy)])
     try:
         value = tomllib.loads(f"value = {raw}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         value = raw.strip()
     return path.strip(), value

@@ -1,6 +1,6 @@
 """The trains: a library model, any of its fields overridden."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -66,6 +66,20 @@ class Train(Part):
         description="Reactance of the filter on the transformer's secondary side; -0.45 for an "
         "Rc4; leave it out: no filter.",
     )
+
+    @model_validator(mode="after")
+    def _adhesive_mass_is_a_part_of_the_mass(self) -> Self:
+        if self.adhesive_mass_t > self.mass_t:
+            raise PydanticCustomError(
+                "conflict",
+                "adhesive_mass_t ({adhesive} t) is more than mass_t ({mass} t)",
+                {
+                    "adhesive": self.adhesive_mass_t,
+                    "mass": self.mass_t,
+                    "remedy": "raise mass_t, which is of the whole train, or lower adhesive_mass_t",
+                },
+            )
+        return self
 
     @model_validator(mode="before")
     @classmethod

@@ -1,5 +1,6 @@
 """A whole scenario: the line, its supply, its trains, its traffic, and how to simulate them."""
 
+import copy
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -54,9 +55,11 @@ class Scenario(Part):
         ScenarioError
             The document has faults; the error lists all of them.
         """
-        scenario = validate(cls, dict(document), Path(source))
-        scenario._document = dict(document)
-        scenario._source = Path(source)
+        own = copy.deepcopy(dict(document))
+        scenario = validate(cls, own, Path(source))
+        scenario._document = own
+        # A change of the working folder must not lead to other files.
+        scenario._source = Path(source).absolute()
         return scenario
 
     @property

@@ -17,6 +17,21 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 _Location = tuple[int | str, ...]
 
+_PROBLEMS = {
+    "missing": "it is missing",
+    "string_type": "not text",
+    "bool_type": "neither true nor false",
+    "int_type": "not a whole number",
+    "int_from_float": "not a whole number",
+    "finite_number": "not a finite number",
+    "tuple_type": "not a list",
+    "dict_type": "not a table",
+    "model_type": "not a table, nor a name of the library",
+    "string_too_short": "an empty name",
+    "string_pattern_mismatch": "not a plain name",
+    "too_short": "the list is too short",
+}
+
 _REMEDIES = {
     "missing": "add it",
     "string_type": "write text in quotes",
@@ -50,8 +65,13 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     try:
         scenario = model.model_validate(document)
     except ValidationError as error:
-        for detail in error.errors(include_url=False):
-            findings.append(_finding(model, dict(detail), source))
+        details: list[dict[str, Any]] = [dict(d) for d in error.errors(include_url=False)]
+        locations: set[_Location] = {detail["loc"] for detail in details}
+        findings += [
+            _finding(model, detail, source)
+            for detail in details
+            if not _follows_from_another(detail, locations, document)
+        ]
     findings += cross_check(document, str(source))
     if findings or scenario is None:
         raise ScenarioError(findings)
@@ -78,6 +98,21 @@ def _insert_profile(document: dict[str, Any], source: Path) -> list[Finding]:
     return []
 
 
+def _follows_from_another(
+    detail: dict[str, Any], locations: set[_Location], document: dict[str, Any]
+) -> bool:
+    """Whether a finding only repeats another: a list that lost its faulty items, and the like."""
+    location = detail["loc"]
+    if detail["type"] == "too_short":
+        return any(other[: len(location)] == location != other for other in locations)
+    if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
+        # Without its model, a train lacks all that the library would give it.
+        return location[2] != "model" and (*location[:2], "model") in locations
+    if location == ("line", "gradients"):
+        return "gradients_file" in document.get("line", {}) and detail["type"] == "missing"
+    return False
+
+
 def _finding(model: type[BaseModel], detail: dict[str, Any], source: Path) -> Finding:
     kind, location = detail["type"], detail["loc"]
     shown = "" if kind in ("missing", "either_or", "conflict") else _short(detail["input"])
@@ -95,7 +130,8 @@ def _explain(
     model: type[BaseModel], kind: str, location: _Location, detail: dict[str, Any]
 ) -> tuple[str, str]:
     context, message = detail.get("ctx", {}), detail["msg"]
-    unit = units.label(str(location[-1])) if location else ""
+    words = [part for part in location if isinstance(part, str)]
+    unit = units.label(words[-1]) if words else ""
     if kind == "extra_forbidden":
         return "unknown key", _suggest(str(location[-1]), _known_keys(model, location[:-1]))
     if kind == "unknown_name":
@@ -109,7 +145,11 @@ def _explain(
         return "out of range", f"{message[0].lower()}{message[1:]}{f' {unit}' if unit else ''}"
     if kind == "conflict":
         return message, context["remedy"]
-    return message, _REMEDIES.get(kind, "see the scenario reference for this key")
+    if location == ("line", "gradients") and kind == "missing":
+        return "no gradients are given", "add gradients, or gradients_file with a CSV file"
+    return _PROBLEMS.get(kind, message), _REMEDIES.get(
+        kind, "see the commented examples for this key"
+    )
 
 
 def _suggest(word: str, known: Iterable[str]) -> str:

@@ -296,7 +296,8 @@ def _progress(run: Run, steps: int | None) -> Progress:
 def _outcome(run: Run, status: str, studied: int) -> Outcome:
     """The run as it ended, its recording cut to the steps carried out."""
     rows = run.step + 1
-    count = sum(train.departure_step <= run.step for train in run.trains)
+    # A train that is due at the last instant has not departed.
+    count = sum(train.departure_step < max(run.step, 1) for train in run.trains)
     kept = run.recording
     recording = Recording(
         trains=kept.trains[:rows, :count],
