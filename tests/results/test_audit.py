@@ -1,0 +1,167 @@
+"""The audit passes sound runs, and finds what has been tampered with in their recordings."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tpss import Scenario, load_scenario
+from tpss.model import build_model
+from tpss.model.traffic import build_services
+from tpss.results.audit import LIMITS, Audit, audit
+from tpss.simulation.run import Outcome, run_services
+from tpss.simulation.state import Model
+
+from conftest import EXAMPLES
+from scenarios import short_line
+
+HALF_AN_HOUR = {"simulation.until": None, "simulation.duration_min": 30.0}
+STEP, TRAIN, NODE, STATION = 3, 1, 1, 1
+
+
+class Case:
+    """A run that can be audited, and tampered with."""
+
+    def __init__(self, scenario: Scenario, steps: int | None) -> None:
+        self.model: Model
+        self.model, layout = build_model(scenario)
+        services = build_services(scenario, self.model)
+        self.outcome: Outcome = run_services(self.model, services, steps)
+        self.node_level = np.array(layout.supply.node_level)
+
+    def audit(self, outcome: Outcome | None = None) -> Audit:
+        return audit(outcome or self.outcome, self.model, self.node_level)
+
+    def audit_of_forgery(self, records: str, field: str, place: int, change: Any) -> Audit:
+        """Audit of a copy in which one recorded value is changed."""
+        forged = np.copy(getattr(self.outcome.recording, records)).view(np.recarray)
+        forged[field][STEP, place] = change(forged[field][STEP, place])
+        recording = self.outcome.recording._replace(**{records: forged})
+        return self.audit(replace(self.outcome, recording=recording))
+
+
+@pytest.fixture(scope="module")
+def main_line():
+    """Ten trains on the thesis's main line for 30 minutes."""
+    return Case(load_scenario(EXAMPLES / "thesis_160km.toml", HALF_AN_HOUR), 60)
+
+
+@pytest.fixture(scope="module")
+def arrival():
+    """A single train on a short line until it has arrived."""
+    return Case(short_line(), None)
+
+
+@pytest.mark.parametrize("name", ["main_line", "arrival"])
+def test_a_sound_run_passes(request, name):
+    checked = request.getfixturevalue(name).audit()
+    assert checked.passed
+    assert checked.failures == ()
+    for figure, limit in LIMITS.items():
+        assert 0.0 <= getattr(checked, figure) <= limit
+    assert 0.5 * 16.5e3 <= checked.lowest_voltage_v <= checked.highest_voltage_v <= 1.2 * 16.5e3
+
+
+@pytest.mark.parametrize("catenary", ["BT", "AT"])
+@pytest.mark.parametrize("line", [None, {"type": "132kV", "transformers": 1}])
+def test_runs_pass_on_every_supply(catenary, line):
+    changes = {"supply.catenary": catenary, "supply.high_voltage_line": line}
+    assert Case(short_line(changes), 60).audit().passed
+
+
+FORGERIES = [
+    ("trains", "active_power", TRAIN, lambda p: p + 1.0, "power_mismatch_va"),
+    ("trains", "reactive_power", TRAIN, lambda q: q + 1.0, "power_mismatch_va"),
+    ("trains", "pantograph_voltage", TRAIN, lambda v: v + 0.01, "power_mismatch_va"),
+    ("trains", "pantograph_angle", TRAIN, lambda a: a + 1e-6, "power_mismatch_va"),
+    ("trains", "position", TRAIN, lambda x: x + 1.0, "power_mismatch_va"),
+    ("nodes", "node_voltage", NODE, lambda v: v + 0.01, "power_mismatch_va"),
+    ("nodes", "node_angle", NODE, lambda a: a + 1e-6, "power_mismatch_va"),
+    ("stations", "station_active_power", STATION, lambda p: p + 1.0, "power_mismatch_va"),
+    ("stations", "station_reactive_power", STATION, lambda q: q + 1.0, "power_mismatch_va"),
+    ("stations", "station_active_power", STATION, lambda p: p + 1e3, "converter_residual"),
+    ("stations", "station_reactive_power", STATION, lambda q: q + 1e3, "converter_residual"),
+    ("stations", "active_converters", STATION, lambda n: n - 1.0, "converter_residual"),
+    ("stations", "station_active_power", STATION, lambda p: 1.01 * p, "network_balance"),
+    ("trains", "active_power", TRAIN, lambda p: 1.01 * p, "network_balance"),
+    ("trains", "active_power", TRAIN, lambda p: 1.01 * p, "traction_balance"),
+    ("trains", "running_resistance", TRAIN, lambda f: 1.01 * f, "traction_balance"),
+    ("trains", "gradient_force", TRAIN, lambda f: f + 1e3, "traction_balance"),
+    ("trains", "braking_force", TRAIN, lambda f: f + 1e3, "traction_balance"),
+]
+
+
+@pytest.mark.parametrize(
+    ("records", "field", "place", "change", "figure"),
+    FORGERIES,
+    ids=[f"{field} {figure}" for _, field, _, _, figure in FORGERIES],
+)
+def test_a_forged_value_exceeds_a_limit(main_line, records, field, place, change, figure):
+    checked = main_line.audit_of_forgery(records, field, place, change)
+    assert getattr(checked, figure) > LIMITS[figure]
+    assert any(failure.startswith(f"{figure} is") for failure in checked.failures)
+    assert not checked.passed
+
+
+def test_the_mismatch_is_the_power_that_was_added(main_line):
+    """A train is billed 250 W more than its voltage and current ask for."""
+    checked = main_line.audit_of_forgery("trains", "active_power", TRAIN, lambda p: p + 250.0)
+    assert checked.power_mismatch_va == pytest.approx(250.0, abs=0.01)
+
+
+def test_the_network_balance_is_the_share_that_was_added(main_line):
+    """A hundredth more from one station in one of 60 steps."""
+    power = main_line.outcome.recording.stations["station_active_power"][:60]
+    added = 0.01 * power[STEP, STATION]
+    share = added / (power.sum() + added)
+    forged = ("stations", "station_active_power", STATION, lambda p: 1.01 * p)
+    checked = main_line.audit_of_forgery(*forged)
+    assert checked.network_balance == pytest.approx(share, rel=1e-6)
+
+
+def test_losses_that_vanish_are_missed(main_line):
+    losses = main_line.outcome.recording.network_losses.copy()
+    losses[STEP] = 0.0
+    recording = main_line.outcome.recording._replace(network_losses=losses)
+    checked = main_line.audit(replace(main_line.outcome, recording=recording))
+    assert [failure.split(" is ")[0] for failure in checked.failures] == ["network_balance"]
+
+
+def test_a_station_missed_by_more_than_a_millimetre_is_found(arrival):
+    assert arrival.audit().stop_error_m < 1e-6
+    clock = arrival.outcome.state.clock.copy()
+    clock["stop_error_m"] = 0.002
+    state = arrival.outcome.state._replace(clock=clock)
+    checked = arrival.audit(replace(arrival.outcome, state=state))
+    assert checked.failures == ("stop_error_m is 0.002, limit 0.001",)
+
+
+def test_a_voltage_outside_the_plausible_range_is_found(main_line):
+    checked = main_line.audit_of_forgery("nodes", "node_voltage", NODE, lambda v: 0.49 * 16.5e3)
+    assert checked.lowest_voltage_v == pytest.approx(0.49 * 16.5e3)
+    assert "voltages leave the range of 8250 to 19800 V" in checked.failures
+
+
+def test_billing_at_the_start_of_a_step_reports_its_gap_but_is_not_judged_by_it():
+    """A train that speeds up is billed too little, a train that does not is billed right."""
+    case = Case(short_line({"simulation.power_sampling": "start"}), None)
+    checked = case.audit()
+    assert checked.traction_balance > 1e-4
+    assert checked.passed
+
+
+def test_billing_at_the_start_is_judged_by_all_else():
+    case = Case(short_line({"simulation.power_sampling": "start", **HALF_AN_HOUR}), 60)
+    checked = case.audit_of_forgery("trains", "active_power", 0, lambda p: p + 1e6)
+    assert {failure.split(" is ")[0] for failure in checked.failures} == {
+        "power_mismatch_va",
+        "network_balance",
+    }
+
+
+def test_the_figures_are_plain_values_by_name(arrival):
+    figures = arrival.audit().as_dict()
+    assert {*LIMITS, "lowest_voltage_v", "highest_voltage_v", "failures", "passed"} == set(figures)
+    assert figures["passed"] is True
+    assert figures["failures"] == []
