@@ -5,13 +5,14 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from scenarios import run, short_line
 
 import tpss
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.results.audit import audit
 from tpss.simulation.run import run_services
+
+from scenarios import run, short_line
 
 ONE_STATION = [{"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 2}]
 

@@ -311,7 +311,9 @@ def motion_error_m(outcome: Outcome, step_s: float) -> float:
     trains = outcome.recording.trains
     before, after = trains[:-1], trains[1:]
     # Present at both instants; positions that are not numbers stay, and fail.
-    both = (outcome.recording.train_state[:-1] >= 0) & (outcome.recording.train_state[:-1] != STATE_ARRIVED)
+    both = (outcome.recording.train_state[:-1] >= 0) & (
+        outcome.recording.train_state[:-1] != STATE_ARRIVED
+    )
     way = after["position"] - before["position"]
     way = way - step_s * (before["speed"] + after["speed"]) / 2.0
     speed = after["speed"] - before["speed"] - step_s * before["acceleration"]

@@ -82,6 +82,7 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
     # A train that was on the line at the start has no departure.
     placed = np.array([train.phase != PENDING for train in trains], dtype=bool)
     departure_s = np.array([train.departure_step * h for train in trains], dtype=float)
+
     def of(unit: str, long_name: str) -> dict[str, str]:
         return {"units": unit, "long_name": long_name}
 

@@ -14,9 +14,7 @@ def explain(outcome: Outcome, model: Model) -> dict[str, str]:
     if outcome.status == "stalled":
         return _stall(outcome, time_min)
     if outcome.status == INTERRUPTED:
-        problem = (
-            f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
-        )
+        problem = f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
         return {"problem": problem, "advice": "Run it again for the whole."}
     return {}
 
