@@ -78,8 +78,8 @@ def test_a_high_voltage_line_has_132_kv_and_the_library_s_transformers():
     line = {"supply.high_voltage_line": {"type": "132kV", "transformers_km": [10.0]}}
     high_voltage = short_line(line).supply.high_voltage_line
     assert high_voltage.base_kv == 132.0
-    assert high_voltage.line_transformer.rating_mva == 16.0
-    assert high_voltage.station_transformer.rating_mva == 25.0
+    assert high_voltage.line_transformer.x_ohm == 0.85
+    assert high_voltage.station_transformer.x_ohm == 0.54
 
 
 def test_a_train_starts_from_its_model_and_overrides_what_it_gives():

@@ -9,8 +9,6 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-KINDS = ("locomotives", "catenaries", "converters", "transformers", "high_voltage_lines")
-
 
 @cache
 def entries(kind: str) -> dict[str, dict[str, Any]]:

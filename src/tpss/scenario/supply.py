@@ -33,7 +33,6 @@ class Catenary(Part):
 class Transformer(Part):
     """A transformer between high-voltage line and contact line."""
 
-    rating_mva: Real = Field(gt=0, description="Rated power.")
     r_ohm: Real = Field(gt=0, description="Resistance on the contact line's side.")
     x_ohm: Real = Field(gt=0, description="Reactance on the contact line's side.")
 

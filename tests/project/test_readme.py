@@ -1,0 +1,33 @@
+"""What the README shows is run as it stands."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text("utf-8")
+
+
+def test_the_python_example_runs(tmp_path, monkeypatch, capsys):
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    (snippet,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(compile(snippet, "README.md", "exec"), {})
+    assert "eastbound 1" in capsys.readouterr().out
+    assert (tmp_path / "results" / "table-3-3" / "result.nc").is_file()
+
+
+def test_the_pipeline_on_a_clean_checkout_uses_the_readme_s_commands():
+    blocks = re.findall(r"```\n(.*?)```", README, re.DOTALL)
+    pipeline = (ROOT / ".ci" / "run").read_text("utf-8")
+    assert blocks[0].splitlines() == ["pip install .", "tpss run examples/thesis_160km.toml"]
+    install, test = blocks[1].splitlines()
+    assert test in pipeline
+    assert install.removeprefix("pip install ") in pipeline
+
+
+def test_the_product_speaks_of_itself_only():
+    """No path of another folder, no mention of where it was made."""
+    for file in [*ROOT.glob("*.md"), *ROOT.glob("docs/*"), *ROOT.glob("examples/*")]:
+        text = file.read_text("utf-8")
+        assert "../shared" not in text, file
+        assert "model.md" not in text, file
