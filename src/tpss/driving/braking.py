@@ -30,7 +30,7 @@ References
 
 import math
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 
 ROUNDING = 1e-10
 """Fractions of a step closer than this to 0 or 1 count as such: a stop is then off by about this
@@ -118,7 +118,7 @@ def plan_length(hold: int, full: int, last: float) -> int:
     return hold + 1 + full + (1 if last > 0.0 else 0)
 
 
-@kernel
+@inlined
 def plan_fraction(step: int, hold: int, first: float, full: int, last: float) -> float:
     """Fraction of the highest retardation in a plan's step, counted from 0."""
     if step < hold:
@@ -130,7 +130,7 @@ def plan_fraction(step: int, hold: int, first: float, full: int, last: float) ->
     return last
 
 
-@kernel
+@inlined
 def highest_speed_that_stops(
     speed_m_s: float, distance_m: float, retardation_m_s2: float, step_s: float
 ) -> float:

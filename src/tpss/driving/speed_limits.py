@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.braking import shortest_stop
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.gradient import step_index
 
 Array = npt.NDArray[np.float64]
@@ -33,7 +33,7 @@ BISECTIONS = 60
 """Halvings after which the bracket of a speed is as wide as a rounding."""
 
 
-@kernel
+@inlined
 def slowing_distance(
     speed_m_s: float, limit_m_s: float, retardation_m_s2: float, step_s: float
 ) -> float:

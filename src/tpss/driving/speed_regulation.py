@@ -5,10 +5,10 @@ step; with long steps that overshoots.  Here the smaller of the ideal and the hi
 at any speed, which differs only there.
 """
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined
 
 
-@kernel
+@inlined
 def wanted_acceleration(speed_m_s: float, wanted_m_s: float, step_s: float) -> float:
     r"""Acceleration that brings a train to the wanted speed at the next step. [m/s²]
 
@@ -28,7 +28,7 @@ def wanted_acceleration(speed_m_s: float, wanted_m_s: float, step_s: float) -> f
     return (wanted_m_s - speed_m_s) / step_s
 
 
-@kernel
+@inlined
 def ideal_force(acceleration_m_s2: float, resistance_n: float, inertia_kg: float) -> float:
     r"""Force at the wheel rim that gives an acceleration; negative: the brakes give it. [N]
 

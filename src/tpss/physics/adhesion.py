@@ -1,13 +1,13 @@
 """Adhesion between wheel and rail: the tractive effort that the rails can take."""
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined
 from tpss.physics.constants import GRAVITY_M_S2
 
 DRY = 0
 WET = 1
 
 
-@kernel
+@inlined
 def adhesion_limit(adhesive_mass_kg: float, speed: float, rail: int) -> float:
     r"""Largest tractive force that wheel and rail transmit. [N]
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined
 
 CONVERTER_LAW = np.dtype(
     [
@@ -34,7 +34,7 @@ Law = Any
 """A record with the fields of `CONVERTER_LAW`."""
 
 
-@kernel
+@inlined
 def converter_voltage(reactive_power_var: float, converters: float, law: Law) -> float:
     r"""Terminal voltage of a station. [V]
 
@@ -47,7 +47,7 @@ def converter_voltage(reactive_power_var: float, converters: float, law: Law) ->
     return law.no_load_voltage_v - law.droop_v_per_var * reactive_power_var / converters
 
 
-@kernel
+@inlined
 def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, float]:
     r"""Angle behind the 50 Hz side, seen at 16.7 Hz, and its slope in P. [rad], [rad/W]
 
@@ -71,7 +71,7 @@ def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, floa
     return angle, slope
 
 
-@kernel
+@inlined
 def terminal_voltage(
     power_w: float, reactive_power_var: float, converters: float, law: Law
 ) -> tuple[float, float, float, float, float]:

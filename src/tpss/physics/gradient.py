@@ -7,7 +7,7 @@ on beyond the profile's ends.
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 
 Array = npt.NDArray[np.float64]
 
@@ -25,7 +25,7 @@ def step_index(position_m: float, from_m: Array) -> int:
     return low
 
 
-@kernel
+@inlined
 def gradient_at(position_m: float, from_m: Array, gradient: Array) -> float:
     """Gradient at a position: rise over run, positive uphill. [1]
 
@@ -45,7 +45,7 @@ def gradient_at(position_m: float, from_m: Array, gradient: Array) -> float:
     return gradient[step_index(position_m, from_m)]
 
 
-@kernel
+@inlined
 def mean_gradient(position_m: float, way_m: float, from_m: Array, gradient: Array) -> float:
     """Altitude difference over a way, divided by the way; the gradient at a point if it is zero. [1]
 

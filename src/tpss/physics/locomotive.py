@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.motor import (
     NEW,
     armature_current,
@@ -116,7 +116,7 @@ Machine = Any
 """A record of `MACHINE`."""
 
 
-@kernel
+@inlined
 def machine_force(
     motor_force_n: float, resistance_n: float, rotor_mass_kg: float, inertia_kg: float
 ) -> float:
@@ -141,7 +141,7 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
     return (force_n - resistance_n) / inertia_kg
 
 
-@kernel
+@inlined
 def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machine) -> None:
     """Evaluate what depends on the speed alone, if the speed has changed since that was done last.
 
@@ -163,7 +163,7 @@ def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machin
     train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
 
 
-@kernel
+@inlined
 def prove_free_band(kind: TrainType, train: Demand, machine: Machine) -> None:
     """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
@@ -247,7 +247,7 @@ def train_armature_current(
     )
 
 
-@kernel
+@inlined
 def note_cap(kind: TrainType, train: Demand) -> None:
     """Evaluate power and current of a train at its force cap, which no voltage moves, once a step."""
     motor, speed, power, _ = motor_state(train.force_cap_n, kind, train)
@@ -255,7 +255,7 @@ def note_cap(kind: TrainType, train: Demand) -> None:
     train.cap_current_a = train_armature_current(motor, speed, kind, train)
 
 
-@kernel
+@inlined
 def motor_power_demand(
     force_n: float, slope_n_per_v: float, kind: TrainType, train: Demand
 ) -> tuple[float, float]:
@@ -266,7 +266,7 @@ def motor_power_demand(
     return power, power_slope * slope_n_per_v
 
 
-@kernel
+@inlined
 def armature_demand(
     force_n: float, slope_n_per_v: float, kind: TrainType, train: Demand
 ) -> tuple[float, float]:
@@ -284,7 +284,7 @@ def armature_demand(
     return current, current * relative * slope_n_per_v
 
 
-@kernel
+@inlined
 def train_bridge_sine(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
@@ -310,7 +310,7 @@ def train_bridge_sine(
     return sine, slope
 
 
-@kernel
+@inlined
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
     kind: TrainType, train: Demand, machine: Machine,

@@ -3,7 +3,7 @@
 "New" is the thesis's model, "former" the one of the program before it.
 """
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 
 NEW = 0
 FORMER = 1
@@ -113,7 +113,7 @@ def armature_current(
     return motor_force_n * slip_factor * speed / highest_v
 
 
-@kernel
+@inlined
 def motor_current(armature_current_a: float, model: int) -> float:
     """Motor current I_D as the model defines it: of one motor, or formerly of all four. [A]
 

@@ -5,7 +5,7 @@ Sign: positive is inductive, drawn by the train.
 
 import math
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
 from tpss.physics.neural_network import FeedForwardNetwork, logsig, outside, tansig
 
@@ -52,7 +52,7 @@ def bridge_sine(
     return sine, by_motor, by_locomotive
 
 
-@kernel
+@inlined
 def bridge_outside_training(
     motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork
 ) -> bool:
@@ -81,7 +81,7 @@ def bridge_reactive_power(
     return locomotive_voltage_v * armature_current_a * math.sqrt(2.0) / math.pi * sine
 
 
-@kernel
+@inlined
 def power_factor(speed_m_s: float, network: FeedForwardNetwork) -> float:
     """Power factor λ of the locomotive over speed, trained on 0 to 160 km/h. [1]
 
@@ -109,7 +109,7 @@ def reactive_ratio(factor: float) -> float:
     return math.sqrt(1.0 - factor * factor) / factor
 
 
-@kernel
+@inlined
 def filter_reactive_power(locomotive_voltage_v: float, reactance_ohm: float) -> float:
     r"""Reactive power drawn by the locomotive's filter; negative: it feeds. [var]
 

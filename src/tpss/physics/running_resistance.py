@@ -5,7 +5,7 @@ Sign: a positive force opposes forward motion.  Units: SI; the suffix of a name 
 
 from typing import NamedTuple
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined
 from tpss.physics.constants import GRAVITY_M_S2
 
 
@@ -17,7 +17,7 @@ class DavisCoefficients(NamedTuple):
     c_n_s2_per_m2: float
 
 
-@kernel
+@inlined
 def running_resistance(speed_m_s: float, davis: DavisCoefficients) -> float:
     r"""Resistance of rolling and air on straight level track. [N]
 
@@ -36,7 +36,7 @@ def running_resistance(speed_m_s: float, davis: DavisCoefficients) -> float:
     return davis.a_n + davis.b_n_s_per_m * speed_m_s + davis.c_n_s2_per_m2 * speed_m_s**2
 
 
-@kernel
+@inlined
 def gradient_force(mass_kg: float, gradient: float) -> float:
     r"""Component of the train's weight along the track. [N]
 

@@ -7,7 +7,7 @@ a step into a bias for each neuron.
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.neural_network import FeedForwardNetwork, outside, tansig
 
 Array = npt.NDArray[np.float64]
@@ -18,7 +18,7 @@ NEURONS = 15
 SPEED, VOLTAGE, CURRENT, BIAS, OUTPUT = 0, 1, 2, 3, 4
 
 
-@kernel
+@inlined
 def speed_and_current_bias(
     speed_m_s: float, current_a: float, network: FeedForwardNetwork, bias: Array
 ) -> None:
@@ -86,7 +86,7 @@ def steepest_slope(network: FeedForwardNetwork) -> float:
     return bound
 
 
-@kernel
+@inlined
 def effort_outside_training(
     speed_m_s: float, voltage_v: float, current_a: float, network: FeedForwardNetwork
 ) -> bool:

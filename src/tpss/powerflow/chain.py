@@ -22,7 +22,7 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
 from tpss.powerflow.network import Complexes, Flow, Loads, Network
@@ -39,7 +39,7 @@ SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
 
 
-@kernel
+@inlined
 def sort_by_position(standing: Any, count: int, trains: Any) -> None:
     """Sort the first `count` places by the trains' positions; equal ones keep their number's order.
 

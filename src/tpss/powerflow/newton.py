@@ -36,7 +36,7 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
@@ -239,7 +239,7 @@ def _find_direction(network: Network, flow: Flow) -> float:
     return sign
 
 
-@kernel
+@inlined
 def _mark_base(flow: Flow) -> None:
     for node in range(flow.nodes.size):
         flow.nodes[node].base_v = flow.nodes[node].voltage_v
@@ -257,7 +257,7 @@ def _take_step(size: float, flow: Flow) -> None:
         section.current_a = section.base_a + size * section.direction_a
 
 
-@kernel
+@inlined
 def _close_gaps(flow: Flow) -> None:
     """Spread what is left of each section's gap over its pieces, in proportion to their length.
 
@@ -275,7 +275,7 @@ def _close_gaps(flow: Flow) -> None:
             flow.standing[k].voltage_v -= section.gap_v * (passed_m / total_m)
 
 
-@kernel
+@inlined
 def voltages_are_plausible(flow: Flow) -> bool:
     """Whether every node and train lies in the band that a sound line never leaves."""
     low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V

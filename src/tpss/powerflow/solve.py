@@ -19,7 +19,7 @@ SHORTEST_STEP = 1e-4
 """Continuation gives up where the load can grow by less than this share. [1]"""
 
 
-@kernel
+@inlined
 def predict(flow: Flow) -> None:
     """Start from the straight line through the solutions of the last two time steps."""
     for n in range(flow.nodes.size):
@@ -30,7 +30,7 @@ def predict(flow: Flow) -> None:
         section.current_a = 2.0 * section.last_a - section.before_a
 
 
-@kernel
+@inlined
 def remember(first: int, flow: Flow) -> None:
     """Keep the solution of a time step for the prediction of the next; `first`: there is no other."""
     for n in range(flow.nodes.size):

@@ -11,7 +11,7 @@ from tpss.simulation.state import DWELLING, Counter, Model, Recording, State, St
 from tpss.simulation.traffic import depart, list_trains, move, remove_arrived
 
 
-@kernel
+@inlined
 def find_stalled(count: int, state: State) -> bool:
     """Whether a train would roll back, or stands with no force to start; note the first one."""
     for k in range(count):

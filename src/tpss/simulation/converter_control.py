@@ -33,7 +33,7 @@ def station_loading(power: complex, converters: float, rating_va: float) -> floa
     return magnitude(power) / (converters * rating_va)
 
 
-@kernel
+@inlined
 def converters_needed(mean_loading: float, converters: float, installed: int) -> float:
     r"""Converters that would carry the mean power at no more than 85 % loading, at least one.
 

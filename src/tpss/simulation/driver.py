@@ -5,7 +5,7 @@ from typing import Any
 from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
 from tpss.driving.speed_limits import heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
 from tpss.physics.locomotive import note_cap, prove_free_band, take_speed
@@ -46,7 +46,7 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
     return allowed
 
 
-@kernel
+@inlined
 def planned_speed(train: Any, full_braking_m_s: float) -> float:
     """Speed that the braking plan of a train asks for after this step. [m/s]"""
     hold, full, last = train.plan_hold, train.plan_full, train.plan_last
@@ -56,7 +56,7 @@ def planned_speed(train: Any, full_braking_m_s: float) -> float:
     return max(0.0, train.speed_m_s - fraction * full_braking_m_s)
 
 
-@kernel
+@inlined
 def oppose(train: Any, kind: Any, model: Model) -> None:
     """Forces on a train that do not depend on what its driver does, for this step.
 

@@ -48,7 +48,7 @@ def record_instant(step: int, trains: Any, recording: Recording) -> None:
                 recording.train_state[step, i] = STATE_ARRIVED
 
 
-@kernel
+@inlined
 def state_code(train: Any) -> int:
     """Code of `train_state` of a train on the line."""
     if train.phase == DWELLING:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
     ARRIVED,
@@ -17,7 +17,7 @@ from tpss.simulation.state import (
 )
 
 
-@kernel
+@inlined
 def depart(step: int, trains: Any) -> None:
     """Put trains on the line whose departure has come."""
     for i in range(trains.size):
@@ -25,7 +25,7 @@ def depart(step: int, trains: Any) -> None:
             trains[i].phase = DRIVING
 
 
-@kernel
+@inlined
 def remove_arrived(trains: Any) -> None:
     """Take trains off the line that stand at their destination."""
     for i in range(trains.size):
@@ -39,7 +39,7 @@ def is_on_line(phase: int) -> bool:
     return phase in (DRIVING, PLANNED, DWELLING)
 
 
-@kernel
+@inlined
 def list_trains(trains: Any, flow: Flow) -> int:
     """Write the trains on the line into `flow.standing`, unsorted; return their number."""
     count = 0
@@ -117,7 +117,7 @@ def move(step: int, train: Any, model: Model, state: State) -> None:
         stand_at_stop(step + 1, train, model)
 
 
-@kernel
+@inlined
 def stand_at_stop(step: int, train: Any, model: Model) -> None:
     """A train has come to its stop: it has arrived, dwells, or goes on at once."""
     stop = model.stops[train.route, train.next_stop]
