@@ -87,6 +87,14 @@ def _compiled(function: _Function, inline: str) -> _Function:
     return compiled
 
 
+def switch(value: int) -> int:
+    """Constant that selects what a kernel does when it runs.
+
+    numba compiles a kernel once more for each plain number or boolean that it is called with.
+    """
+    return np.int64(value)  # type: ignore[return-value]
+
+
 def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
     """Array of records whose fields are attributes, in compiled and in plain Python.
 

@@ -60,7 +60,7 @@ def test_every_citation_stands_in_the_bibliography():
 def test_every_function_of_physics_cites_a_source():
     """Helpers that compute no equation of their own are named here."""
     helpers = {
-        "mean_gradient", "step_index", "outside", "network_record", "steepest_slope",
+        "mean_gradient", "step_index", "outside", "exponential",
         "effort_outside_training", "bridge_outside_training", "take_speed", "prove_free_band",
         "train_armature_current", "train_bridge_sine", "note_cap", "motor_power_demand",
         "armature_demand",

@@ -7,7 +7,7 @@ from tpss import library
 from tpss.kernel import blank_records, records
 from tpss.physics.locomotive import MACHINE, TRAIN_TYPE
 from tpss.physics.motor import FORMER, NEW
-from tpss.physics.neural_network import fold_scaling
+from tpss.physics.neural_network import build_network
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR, reactive_ratio
 from tpss.scenario.rolling_stock import Train
 from tpss.units import si
@@ -27,7 +27,7 @@ def build_machine() -> Any:
         ("bridge_sine", (1.0, 1.0)),
         ("power_factor", (KM_H,)),
     ):
-        machine[0][name] = fold_scaling(coefficients[name], units)
+        machine[0][name] = build_network(coefficients[name], units)
     return machine
 
 

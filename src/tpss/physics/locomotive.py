@@ -26,7 +26,7 @@ from tpss.physics.motor import (
     motor_force,
     motor_voltage,
 )
-from tpss.physics.neural_network import network_record
+from tpss.physics.neural_network import NETWORK, NEURONS
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     POWER_FACTOR,
@@ -38,19 +38,18 @@ from tpss.physics.reactive_power import (
     reactive_ratio,
 )
 from tpss.physics.tractive_effort import (
-    NEURONS,
+    VOLTAGE,
     maximum_motor_force,
     speed_and_current_bias,
-    steepest_slope,
 )
 
 MACHINE = np.dtype(
     (
         np.record,
         [
-            ("tractive_effort", network_record(NEURONS, 3)),
-            ("bridge_sine", network_record(16, 2)),
-            ("power_factor", network_record(10, 1)),
+            ("tractive_effort", NETWORK),
+            ("bridge_sine", NETWORK),
+            ("power_factor", NETWORK),
         ],
     ),
 )
@@ -95,6 +94,7 @@ DEMAND = np.dtype(
         ("free_force_n", float),  # what the machine gives there
         ("free_band_v", float),  # how far from it that is proven; negative: nowhere
         ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
+        ("neurons", float, (NEURONS,)),  # scratch of a network
         ("cap_power_w", float),  # of the motors at the force cap
         ("cap_current_a", float),
         ("active_power_w", float),  # what came of it at the voltage last tried
@@ -152,28 +152,30 @@ def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machin
     if train.speed_m_s == train.bias_speed_m_s:
         if 0.0 < train.free_band_v <= abs(voltage_v - train.free_voltage_v):
             train.free_voltage_v = voltage_v
-            train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
+            train.free_force_n, _ = maximum_motor_force(
+                voltage_v, train.bias, network, train.neurons
+            )
         return
     train.bias_speed_m_s = train.speed_m_s
     if kind.reactive_model == POWER_FACTOR:
-        factor = power_factor(train.speed_m_s, machine.power_factor)
+        factor = power_factor(train.speed_m_s, machine.power_factor, train.neurons)
         train.reactive_ratio = reactive_ratio(factor)
     speed_and_current_bias(train.speed_m_s, kind.highest_current_a, network, train.bias)
     train.free_voltage_v = voltage_v
-    train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network)
+    train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network, train.neurons)
 
 
 @inlined
 def prove_free_band(kind: TrainType, train: Demand, machine: Machine) -> None:
     """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
-    The slope of the force is bounded (`steepest_slope`), so a margin in force is a margin in
+    The slope of the force is bounded (`NETWORK.steepest`), so a margin in force is a margin in
     voltage; within it the network need not be evaluated again, and nothing is approximated.
     """
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
     margin = train.free_force_n - needed
-    train.free_band_v = margin / steepest_slope(machine.tractive_effort)
+    train.free_band_v = margin / machine.tractive_effort.steepest[VOLTAGE]
     train.machine_force_n = train.free_force_n
 
 
@@ -192,7 +194,9 @@ def wheel_force(
         return 0.0, 0.0
     if abs(voltage_v - train.free_voltage_v) < train.free_band_v:
         return cap, 0.0
-    force, slope = maximum_motor_force(voltage_v, train.bias, machine.tractive_effort)
+    force, slope = maximum_motor_force(
+        voltage_v, train.bias, machine.tractive_effort, train.neurons
+    )
     train.machine_force_n = force
     if force < 0.0:
         force, slope = 0.0, 0.0
@@ -297,7 +301,7 @@ def train_bridge_sine(
         kind.voltage_model,
     )
     sine, by_motor, by_locomotive = bridge_sine(
-        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine
+        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine, train.neurons
     )
     train.bridge_sine = sine
     if sine <= 0.0:

@@ -12,6 +12,10 @@ into the weights once, on loading; a kernel then sees SI units only:
 
 and, with the output's half range h = (y_max - y_min)/2, w'² = h w² and b'² = h (b² + 1) + y_min.
 
+The hidden layer is either tansig or logsig.  As tansig(y) = 2 logsig(2y) - 1, that too is affine and
+folded in, so one kernel serves every network.  All have `NEURONS` neurons, the surplus ones without
+weight: loops over them have no rest, and the compiler turns them into vector instructions.
+
 References
 ----------
 [Boullanger2009]_, eq. (B.1)-(B.4), (C.1), (C.10), (D.1), (D.8), (E.1), (E.6).
@@ -23,37 +27,40 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
+from tpss.kernel import blank_records, inlined, kernel
+from tpss.physics.exponential import exponential
 
 Array = npt.NDArray[np.float64]
 
+NEURONS = 16
+"""Neurons of a record: as many as the largest network has, and a whole number of vectors."""
 
-def network_record(neurons: int, inputs: int) -> np.dtype[Any]:
-    """Type of a network's record, with the scaling folded in: inputs and output in SI units.
+MOST_INPUTS = 3
 
-    ``hidden`` has a row for each neuron: the weights of the inputs, the bias, and the weight of the
-    neuron in the output.  ``trained`` has a row for each input: the ends of its training range.
-    """
-    return np.dtype(
-        (
-            np.record,
-            [
-                ("hidden", float, (neurons, inputs + 2)),
-                ("output_bias", float),
-                ("trained", float, (inputs, 2)),
-            ],
-        )
-    )
-
+NETWORK = np.dtype(
+    (
+        np.record,
+        [
+            ("weight", float, (MOST_INPUTS, NEURONS)),
+            ("bias", float, (NEURONS,)),
+            ("output", float, (NEURONS,)),  # weight of each neuron in the output
+            ("output_bias", float),
+            ("slope", float, (MOST_INPUTS, NEURONS)),  # output times weight
+            ("steepest", float, (MOST_INPUTS,)),  # bound of the output's slope over each input
+            ("trained", float, (MOST_INPUTS, 2)),  # ends of each input's training range
+        ],
+    ),
+)
+"""A network of logsig neurons with the scaling folded in: inputs and output in SI units."""
 
 FeedForwardNetwork = Any
-"""A record with the fields of `network_record`."""
+"""A record of `NETWORK`."""
 
 
 def fold_scaling(
     coefficients: Mapping[str, Any], input_to_si: Sequence[float]
-) -> tuple[Array, float, Array]:
-    """Fields of a network's record, in SI units, from the coefficients as they are printed.
+) -> tuple[Array, Array, Array, float, Array]:
+    """Weights, biases, output weights, output bias and training range in SI units.
 
     Parameters
     ----------
@@ -74,35 +81,98 @@ def fold_scaling(
     half_range = (coefficients["output_max"] - coefficients["output_min"]) / 2.0
     weight = printed * 2.0 / (high - low)
     bias = np.array(coefficients["b1"]) - printed @ (2.0 * low / (high - low) + 1.0)
-    output_weight = half_range * np.array(coefficients["w2"], dtype=float)
+    output = half_range * np.array(coefficients["w2"], dtype=float)
     output_bias = float(half_range * (coefficients["b2"] + 1.0) + coefficients["output_min"])
-    hidden = np.column_stack([weight, bias, output_weight])
-    return hidden, output_bias, np.column_stack([low, high])
+    return weight, bias, output, output_bias, np.column_stack([low, high])
 
 
-@kernel
-def tansig(y: float) -> float:
-    r"""Hyperbolic tangent as the thesis writes it, 2 / (1 + e^{-2y}) - 1.
+def tansig_as_logsig(
+    weight: Array, bias: Array, output: Array, output_bias: float
+) -> tuple[Array, Array, Array, float]:
+    r"""A tansig network as a network of logsig neurons, by tansig(y) = 2 logsig(2y) - 1.
+
+    .. math:: \text{tansig}(y) = \tanh(y) = \frac{2}{1 + e^{-2y}} - 1
 
     References
     ----------
     [Boullanger2009]_, eq. (B.3), (C.17), (F.8), (F.12).
     """
-    return 2.0 / (1.0 + np.exp(-2.0 * y)) - 1.0
+    return 2.0 * weight, 2.0 * bias, 2.0 * output, output_bias - float(output.sum())
+
+
+def build_network(coefficients: Mapping[str, Any], input_to_si: Sequence[float]) -> Any:
+    """Record of `NETWORK` from the coefficients as they are printed.
+
+    Parameters
+    ----------
+    coefficients : mapping
+        As in `fold_scaling`, and ``transfer``: tansig or logsig.
+    input_to_si : sequence of float
+        What one printed unit of each input is in SI units.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (B.1)-(B.4).
+    """
+    weight, bias, output, output_bias, trained = fold_scaling(coefficients, input_to_si)
+    if coefficients["transfer"] == "tansig":
+        weight, bias, output, output_bias = tansig_as_logsig(weight, bias, output, output_bias)
+    neurons, inputs = weight.shape
+    network = blank_records(1, NETWORK)[0]
+    network.weight[:inputs, :neurons] = weight.T
+    network.bias[:neurons] = bias
+    network.output[:neurons] = output
+    network.output_bias = output_bias
+    network.slope[:] = network.weight * network.output
+    # The derivative of logsig never exceeds 1/4.
+    network.steepest[:] = np.abs(network.slope).sum(axis=1) / 4.0
+    network.trained[:] = (-np.inf, np.inf)
+    network.trained[:inputs] = trained
+    return network
 
 
 @kernel
-def logsig(y: float) -> float:
-    """Logistic function, 1 / (1 + e^{-y}).
+def logsig(neurons: Array) -> None:
+    """Put the logistic function of each value, 1 / (1 + e^{-y}), in its place, shape (NEURONS,).
 
     References
     ----------
     [Boullanger2009]_, eq. (B.4), (F.16).
     """
-    return 1.0 / (1.0 + np.exp(-y))
+    for n in range(NEURONS):
+        neurons[n] = 1.0 / (1.0 + exponential(-neurons[n]))
 
 
 @kernel
+def logsig_slope(neurons: Array) -> None:
+    """Put the derivative in the place of each value of `logsig`, s (1 - s), shape (NEURONS,).
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (B.4).
+    """
+    for n in range(NEURONS):
+        neurons[n] = neurons[n] * (1.0 - neurons[n])
+
+
+@kernel
+def weigh(weight: Array, neurons: Array) -> float:
+    """Sum of weighted neurons, both of shape (NEURONS,), in four sums that do not wait for each other.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (B.2).
+    """
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    for n in range(0, NEURONS, 4):
+        a += weight[n] * neurons[n]
+        b += weight[n + 1] * neurons[n + 1]
+        c += weight[n + 2] * neurons[n + 2]
+        d += weight[n + 3] * neurons[n + 3]
+    return (a + b) + (c + d)
+
+
+@inlined
 def outside(value: float, network: FeedForwardNetwork, k: int) -> bool:
     """Whether input `k` lies outside the range on which the network was trained."""
     return value < network.trained[k, 0] or value > network.trained[k, 1]

@@ -5,9 +5,21 @@ Sign: positive is inductive, drawn by the train.
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from tpss.kernel import inlined, kernel
 from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
-from tpss.physics.neural_network import FeedForwardNetwork, logsig, outside, tansig
+from tpss.physics.neural_network import (
+    NEURONS,
+    FeedForwardNetwork,
+    logsig,
+    logsig_slope,
+    outside,
+    weigh,
+)
+
+Array = npt.NDArray[np.float64]
 
 POWER_FACTOR = 0
 DOUBLE_BRIDGE = 1
@@ -18,7 +30,7 @@ TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
 
 @kernel
 def bridge_sine(
-    motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork
+    motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork, neurons: Array
 ) -> tuple[float, float, float]:
     r"""Network for the sine of the firing angle, β, and its slopes in both voltages. [1], [1/V]
 
@@ -31,25 +43,22 @@ def bridge_sine(
         U_di, trained on 0 to 770 V. [V]
     locomotive_voltage_v : float
         U_locoRc, trained on 214.28 to 642.84 V. [V]
+    neurons : Array, shape (NEURONS,)
+        Scratch.
 
     References
     ----------
     [Boullanger2009]_, eq. (D.1)-(D.15) and (F.15)-(F.18).
     """
-    sine = network.output_bias
-    by_motor = 0.0
-    by_locomotive = 0.0
-    hidden = network.hidden
-    for neuron in range(hidden.shape[0]):
-        w_motor, w_locomotive = hidden[neuron, 0], hidden[neuron, 1]
-        activation = logsig(
-            hidden[neuron, 2] + w_motor * motor_voltage_v + w_locomotive * locomotive_voltage_v
+    weight = network.weight
+    for n in range(NEURONS):
+        neurons[n] = (
+            network.bias[n] + weight[0, n] * motor_voltage_v + weight[1, n] * locomotive_voltage_v
         )
-        slope = hidden[neuron, 3] * activation * (1.0 - activation)
-        sine += hidden[neuron, 3] * activation
-        by_motor += slope * w_motor
-        by_locomotive += slope * w_locomotive
-    return sine, by_motor, by_locomotive
+    logsig(neurons)
+    sine = network.output_bias + weigh(network.output, neurons)
+    logsig_slope(neurons)
+    return sine, weigh(network.slope[0], neurons), weigh(network.slope[1], neurons)
 
 
 @inlined
@@ -82,20 +91,26 @@ def bridge_reactive_power(
 
 
 @inlined
-def power_factor(speed_m_s: float, network: FeedForwardNetwork) -> float:
+def power_factor(speed_m_s: float, network: FeedForwardNetwork, neurons: Array) -> float:
     """Power factor λ of the locomotive over speed, trained on 0 to 160 km/h. [1]
 
     The curve drops from 0.92 to 0.64 just above 40 km/h, where the second bridge starts.
+
+    Parameters
+    ----------
+    speed_m_s : float
+        Train speed. [m/s]
+    neurons : Array, shape (NEURONS,)
+        Scratch.
 
     References
     ----------
     [Boullanger2009]_, eq. (E.1)-(E.13) and (F.11)-(F.14).
     """
-    factor = network.output_bias
-    hidden = network.hidden
-    for neuron in range(hidden.shape[0]):
-        factor += hidden[neuron, 2] * tansig(hidden[neuron, 1] + hidden[neuron, 0] * speed_m_s)
-    return factor
+    for n in range(NEURONS):
+        neurons[n] = network.bias[n] + network.weight[0, n] * speed_m_s
+    logsig(neurons)
+    return network.output_bias + weigh(network.output, neurons)
 
 
 @kernel

@@ -8,21 +8,25 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
-from tpss.physics.neural_network import FeedForwardNetwork, outside, tansig
+from tpss.physics.neural_network import (
+    NEURONS,
+    FeedForwardNetwork,
+    logsig,
+    logsig_slope,
+    outside,
+    weigh,
+)
 
 Array = npt.NDArray[np.float64]
 
-NEURONS = 15
-"""Neurons of the network. [Boullanger2009]_, section 2.2.1."""
-
-SPEED, VOLTAGE, CURRENT, BIAS, OUTPUT = 0, 1, 2, 3, 4
+SPEED, VOLTAGE, CURRENT = 0, 1, 2
 
 
 @inlined
 def speed_and_current_bias(
     speed_m_s: float, current_a: float, network: FeedForwardNetwork, bias: Array
 ) -> None:
-    """Write what speed and current limit add to each neuron into `bias`, shape (neurons,).
+    """Write what speed and current limit add to each neuron into `bias`, shape (NEURONS,).
 
     Parameters
     ----------
@@ -35,18 +39,14 @@ def speed_and_current_bias(
     ----------
     [Boullanger2009]_, eq. (F.7), the inputs that the voltage does not move.
     """
-    hidden = network.hidden
-    for neuron in range(NEURONS):
-        bias[neuron] = (
-            hidden[neuron, BIAS]
-            + hidden[neuron, SPEED] * speed_m_s
-            + hidden[neuron, CURRENT] * current_a
-        )
+    weight = network.weight
+    for n in range(NEURONS):
+        bias[n] = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
 
 
 @kernel
 def maximum_motor_force(
-    voltage_v: float, bias: Array, network: FeedForwardNetwork
+    voltage_v: float, bias: Array, network: FeedForwardNetwork, neurons: Array
 ) -> tuple[float, float]:
     """Largest force of all motors at a line voltage, and its slope. [N], [N/V]
 
@@ -56,34 +56,21 @@ def maximum_motor_force(
     ----------
     voltage_v : float
         Voltage at the pantograph; trained on 10.5 to 16.5 kV. [V]
-    bias : Array, shape (neurons,)
+    bias : Array, shape (NEURONS,)
         From `speed_and_current_bias`.
+    neurons : Array, shape (NEURONS,)
+        Scratch.
 
     References
     ----------
     [Boullanger2009]_, eq. (C.1)-(C.17) and (F.8)-(F.10).
     """
-    force = network.output_bias
-    slope = 0.0
-    hidden = network.hidden
-    for neuron in range(NEURONS):
-        weight, output = hidden[neuron, VOLTAGE], hidden[neuron, OUTPUT]
-        activation = tansig(bias[neuron] + weight * voltage_v)
-        force += output * activation
-        slope += output * weight * (1.0 - activation * activation)
-    return force, slope
-
-
-@kernel
-def steepest_slope(network: FeedForwardNetwork) -> float:
-    """Bound of the slope of `maximum_motor_force` at any speed, voltage and current. [N/V]
-
-    The derivative of tansig never exceeds 1, so no slope exceeds the sum of the weights' products.
-    """
-    bound = 0.0
-    for neuron in range(NEURONS):
-        bound += abs(network.hidden[neuron, OUTPUT] * network.hidden[neuron, VOLTAGE])
-    return bound
+    for n in range(NEURONS):
+        neurons[n] = bias[n] + network.weight[VOLTAGE, n] * voltage_v
+    logsig(neurons)
+    force = network.output_bias + weigh(network.output, neurons)
+    logsig_slope(neurons)
+    return force, weigh(network.slope[VOLTAGE], neurons)
 
 
 @inlined

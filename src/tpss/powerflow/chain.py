@@ -22,17 +22,17 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import inlined, kernel, switch
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
-from tpss.powerflow.network import Complexes, Flow, Loads, Network
-from tpss.powerflow.pairs import squared
+from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.pairs import scaled, squared
 
-WARM = 0
+WARM = switch(0)
 """A pass takes the trains' currents at the voltages of the state, and finds all derivatives."""
-FLAT = 1
+FLAT = switch(1)
 """... takes the currents at base voltage, as if they did not depend on the voltage."""
-CHECK = 2
+CHECK = switch(2)
 """... is a warm one without derivatives: for a state that is expected to be the solution."""
 
 SHORTEST_PIECE_M = 1.0
@@ -87,7 +87,7 @@ def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
     return short
 
 
-@kernel
+@inlined
 def train_current(
     i: int, voltage: complex, scale: float, start: int, loads: Loads
 ) -> tuple[complex, complex, complex]:
@@ -112,31 +112,33 @@ def train_current(
     p, q, p_slope, q_slope = electrical_demand(
         magnitude, loads.types[train.train_type], train, loads.machine[0]
     )
-    # 1 / conj(V) = V / |V|²
-    current = scale * complex(p, -q) * (voltage / square)
+    reciprocal = scaled(voltage, 1.0 / square)  # 1 / conj(V)
+    current = complex(scale * p, -scale * q) * reciprocal
     if start == FLAT:
         return current, 0j, 0j
-    y1 = scale * complex(p_slope, -q_slope) / (2.0 * magnitude)
-    y2 = (y1 * voltage - current) * (voltage / square)
+    half = scale / (2.0 * magnitude)
+    y1 = complex(half * p_slope, -half * q_slope)
+    y2 = (y1 * voltage - current) * reciprocal
     return current, y1, y2
 
 
-@kernel
-def _push_piece(z: complex, w: Complexes) -> None:
-    for by in range(2):
-        for part in range(2):
-            w[0, by, part] -= z * w[1, by, part]
+@inlined
+def _push_piece(
+    z: complex, v_p: complex, v_q: complex, i_p: complex, i_q: complex
+) -> tuple[complex, complex]:
+    """Sensitivity (v_p, v_q) of the voltage behind a piece of line."""
+    return v_p - z * i_p, v_q - z * i_q
 
 
-@kernel
-def _push_load(y1: complex, y2: complex, w: Complexes) -> None:
-    for by in range(2):
-        p, q = w[0, by, 0], w[0, by, 1]
-        w[1, by, 0] -= y1 * p + y2 * q.conjugate()
-        w[1, by, 1] -= y1 * q + y2 * p.conjugate()
+@inlined
+def _push_load(
+    y1: complex, y2: complex, v_p: complex, v_q: complex, i_p: complex, i_q: complex
+) -> tuple[complex, complex]:
+    """Sensitivity (i_p, i_q) of the current behind a load."""
+    return i_p - y1 * v_p - y2 * v_q.conjugate(), i_q - y1 * v_q - y2 * v_p.conjugate()
 
 
-@kernel
+@inlined
 def run_chain(
     s: int, scale: float, start: int, network: Network, flow: Flow, loads: Loads
 ) -> complex:
@@ -146,41 +148,47 @@ def run_chain(
     and end current into `flow.sensitivity`.
     """
     section, found = network.sections[s], flow.sections[s]
-    z = section.impedance_ohm_per_m
-    half_jb = 0.5j * section.susceptance_s_per_m
+    z, half_b = section.impedance_ohm_per_m, 0.5 * section.susceptance_s_per_m
     voltage = flow.nodes[section.start_node].voltage_v
     current = found.current_a
-    w = flow.sensitivity
-    w[:] = 0.0
-    w[0, 0, 0] = 1.0
-    w[1, 1, 0] = 1.0
-    shunt = 0j
-    for k in range(found.first, found.end):
-        # 1. The piece before the train, with its half shunt at the start.
-        place = flow.standing[k]
-        shunt += half_jb * place.piece_m
-        impedance = z * place.piece_m
-        current -= shunt * voltage
-        voltage -= impedance * current
-        # 2. The train; the half shunt at the piece's end waits for that of the next piece.
-        load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
-        place.voltage_v = voltage
-        current -= load
-        if start != CHECK:
-            _push_load(shunt, 0j, w)
-            _push_piece(impedance, w)
-            _push_load(y1, y2, w)
-        shunt = half_jb * place.piece_m
-    # 3. The piece before the end node.
-    half_shunt = half_jb * found.closing_m
-    impedance = z * found.closing_m
-    shunt += half_shunt
+    # Sensitivities: a of the voltage and c of the current to the start voltage, b and d to the
+    # start current.
+    a_p, a_q, b_p, b_q = 1.0 + 0j, 0j, 0j, 0j
+    c_p, c_q, d_p, d_q = 0j, 0j, 1.0 + 0j, 0j
+    # 1. The half shunt at the start of the first piece.
+    ahead_m = found.closing_m
+    if found.first < found.end:
+        ahead_m = flow.standing[found.first].piece_m
+    shunt = complex(0.0, half_b * ahead_m)
     current -= shunt * voltage
+    c_p -= shunt
+    for k in range(found.first, found.end):
+        # 2. The piece before the train.
+        place = flow.standing[k]
+        piece_m = ahead_m
+        impedance = scaled(z, piece_m)
+        voltage -= impedance * current
+        place.voltage_v = voltage
+        # 3. The train, and the half shunts of the pieces that meet there.
+        ahead_m = found.closing_m if k + 1 == found.end else flow.standing[k + 1].piece_m
+        shunt = complex(0.0, half_b * (piece_m + ahead_m))
+        load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
+        current -= load + shunt * voltage
+        if start != CHECK:
+            y1 += shunt
+            a_p, a_q = _push_piece(impedance, a_p, a_q, c_p, c_q)
+            b_p, b_q = _push_piece(impedance, b_p, b_q, d_p, d_q)
+            c_p, c_q = _push_load(y1, y2, a_p, a_q, c_p, c_q)
+            d_p, d_q = _push_load(y1, y2, b_p, b_q, d_p, d_q)
+    # 4. The piece before the end node, and the half shunt at its end.
+    impedance = scaled(z, ahead_m)
+    shunt = complex(0.0, half_b * ahead_m)
     voltage -= impedance * current
-    current -= half_shunt * voltage
+    found.end_current_a = current - shunt * voltage
     if start != CHECK:
-        _push_load(shunt, 0j, w)
-        _push_piece(impedance, w)
-        _push_load(half_shunt, 0j, w)
-    found.end_current_a = current
+        w = flow.sensitivity
+        w[0, 0, 0], w[0, 0, 1] = _push_piece(impedance, a_p, a_q, c_p, c_q)
+        w[0, 1, 0], w[0, 1, 1] = _push_piece(impedance, b_p, b_q, d_p, d_q)
+        w[1, 0, 0], w[1, 0, 1] = c_p - shunt * w[0, 0, 0], c_q - shunt * w[0, 0, 1]
+        w[1, 1, 0], w[1, 1, 1] = d_p - shunt * w[0, 1, 0], d_q - shunt * w[0, 1, 1]
     return voltage

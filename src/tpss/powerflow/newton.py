@@ -42,7 +42,7 @@ from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
 from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
 from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude
+from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude, scaled
 
 TOLERANCE = 1e-10
 """Largest mismatch of a solution, in per unit of base power or base voltage."""
@@ -64,7 +64,7 @@ IMPLAUSIBLE_VOLTAGE = 2
 WRONG_BRANCH = 3
 
 
-@kernel
+@inlined
 def source_law(
     s: int, voltage: complex, current: complex, network: Network, flow: Flow
 ) -> tuple[complex, complex, complex]:
@@ -80,7 +80,7 @@ def source_law(
     law = magnitude * direction
     f_p = 1j * law * angle_by_p
     f_q = direction * by_q + 1j * law * angle_by_q
-    return law, (f_p - 1j * f_q) / 2.0, (f_p + 1j * f_q) / 2.0
+    return law, scaled(f_p - 1j * f_q, 0.5), scaled(f_p + 1j * f_q, 0.5)
 
 
 @kernel
@@ -89,7 +89,7 @@ def _add(block: Any, p: complex, q: complex) -> None:
     block.q += q
 
 
-@kernel
+@inlined
 def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     """Add a section's blocks and gap currents to the node system; return the sign of det B."""
     section, found, w = network.sections[s], flow.sections[s], flow.sensitivity
@@ -109,7 +109,7 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     return math.copysign(1.0, determinant(w[0, 1, 0], w[0, 1, 1]))
 
 
-@kernel
+@inlined
 def _leave_by_branches(network: Network, flow: Flow) -> None:
     """Start the nodes' leaving currents with those into the lumped branches."""
     for n in range(flow.nodes.size):
@@ -122,7 +122,7 @@ def _leave_by_branches(network: Network, flow: Flow) -> None:
         end.leaving_current_a -= current
 
 
-@kernel
+@inlined
 def _stamp_branches(network: Network, flow: Flow) -> None:
     """Start the linear system with the lumped branches."""
     for k in range(flow.blocks.size):
@@ -138,7 +138,7 @@ def _stamp_branches(network: Network, flow: Flow) -> None:
         flow.blocks[branch.block_bb].p += branch.admittance_s
 
 
-@kernel
+@inlined
 def _turn_source_row(
     number: int, law: complex, s1: complex, s2: complex, network: Network, flow: Flow
 ) -> None:
@@ -156,7 +156,7 @@ def _turn_source_row(
     node.right_side = law - voltage - apply(t_p, t_q, node.right_side)
 
 
-@kernel
+@inlined
 def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
     """Residual of node `n`, and its row of the linear system. [p.u.]
 
@@ -224,7 +224,7 @@ def evaluate(
     return mismatch, merit, sign
 
 
-@kernel
+@inlined
 def _find_direction(network: Network, flow: Flow) -> float:
     """Solve for the Newton step; return the sign of the node system's determinant."""
     sign = solve_blocks(network.pattern, flow.blocks, flow.nodes)

@@ -7,7 +7,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 
 from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import inlined
 from tpss.physics.locomotive import acceleration, electrical_demand, wheel_force
 from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
@@ -71,7 +71,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     return share, passes
 
 
-@kernel
+@inlined
 def settle(train: Any, model: Model) -> None:
     """Force, brakes and next speed of a train at the voltage of the solution.
 

@@ -18,7 +18,7 @@ from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
 from tpss.simulation.traffic import distance_to_stop
 
 
-@kernel
+@inlined
 def target_speed(train: Any, kind: Any, model: Model) -> float:
     """Speed that a train is to have after this step, if its machine can. [m/s]
 
@@ -106,7 +106,7 @@ def aim(train: Any, model: Model) -> None:
     note_cap(kind, train)
 
 
-@kernel
+@inlined
 def prepare(train: Any, model: Model) -> None:
     """Everything about a train that stays fixed while this step is solved.
 

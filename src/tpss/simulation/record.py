@@ -133,7 +133,7 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     recording.network_losses[step] = losses
 
 
-@kernel
+@inlined
 def section_losses(s: int, model: Model, state: State) -> float:
     """Losses of a contact-line section, I²R piece by piece. [W]"""
     section, found, flow = model.network.sections[s], state.flow.sections[s], state.flow

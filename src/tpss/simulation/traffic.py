@@ -56,7 +56,7 @@ def distance_to_stop(train: Any, model: Model) -> float:
     return model.stops[train.route, train.next_stop].position_m - train.position_m
 
 
-@kernel
+@inlined
 def must_plan(train: Any, model: Model) -> bool:
     """Whether this step, driven as it is, would leave a train too little way to stop.
 
@@ -90,7 +90,7 @@ def begin_plan(train: Any, model: Model) -> None:
     train.plan_last = last
 
 
-@kernel
+@inlined
 def move(step: int, train: Any, model: Model, state: State) -> None:
     """Bring a train to the next instant: v' = v + a h, x' = x + v h + a h²/2.
 

@@ -44,7 +44,7 @@ from tpss.physics.locomotive import (
 )
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR
-from tpss.physics.tractive_effort import steepest_slope
+from tpss.physics.tractive_effort import VOLTAGE
 
 from alternatives import central_difference
 
@@ -298,7 +298,7 @@ def test_band_is_the_margin_of_force_over_the_steepest_slope(as_run):
     """For 100 kN at the rim the motors need 100 484.7 N of the 169 170.2 N that they can give."""
     train = demand(1e5)
     as_run(prove_free_band)(freight(), train, MACHINE)
-    margin_n = train.free_band_v * steepest_slope(MACHINE.tractive_effort)
+    margin_n = train.free_band_v * MACHINE.tractive_effort.steepest[VOLTAGE]
     assert margin_n == pytest.approx(169_170.2 - 100_484.7, abs=0.1)
     assert train.free_voltage_v == 15e3
 

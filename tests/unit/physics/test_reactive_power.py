@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tpss.model.trains import build_machine
+from tpss.physics.neural_network import NEURONS
 from tpss.physics.reactive_power import (
     TRANSFORMER_RATIO,
     bridge_outside_training,
@@ -22,6 +23,7 @@ from tpss.physics.reactive_power import (
 from alternatives import central_difference, exact_bridge_sine
 
 MACHINE = build_machine()[0]
+SCRATCH = np.zeros(NEURONS)
 
 # U_di [V], U_locoRc [V], the network's β, eq. (3.1)
 SINES = [
@@ -56,7 +58,7 @@ FACTORS = [
 
 @pytest.mark.parametrize(("motor_v", "locomotive_v", "sine", "exact"), SINES)
 def test_bridge_network_reproduces_the_printed_tables(as_run, motor_v, locomotive_v, sine, exact):
-    given, _, _ = as_run(bridge_sine)(motor_v, locomotive_v, MACHINE.bridge_sine)
+    given, _, _ = as_run(bridge_sine)(motor_v, locomotive_v, MACHINE.bridge_sine, SCRATCH)
     assert given == pytest.approx(sine, rel=1e-9, abs=1e-12)
     assert exact_bridge_sine(motor_v, locomotive_v) == pytest.approx(exact, abs=1e-12)
 
@@ -64,9 +66,11 @@ def test_bridge_network_reproduces_the_printed_tables(as_run, motor_v, locomotiv
 @pytest.mark.parametrize(("motor_v", "locomotive_v"), [row[:2] for row in SINES])
 def test_slopes_are_those_of_the_bridge_network(as_run, motor_v, locomotive_v):
     def sine(of_motor, of_locomotive):
-        return as_run(bridge_sine)(of_motor, of_locomotive, MACHINE.bridge_sine)[0]
+        return as_run(bridge_sine)(of_motor, of_locomotive, MACHINE.bridge_sine, SCRATCH)[0]
 
-    _, by_motor, by_locomotive = as_run(bridge_sine)(motor_v, locomotive_v, MACHINE.bridge_sine)
+    _, by_motor, by_locomotive = as_run(bridge_sine)(
+        motor_v, locomotive_v, MACHINE.bridge_sine, SCRATCH
+    )
     motor_slope = central_difference(lambda u: sine(u, locomotive_v), motor_v, 1e-3)
     locomotive_slope = central_difference(lambda u: sine(motor_v, u), locomotive_v, 1e-3)
     assert by_motor == pytest.approx(motor_slope, rel=1e-6, abs=1e-9)
@@ -78,7 +82,7 @@ def test_bridge_network_is_within_two_hundredths_of_the_exact_sine():
     motor_v, locomotive_v = np.meshgrid(np.arange(0.0, 771.0, 2.0), np.arange(214.28, 642.84, 2.0))
     exact = exact_bridge_sine(motor_v, locomotive_v)
     pairs = zip(motor_v.flat, locomotive_v.flat, strict=True)
-    given = np.array([bridge_sine(*pair, MACHINE.bridge_sine)[0] for pair in pairs])
+    given = np.array([bridge_sine(*pair, MACHINE.bridge_sine, SCRATCH)[0] for pair in pairs])
     assert np.sqrt(np.mean((given - exact.ravel()) ** 2)) < 0.02
 
 
@@ -93,7 +97,7 @@ def test_extrapolation_is_noticed(as_run, motor_v, locomotive_v, extrapolates):
 
 @pytest.mark.parametrize(("speed_kmh", "factor"), FACTORS)
 def test_power_factor_reproduces_the_printed_tables(as_run, speed_kmh, factor):
-    given = as_run(power_factor)(speed_kmh / 3.6, MACHINE.power_factor)
+    given = as_run(power_factor)(speed_kmh / 3.6, MACHINE.power_factor, SCRATCH)
     assert given == pytest.approx(factor, rel=1e-9)
 
 
