@@ -1,0 +1,165 @@
+"""A recorded step as a pandapower net: the network read and solved by other software than ours.
+
+The net is laid out from the scenario's own tables in their own units (km, ohm per km, nF per km),
+without `tpss.model` and `tpss.powerflow`, after [Boullanger2009]_, figure 2-4 and appendix A.2.  The
+high-voltage line keeps its own voltage, with real transformers; a transformer between the stations of
+an AT system has a bus between it and its connection impedance.  From the result come the trains
+(position, P and Q) and, in place of each converter station's law, voltage and angle at its node.
+
+A single-phase network (U, P) equals a balanced three-phase one with U between its phases, P in all
+three together, and the same ohms.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pandapower as pp
+import pandas as pd
+import xarray as xr
+
+import tpss
+from tpss.scenario.supply import Catenary, Supply
+
+LINE_KV = 16.5
+BASE_MVA = 10.0
+SHORTEST_KM = 1e-3  # trains closer than a metre to each other or to a node count as a metre away
+
+Net = pp.auxiliary.pandapowerNet
+Buses = dict[float, int]  # by position in km
+
+
+def solve_with_pandapower(scenario: tpss.Scenario, moment: xr.Dataset) -> Net:
+    """Net of one instant of a result's dataset, solved from a flat start."""
+    net = pp.create_empty_network(f_hz=scenario.supply.frequency_hz, sn_mva=BASE_MVA)
+    stations_km = [station.position_km for station in scenario.supply.converter_stations]
+    transformers_km = positions_of_transformers(scenario.supply)
+    # A node at every feeding point and at the line's ends; a feeder's bus may lie behind it.
+    points_km = sorted({0.0, scenario.line.length_km, *stations_km, *transformers_km})
+    contact = {km: add_bus(net, "contact line", km) for km in points_km}
+    lay_contact_line(net, scenario.supply.catenary, contact, add_trains(net, moment))
+    feeding = {km: behind_connection(net, scenario.supply, contact, km) for km in stations_km}
+    if scenario.supply.high_voltage_line is not None:
+        lay_high_voltage_line(net, scenario.supply, contact, feeding, transformers_km)
+    add_sources(net, scenario.supply, feeding, moment)
+    # 1 mVA, just above what the rounding at pieces of one metre of line may leave.
+    pp.runpp(net, init="flat", calculate_voltage_angles=True, tolerance_mva=1e-9, numba=False)
+    return net
+
+
+def positions_of_transformers(supply: Supply) -> list[float]:
+    """Transformers between stations: as listed, or as many between neighbouring stations."""
+    line = supply.high_voltage_line
+    if line is None or line.transformers_km is not None:
+        return list(line.transformers_km) if line else []
+    stations = sorted(station.position_km for station in supply.converter_stations)
+    inner = [np.linspace(a, b, line.transformers + 2)[1:-1] for a, b in pairwise(stations)]
+    return list(np.concatenate(inner))
+
+
+def add_bus(net: Net, name: str, km: float, kv: float = LINE_KV) -> int:
+    return int(pp.create_bus(net, vn_kv=kv, name=f"{name} at {km:g} km"))
+
+
+def add_trains(net: Net, moment: xr.Dataset) -> list[tuple[float, int]]:
+    """A bus with a load for each train on the line; gives their positions [km] and buses."""
+    trains = moment.where(np.isfinite(moment.active_power), drop=True)
+    buses = pp.create_buses(net, trains.train.size, vn_kv=LINE_KV, name=trains.train.values)
+    megawatt, megavar = trains.active_power.values / 1e6, trains.reactive_power.values / 1e6
+    pp.create_loads(net, buses, p_mw=megawatt, q_mvar=megavar)
+    return list(zip(trains.position.values / 1e3, buses, strict=True))
+
+
+def lay_contact_line(
+    net: Net, catenary: Catenary, contact: Buses, trains: list[tuple[float, int]]
+) -> None:
+    """A line between neighbours, half of its capacitance at either end, of one metre at least.
+
+    A train at a node stands behind it, except at the end of the line.
+    """
+    *nodes, end = contact.items()
+    places = [*sorted([*nodes, *trains], key=lambda place: place[0]), end]
+    positions_km, buses = zip(*places, strict=True)
+    pp.create_lines_from_parameters(
+        net, buses[:-1], buses[1:], np.maximum(SHORTEST_KM, np.diff(positions_km)),
+        r_ohm_per_km=catenary.r_ohm_per_km, x_ohm_per_km=catenary.x_ohm_per_km,
+        c_nf_per_km=catenary.capacitance_nf_per_km, max_i_ka=1.0,
+    )  # fmt: skip
+
+
+def add_impedance(net: Net, start: int, end: int, ohm: complex, length: float = 1.0) -> None:
+    """A lumped impedance, or `length` times an impedance per kilometre."""
+    pp.create_line_from_parameters(
+        net, start, end, length_km=length, r_ohm_per_km=ohm.real, x_ohm_per_km=ohm.imag,
+        c_nf_per_km=0.0, max_i_ka=1.0,
+    )  # fmt: skip
+
+
+def behind_connection(net: Net, supply: Supply, contact: Buses, km: float) -> int:
+    """A new bus behind a connection impedance to the contact line (AT), or the line's own (BT)."""
+    connection = complex(supply.catenary.connection_r_ohm, supply.catenary.connection_x_ohm)
+    if not connection:
+        return contact[km]
+    bus = add_bus(net, "AT feeder", km)
+    add_impedance(net, bus, contact[km], connection)
+    return bus
+
+
+def lay_high_voltage_line(
+    net: Net, supply: Supply, contact: Buses, feeding: Buses, transformers_km: list[float]
+) -> None:
+    """The line at its own voltage; 25 MVA units at the converter stations, 16 MVA units between."""
+    line = supply.high_voltage_line
+    points_km = sorted([*feeding, *transformers_km])
+    high = {km: add_bus(net, "high-voltage line", km, line.base_kv) for km in points_km}
+    for a, b in pairwise(points_km):
+        per_km = complex(line.type.r_ohm_per_km, line.type.x_ohm_per_km)
+        add_impedance(net, high[a], high[b], per_km, length=b - a)
+    for km in points_km:
+        at_station = km in feeding
+        unit = line.station_transformer if at_station else line.line_transformer
+        low = feeding[km] if at_station else behind_connection(net, supply, contact, km)
+        # Short-circuit voltages in percent of a unit of BASE_MVA, whose ohms are the same.
+        percent = 100.0 * BASE_MVA / LINE_KV**2
+        pp.create_transformer_from_parameters(
+            net, high[km], low, sn_mva=BASE_MVA, vn_hv_kv=line.base_kv, vn_lv_kv=LINE_KV,
+            vkr_percent=percent * unit.r_ohm, vk_percent=percent * math.hypot(unit.r_ohm, unit.x_ohm),
+            pfe_kw=0.0, i0_percent=0.0,
+        )  # fmt: skip
+
+
+def add_sources(net: Net, supply: Supply, feeding: Buses, moment: xr.Dataset) -> None:
+    """An ideal source in place of each converter station."""
+    for station in supply.converter_stations:
+        bus = feeding[station.position_km]
+        node = moment.sel(node=net.bus.name[bus])
+        pp.create_ext_grid(
+            net, bus, name=station.name,
+            vm_pu=float(node.node_voltage) / (1e3 * LINE_KV),
+            va_degree=math.degrees(node.node_angle),
+        )  # fmt: skip
+
+
+def worst_differences(net: Net, moment: xr.Dataset) -> dict[str, float]:
+    """Largest differences between a solved net and the recorded instant it was built from.
+
+    Returns
+    -------
+    dict
+        Of the voltages of all pantographs and nodes [p.u. of their own base] and their angles [rad],
+        and of the stations' active and reactive powers [p.u. of `BASE_MVA`].
+    """
+    found = net.bus[["name", "vn_kv"]].join(net.res_bus).set_index("name")
+    feeding = net.ext_grid[["name"]].join(net.res_ext_grid).set_index("name")
+    volts, angles = (
+        pd.concat([moment[f"{at}_{what}"].to_series().dropna() for at in ("pantograph", "node")])
+        for what in ("voltage", "angle")
+    )
+    found = found.loc[volts.index]
+    differences = {
+        "voltage": volts / (1e3 * found.vn_kv) - found.vm_pu,
+        "angle": angles - np.radians(found.va_degree),
+        "P": moment.station_active_power.to_series() / (1e6 * BASE_MVA) - feeding.p_mw / BASE_MVA,
+        "Q": moment.station_reactive_power.to_series() / (1e6 * BASE_MVA) - feeding.q_mvar / BASE_MVA,
+    }  # fmt: skip
+    return {what: float(values.abs().max(skipna=False)) for what, values in differences.items()}
