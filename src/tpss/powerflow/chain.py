@@ -41,16 +41,21 @@ SHORTEST_PIECE_M = 1.0
 
 @inlined
 def sort_by_position(standing: Any, count: int, trains: Any) -> None:
-    """Sort the first `count` places by the trains' positions; equal ones keep their number's order.
+    """Sort the first `count` places by the trains' positions, those at one position by number.
 
-    Trains hardly ever pass each other, so an insertion sort visits each of them once.
+    The order is that of the step before, and trains hardly ever pass each other: an insertion sort
+    visits each of them once.
     """
     for k in range(1, count):
         train = standing[k].train
         at_m = trains[train].position_m
         at = k
-        while at > 0 and trains[standing[at - 1].train].position_m > at_m:
-            standing[at].train = standing[at - 1].train
+        while at > 0:
+            other = standing[at - 1].train
+            other_m = trains[other].position_m
+            if other_m < at_m or (other_m == at_m and other < train):
+                break
+            standing[at].train = other
             at -= 1
         standing[at].train = train
 

@@ -139,7 +139,7 @@ class Flow(NamedTuple):
     sections: Any
     """Records of `SECTION_FLOW`."""
     standing: Any
-    """Records of `STANDING`, by position; as many are valid as trains are on the line."""
+    """Records of `STANDING`: trains on the line by position, then the others in any order."""
     sources: Any
     """Records of `SOURCE_FLOW`."""
     blocks: Any
@@ -205,4 +205,5 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
     flow.sources.converters = network.sources.installed
+    flow.standing.train = np.arange(n_trains)
     return flow

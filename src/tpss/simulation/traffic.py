@@ -41,10 +41,14 @@ def is_on_line(phase: int) -> bool:
 
 @inlined
 def list_trains(trains: Any, flow: Flow) -> int:
-    """Write the trains on the line into `flow.standing`, unsorted; return their number."""
+    """Bring the trains on the line to the front of `flow.standing`, in the order in which they stood
+    there; return their number.
+    """
     count = 0
-    for i in range(trains.size):
+    for k in range(trains.size):
+        i = flow.standing[k].train
         if is_on_line(trains[i].phase):
+            flow.standing[k].train = flow.standing[count].train
             flow.standing[count].train = i
             count += 1
     return count
