@@ -1,0 +1,42 @@
+"""Write the pages of the reference that follow from the program: ``python docs/generate``.
+
+With ``--check`` nothing is written; the exit code is 1 if a page is out of date.
+"""
+
+import sys
+from pathlib import Path
+
+import command_line_page
+import library_page
+import result_page
+import scenario_page
+
+REFERENCE = Path(__file__).parents[1] / "reference"
+NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not this page. -->"
+PAGES = {
+    "command_line.md": command_line_page.page,
+    "library.md": library_page.page,
+    "result.md": result_page.page,
+    "scenario.md": scenario_page.page,
+}
+
+
+def main() -> int:
+    """Write or check all pages; return the exit code."""
+    check = sys.argv[1:] == ["--check"]
+    stale = []
+    for name, page in PAGES.items():
+        file, text = REFERENCE / name, f"{NOTE}\n\n{page().strip()}\n"
+        if file.exists() and file.read_text("utf-8") == text:
+            continue
+        stale.append(name)
+        if not check:
+            file.write_text(text, "utf-8")
+    if stale:
+        done = "out of date; run python docs/generate" if check else "written"
+        print(f"{', '.join(stale)}: {done}")
+    return int(check and bool(stale))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

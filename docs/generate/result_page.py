@@ -1,0 +1,196 @@
+"""The page of the result: its files, variables, tables and figures, from a run."""
+
+import inspect
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from markdown_pieces import code, prose, table
+
+import tpss
+from tpss.results.audit import LIMITS, Audit
+from tpss.units import label
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
+
+INTRODUCTION = """# Result
+
+`tpss run` writes a result into a folder; `tpss.simulate` gives the same as a
+[`Result`](python.md#tpss.Result), and `tpss.load_result` reads a folder back. [Read a
+result](../how-to/read-a-result.md) shows how to work with it, the
+[nomenclature](../nomenclature.md) says what stands behind the names.
+
+## Files
+
+| file | what |
+|---|---|
+| `result.nc` | the dataset: everything that was recorded, at every step (NetCDF 4) |
+| `summary.json` | key figures, the audit, versions and platform |
+| `scenario.toml` | the scenario as run, with all defaults and library values; it can be run again |
+
+A folder is written whole or not at all. `--force` replaces a result folder, and nothing but a
+result folder."""
+
+DATASET = """## Dataset
+
+`Result.dataset` is an [xarray](https://docs.xarray.dev) dataset. Times run from the start of the
+simulation, in steps: K steps have K + 1 instants. A **state** holds at the instant. An **interval**
+value is constant from that instant to the next, so it is NaN at the last one. A train that is not
+on the line is NaN; its `train_state` is -1. Each variable carries its unit (`units`) and its
+meaning (`long_name`)."""
+
+ENERGY_UNITS = {"_mwh": "MWh", "_mvarh": "MVArh", "_mw": "MW", "_s": "s"}
+"""Suffixes that no scenario uses."""
+
+STATES = "`train_state` has the values"
+
+TABLES = """## Tables
+
+`Result.trips` and `Result.stations` are pandas tables. What a train has not done yet, or not within
+the run, is NaN."""
+
+TRIPS = {
+    "train": "name",
+    "service": "traffic entry that the train belongs to",
+    "departure_min": "departure; NaN for a train that was on the line at the start",
+    "arrival_min": "arrival at its destination",
+    "trip_min": "from departure to arrival",
+    "distance_km": "way within the run",
+    "mean_speed_kmh": "distance over the time on the line, stops included",
+    "energy_mwh": "active energy drawn at the pantograph",
+    "lowest_voltage_kv": "lowest voltage at the pantograph",
+    "lowest_voltage_km": "... and where",
+    "lowest_voltage_min": "... and when",
+}
+STATIONS = {
+    "station": "name",
+    "position_km": "position on the line",
+    "energy_mwh": "active energy fed into the railway",
+    "reactive_energy_mvarh": "reactive energy fed into the railway",
+    "peak_power_mw": "highest active power of a step",
+    "mean_loading": "mean of the running converters' apparent power over their rating",
+    "peak_loading": "highest of these loadings",
+    "mean_converters": "mean number of converters running",
+}
+SUMMARY = {
+    "name": "of the scenario",
+    "description": "of the scenario",
+    "status": "`finished`, `collapsed` (the line cannot carry its load), `stalled` or `interrupted`",
+    "time_step_min": "time step",
+    "duration_min": "simulated time",
+    "studied_train": "first departure of the first traffic entry; its arrival ends the run by default",
+    "trip_time_min": "its time from departure to arrival, or null",
+    "station_energy_mwh": "active energy of each converter station",
+    "total_energy_mwh": "their sum",
+    "losses_mwh": "losses of contact line, transformers and high-voltage line",
+    "lowest_voltage": "lowest voltage at a pantograph: `voltage_kv`, `train`, `position_km`, `time_min`",
+    "load_flow_passes": "evaluations of the network a step: `mean` and `most`",
+    "limited": "train-steps in which a model was limited or left its range",
+    "audit": "figures of the audit, below",
+    "simulation_s": "computing time of the simulation",
+    "provenance": "versions, platform and time of the run",
+}
+EARLY_END = {
+    "problem": "only after an early end: when and where it came, in words",
+    "advice": "only after an early end: what would help",
+}
+ATTRIBUTES = {
+    "title": "name of the scenario",
+    "status": "as in the summary",
+    "time_step_s": "time step",
+    "trip_time_min": "as in the summary, or NaN",
+    "station_energy_mwh": "in the order of `station`",
+    "losses_mwh": "as in the summary",
+    "audit": "as in the summary, as JSON",
+}
+AUDIT = """## Audit
+
+Every run audits itself: from the recorded voltages it forms the currents and powers once more, by
+another way than the solver's, and it checks energy balances, forces and motion. A figure beyond its
+limit makes `tpss run` end with exit code 4. With `power_sampling = "start"` the traction balance
+does not close; it is reported, not judged."""
+
+
+def page() -> str:
+    """Text of the page."""
+    changes = {"simulation.until": None, "simulation.duration_min": 5.0}
+    result = tpss.simulate(tpss.load_scenario(EXAMPLE, changes))
+    provenance = dict.fromkeys(result.summary["provenance"], "as in the summary's `provenance`")
+    attributes = {**ATTRIBUTES, **provenance}
+    blocks = [
+        INTRODUCTION,
+        DATASET,
+        _variables(result),
+        f"{STATES} {_flags(result)}.",
+        "Coordinates:",
+        _coordinates(result),
+        "Attributes:",
+        _described(attributes, result.dataset.attrs, "attribute"),
+        TABLES,
+        "### `trips`, a row a train",
+        _described(TRIPS, result.trips, "column"),
+        "### `stations`, a row a converter station",
+        _described(STATIONS, result.stations, "column"),
+        "## Summary",
+        "`Result.summary` is a dictionary, and the content of `summary.json`.",
+        _described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
+        AUDIT,
+        _audit(),
+    ]
+    return "\n\n".join(blocks)
+
+
+def _variables(result: tpss.Result) -> str:
+    rows = []
+    for name, variable in result.dataset.data_vars.items():
+        dims = ", ".join(f"`{dim}`" for dim in variable.dims)
+        texts = (variable.attrs["units"], variable.attrs["long_name"])
+        rows.append((f"`{name}`", dims, texts[0], _kind(variable.to_numpy()), texts[1]))
+    return table(("variable", "dimensions", "unit", "kind", "meaning"), rows)
+
+
+def _kind(values: np.ndarray) -> str:
+    """Kind of a variable; only a state has values at the last instant."""
+    at_the_end = np.isfinite(values[-1]) & (values.dtype.kind == "f")
+    return "state" if at_the_end.any() else "interval"
+
+
+def _flags(result: tpss.Result) -> str:
+    meanings = result.dataset.train_state.attrs["flag_meanings"].split()
+    return ", ".join(f"{value} {name}" for value, name in enumerate(meanings))
+
+
+def _coordinates(result: tpss.Result) -> str:
+    rows = [
+        (f"`{name}`", f"`{values.dims[0]}`", values.attrs["units"], values.attrs["long_name"])
+        for name, values in result.dataset.coords.items()
+    ]
+    return table(("coordinate", "dimension", "unit", "meaning"), rows)
+
+
+def _described(meanings: Mapping[str, str], found: Any, head: str) -> str:
+    """Table of names, units and meanings; what is found and what is described must agree."""
+    if set(meanings) != set(found):
+        raise SystemExit(f"{head}s without meaning or gone: {set(meanings) ^ set(found)}")
+    rows = [(f"`{name}`", _unit(name), meanings[name]) for name in found]
+    return table((head, "unit", "meaning"), rows)
+
+
+def _unit(name: str) -> str:
+    further = (unit for suffix, unit in ENERGY_UNITS.items() if name.endswith(suffix))
+    return label(name) or next(further, "")
+
+
+def _audit() -> str:
+    """Table of the audit's figures from their docstring."""
+    text = inspect.getdoc(Audit) or ""
+    figures = re.findall(r"^(\w[\w, ]*) : .*\n((?:    .*(?:\n|$))+)", text, re.MULTILINE)
+    rows = []
+    for names, meaning in figures:
+        limits = ", ".join(f"{LIMITS[name]:g}" for name in names.split(", ") if name in LIMITS)
+        marked = ", ".join(code(name).replace('"', "") for name in names.split(", "))
+        rows.append((marked, limits, prose(" ".join(meaning.split()))))
+    rows.append(("`passed`", "", "Whether every figure is within its limit."))
+    return table(("figure", "limit", "meaning"), rows)
