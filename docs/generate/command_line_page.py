@@ -80,7 +80,7 @@ def _plain(text: str) -> str:
 
 def _example(epilog: str) -> str:
     """The calls at the end of a help text, ready to copy."""
-    calls = re.findall(r"tpss .*", epilog)
+    calls = [call for call in re.split(r"\s{2,}|, then ", epilog) if call.startswith("tpss ")]
     if not calls:
         return ""
     return "\n".join(["Example:\n", "```bash", *calls, "```"])

@@ -31,7 +31,7 @@ MODELS = "the model's"
 DEFAULTS = {
     "Line.gradients_file": "this or `gradients`",
     "Line.gradients": "this or `gradients_file`",
-    "Simulation.until": "this, or `duration_min`",
+    "Simulation.until": "this, unless `duration_min`",
     "Traffic.headway_min": "this or `departures_min`",
     "Traffic.departures_min": "this or `headway_min`",
     "HighVoltageLine.transformers_km": "this or `transformers`",
@@ -147,8 +147,8 @@ def _range(metadata: Iterable[Any]) -> str:
             if type(bound) in BOUNDS:
                 found[type(bound)] = getattr(bound, BOUNDS[type(bound)][0])
     if set(found) == {Ge, Le}:
-        return f"{found[Ge]:g} to {found[Le]:g}"
-    return ", ".join(f"{BOUNDS[kind][1]} {bound:g}" for kind, bound in found.items())
+        return f"{found[Ge]:,.10g} to {found[Le]:,.10g}"
+    return ", ".join(f"{BOUNDS[kind][1]} {bound:,.10g}" for kind, bound in found.items())
 
 
 def _default(part: Part, name: str) -> str:

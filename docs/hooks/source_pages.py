@@ -16,7 +16,7 @@ from mkdocs.utils import get_relative_url
 
 SOURCE = Path(__file__).parents[2] / "src" / "tpss"
 LOG = logging.getLogger("mkdocs.hooks.source_pages")
-_NAMED = re.compile(r"<code>([a-z_/]+\.py)</code>(?: <code>(\w+)</code>)?")
+_NAMED = re.compile(r"<code>([a-z_/]+\.py)</code>(?:\s<code>(\w+)</code>)?")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
