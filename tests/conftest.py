@@ -6,13 +6,10 @@ from typing import Any
 
 import pytest
 
+from tpss.kernel import plain
+
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
-
-
-def plain(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """The kernel as plain Python, whether or not compilation is on."""
-    return getattr(kernel, "py_func", kernel)
 
 
 @pytest.fixture(params=["compiled", "plain"])

@@ -95,6 +95,12 @@ def switch(value: int) -> int:
     return np.int64(value)  # type: ignore[return-value]
 
 
+def plain(function: _Function) -> _Function:
+    """The plain Python of a kernel, for the few calls of a set-up, which no compilation would repay."""
+    python: _Function = getattr(function, "py_func", function)
+    return python
+
+
 def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
     """Array of records whose fields are attributes, in compiled and in plain Python.
 

@@ -5,6 +5,7 @@ from typing import Any
 from tpss.driving.braking import shortest_stop
 from tpss.driving.speed_limits import can_meet_limit
 from tpss.errors import Finding, ScenarioError
+from tpss.kernel import plain
 from tpss.physics.gradient import step_index
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
@@ -64,13 +65,13 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     limits, h = model.limits, model.options.step_s
     kind = model.types[service.train_type]
     retardation = kind.highest_retardation_m_s2
-    here = step_index(position_m, limits.from_m)
+    here = plain(step_index)(position_m, limits.from_m)
     limit = min(limits.value[here], kind.highest_speed_m_s)
     stop_m = min(m for m in service.stops_m if m > position_m)
     problem = ""
     if speed > limit:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
-    elif shortest_stop(speed, retardation, h) > stop_m - position_m:
+    elif plain(shortest_stop)(speed, retardation, h) > stop_m - position_m:
         problem = f"too fast to stop at {stop_m / 1e3:g} km in whole time steps"
     else:
         slowest = max(0.0, speed - retardation * h)

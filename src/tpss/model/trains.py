@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from tpss import library
-from tpss.kernel import blank_records, records
+from tpss.kernel import blank_records, plain, records
 from tpss.physics.locomotive import MACHINE, TRAIN_TYPE
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.neural_network import build_network
@@ -54,7 +54,7 @@ def _train_type(train: Train) -> tuple[float, ...]:
         "efficiency": train.efficiency,
         "auxiliary_power_w": auxiliary_w,
         "auxiliary_reactive_power_var": auxiliary_w
-        * float(reactive_ratio(train.auxiliary_power_factor)),
+        * plain(reactive_ratio)(train.auxiliary_power_factor),
         "base_speed_m_s": si(train, "base_speed_kmh"),
         "highest_motor_voltage_v": si(train, "max_motor_voltage_v"),
         "reactive_model": _REACTIVE[train.reactive_power],
