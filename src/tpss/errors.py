@@ -1,6 +1,7 @@
 """What can go wrong, as types: bad input, a failed audit, a result that cannot be read."""
 
-from collections.abc import Sequence
+import difflib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 
@@ -20,6 +21,14 @@ class Finding:
         return f"{self.file}{key}\n    {self.problem}\n    -> {self.remedy}"
 
 
+def suggest(word: str, known: Iterable[str]) -> str:
+    """Remedy for an unknown word: the nearest known one, if any is near, and all there are."""
+    names = sorted(known)
+    near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
+    listed = f"choose from {', '.join(names)}"
+    return f"did you mean {near[0]}? {listed}" if near else listed
+
+
 class TpssError(Exception):
     """Base of all errors that TPSS raises on purpose."""
 
@@ -32,6 +41,10 @@ class ScenarioError(TpssError):
         count = len(self.findings)
         head = f"{count} fault{'s' if count > 1 else ''} in the input:"
         super().__init__("\n".join([head, *(str(finding) for finding in self.findings)]))
+
+
+class LibraryError(TpssError):
+    """The library has no such kind or entry."""
 
 
 class TooLargeError(TpssError):

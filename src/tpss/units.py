@@ -25,6 +25,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_kv": ("kV", 1e3),
     "_kw": ("kW", 1e3),
     "_kg": ("kg", 1.0),
+    "_pu": ("p.u.", 1.0),
     "_hz": ("Hz", 1.0),
     "_t": ("t", 1e3),
     "_a": ("A", 1.0),
@@ -34,8 +35,8 @@ SUFFIXES: dict[str, tuple[str, float]] = {
 
 
 def suffix(name: str) -> str:
-    """Longest unit suffix of a name, or an empty string."""
-    return max((s for s in SUFFIXES if name.endswith(s)), key=len, default="")
+    """Longest unit suffix of a name, which may be nothing but a unit, or an empty string."""
+    return max((s for s in SUFFIXES if f"_{name}".endswith(s)), key=len, default="")
 
 
 def label(name: str) -> str:

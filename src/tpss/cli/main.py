@@ -13,12 +13,15 @@ from typing import Annotated
 
 import typer
 
+from tpss.cli import complete
+
 app = typer.Typer(
     name="tpss",
     help="TPSS, the Train Power System Simulator: trains and their power supply, simulated together.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
+    rich_markup_mode="markdown",
+    epilog="Start with:  tpss new my-line, then tpss run my-line/scenario.toml",
 )
 
 
@@ -40,26 +43,34 @@ def _options(
     pass
 
 
-@app.command(
-    epilog="Example:  tpss run examples/thesis_160km.toml --set simulation.time_step_min=0.1"
-)
+ScenarioFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Scenario file (TOML).", show_default=False, autocompletion=complete.scenario_files
+    ),
+]
+
+Assignments = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Set one value of the scenario, such as traffic.0.headway_min=12; repeatable.",
+        show_default=False,
+    ),
+]
+
+
+@app.command(epilog="Example:  tpss run examples/thesis_160km.toml --set traffic.0.headway_min=12")
 def run(
-    file: Annotated[Path, typer.Argument(help="Scenario file (TOML).", show_default=False)],
+    file: ScenarioFile,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the result; by default results/<name>-NNN.", show_default=False
+            help="Folder for the result; by default results/NAME-NNN.", show_default=False
         ),
     ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set one value of the scenario, such as traffic.0.headway_min=12; repeatable.",
-            show_default=False,
-        ),
-    ] = None,
+    set_: Assignments = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace an existing result folder.")
     ] = False,
@@ -81,12 +92,79 @@ def run(
     """
     from tpss.cli.run import run_scenario
 
-    try:
-        code = run_scenario(file, out, set_ or [], force, quiet, show)
-    except KeyboardInterrupt:
-        typer.echo("Interrupted before there was a result; nothing was written.", err=True)
-        code = 130
-    raise typer.Exit(code)
+    raise typer.Exit(run_scenario(file, out, set_ or [], force, quiet, show))
+
+
+@app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")
+def check(file: ScenarioFile, set_: Assignments = None) -> None:
+    """Find every fault of a scenario, and say what it describes, without simulating it.
+
+    Notes point out what is no fault, but may not be meant. Exit codes: 0 the scenario has no fault,
+    2 it has some; each is listed with its place and its remedy.
+    """
+    from tpss.cli.check import check_scenario
+
+    check_scenario(file, set_ or [])
+
+
+@app.command(epilog="Example:  tpss new my-line")
+def new(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder to write; files that are there stay.", show_default=False)
+    ],
+) -> None:
+    """Write a small, commented scenario to start from.
+
+    It consists of scenario.toml and gradients.csv: a line of 60 km with a stop half-way.
+    """
+    from tpss.cli.new import new_scenario
+
+    new_scenario(folder)
+
+
+@app.command(epilog="Examples:  tpss library catenaries, tpss library catenaries AT")
+def library(
+    kind: Annotated[
+        str | None,
+        typer.Argument(
+            help="locomotives, catenaries, converters, transformers or high_voltage_lines.",
+            show_default=False,
+            autocompletion=complete.library_kinds,
+        ),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help="An entry, to see all its values, their meaning and how a scenario uses it.",
+            show_default=False,
+            autocompletion=complete.library_names,
+        ),
+    ] = None,
+) -> None:
+    """List what scenarios refer to by name: trains, catenaries, converters and so on.
+
+    Everything is shown with its unit and its source, an entry with all its values too.
+    """
+    from tpss.cli.library import print_library
+
+    print_library(kind, name)
+
+
+@app.command(epilog="Example:  tpss schema --out scenario.schema.json")
+def schema(
+    out: Annotated[
+        Path | None,
+        typer.Option(help="File to write; by default the schema is printed.", show_default=False),
+    ] = None,
+) -> None:
+    """Print the JSON Schema of scenario files, by which editors complete and check them.
+
+    Editors with Taplo (such as Even Better TOML) find it by the first line of a scenario,
+    `#:schema scenario.schema.json`.
+    """
+    from tpss.cli.schema import write_schema
+
+    write_schema(out)
 
 
 def main() -> None:

@@ -9,6 +9,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+KINDS = ("locomotives", "catenaries", "converters", "transformers", "high_voltage_lines")
+
 
 @cache
 def entries(kind: str) -> dict[str, dict[str, Any]]:

@@ -1,17 +1,20 @@
 """Building blocks of all parts of a scenario: strict numbers, library names, ordered profiles."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar
 
 from pydantic import (
     AfterValidator,
     BaseModel,
-    BeforeValidator,
     ConfigDict,
     Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     Strict,
 )
-from pydantic_core import PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from tpss import library
 
@@ -32,22 +35,44 @@ Name = Annotated[str, Field(min_length=1)]
 _Item = TypeVar("_Item")
 
 
-def from_library(kind: str) -> BeforeValidator:
+@dataclass(frozen=True)
+class FromLibrary:
     """Accept the name of a library entry in place of a table."""
 
-    def look_up(value: Any) -> Any:
+    kind: str
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self._look_up, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        names = {"type": "string", "enum": sorted(library.entries(self.kind))}
+        return {"anyOf": [names, handler(schema)]}
+
+    def _look_up(self, value: Any) -> Any:
         if not isinstance(value, str):
             return value
-        entries = library.entries(kind)
+        entries = library.entries(self.kind)
         if value not in entries:
             raise PydanticCustomError(
                 "unknown_name",
                 "the library has no such entry in {kind}",
-                {"kind": kind, "known": sorted(entries)},
+                {"kind": self.kind, "known": sorted(entries)},
             )
-        return library.values(kind, value)
+        return library.values(self.kind, value)
 
-    return BeforeValidator(look_up)
+
+def one_of(first: str, second: str) -> Callable[[JsonSchemaValue], None]:
+    """For the JSON Schema of a part: demand either of two keys, and not both."""
+
+    def demand(schema: JsonSchemaValue) -> None:
+        schema["required"] = [key for key in schema["required"] if key not in (first, second)]
+        schema["oneOf"] = [{"required": [first]}, {"required": [second]}]
+
+    return demand
 
 
 def ascending(field: str) -> AfterValidator:

@@ -2,9 +2,9 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
-from tpss.scenario.fields import Name, Part, Real, ascending, unique
+from tpss.scenario.fields import Name, Part, Real, ascending, one_of, unique
 
 
 class Gradient(Part):
@@ -30,6 +30,8 @@ class Station(Part):
 
 class Line(Part):
     """A railway line from position 0 to its length."""
+
+    model_config = ConfigDict(json_schema_extra=one_of("gradients", "gradients_file"))
 
     length_km: Real = Field(gt=0, description="Length; the contact line runs along all of it.")
     gradients_file: str | None = Field(

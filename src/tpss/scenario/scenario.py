@@ -30,11 +30,15 @@ class Scenario(Part):
         description="Short name; result folders take theirs from it."
     )
     description: str = Field(default="", description="What the scenario is about.")
-    simulation: Simulation
-    line: Line
-    supply: Supply
-    trains: Annotated[dict[Name, Train], Field(min_length=1)]
-    traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")]
+    simulation: Simulation = Field(description="How the simulation runs.")
+    line: Line = Field(description="The railway line.")
+    supply: Supply = Field(description="Everything that feeds the trains.")
+    trains: Annotated[dict[Name, Train], Field(min_length=1)] = Field(
+        description="Kinds of train by name, at least one."
+    )
+    traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")] = Field(
+        description="Services, at least one; the first train of the first one is studied."
+    )
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))

@@ -2,7 +2,7 @@
 
 from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tpss.scenario.fields import Part, Real
@@ -10,6 +10,8 @@ from tpss.scenario.fields import Part, Real
 
 class Simulation(Part):
     """Time step, end of the run, and the thesis's choices beside ours."""
+
+    model_config = ConfigDict(json_schema_extra={"not": {"required": ["until", "duration_min"]}})
 
     time_step_min: Real = Field(ge=0.001, le=10, description="Length of a time step.")
     until: Literal["first-departure-arrives"] | None = Field(

@@ -2,16 +2,17 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tpss.scenario.fields import (
+    FromLibrary,
     Name,
     Part,
     Real,
     Whole,
     ascending_numbers,
-    from_library,
+    one_of,
     unique,
 )
 
@@ -47,7 +48,9 @@ class LineType(Part):
 class HighVoltageLine(Part):
     """A high-voltage line beside the track, tied to the contact line by transformers."""
 
-    type: Annotated[LineType, from_library("high_voltage_lines")] = Field(
+    model_config = ConfigDict(json_schema_extra=one_of("transformers_km", "transformers"))
+
+    type: Annotated[LineType, FromLibrary("high_voltage_lines")] = Field(
         description="Library name, or a table of your own."
     )
     transformers_km: Annotated[tuple[Real, ...], ascending_numbers("transformers_km")] | None = (
@@ -60,10 +63,10 @@ class HighVoltageLine(Part):
         "stations, in place of `transformers_km`.",
     )
     base_kv: Real = Field(default=132.0, gt=0, description="Voltage of the line.")
-    line_transformer: Annotated[Transformer, from_library("transformers")] = Field(
+    line_transformer: Annotated[Transformer, FromLibrary("transformers")] = Field(
         default="16MVA", validate_default=True, description="Transformer between stations."
     )
-    station_transformer: Annotated[Transformer, from_library("transformers")] = Field(
+    station_transformer: Annotated[Transformer, FromLibrary("transformers")] = Field(
         default="25MVA", validate_default=True, description="Transformer at converter stations."
     )
 
@@ -96,7 +99,7 @@ class ConverterStation(Part):
 
     name: Name = Field(description="Name, shown in the results.")
     position_km: Real = Field(ge=0, description="Position on the line.")
-    type: Annotated[ConverterType, from_library("converters")] = Field(
+    type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )
     converters: Whole = Field(ge=1, le=100, description="Number of converters installed.")
@@ -122,7 +125,7 @@ class Supply(Part):
     """Everything that feeds the trains."""
 
     frequency_hz: Real = Field(ge=10, le=60, description="Frequency of the contact line.")
-    catenary: Annotated[Catenary, from_library("catenaries")] = Field(
+    catenary: Annotated[Catenary, FromLibrary("catenaries")] = Field(
         description="Library name, or a table of your own."
     )
     high_voltage_line: HighVoltageLine | None = Field(

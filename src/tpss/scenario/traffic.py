@@ -2,10 +2,10 @@
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers
+from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers, one_of
 
 Times = Annotated[
     tuple[Annotated[Real, Field(ge=0)], ...],
@@ -30,6 +30,8 @@ class InitialTrain(Part):
 
 class Traffic(Part):
     """A service: trains of one kind from one station to another."""
+
+    model_config = ConfigDict(json_schema_extra=one_of("headway_min", "departures_min"))
 
     name: Name = Field(description="Name, from which the trains take theirs.")
     train: Name = Field(description="One of the scenario's trains.")

@@ -1,15 +1,13 @@
 """Validation that reports every fault at once: each field by pydantic, then the parts together."""
 
 import copy
-import difflib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from tpss import units
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.files import read_gradients
 
@@ -133,12 +131,12 @@ def _explain(
     words = [part for part in location if isinstance(part, str)]
     unit = units.label(words[-1]) if words else ""
     if kind == "extra_forbidden":
-        return "unknown key", _suggest(str(location[-1]), _known_keys(model, location[:-1]))
+        return "unknown key", suggest(str(location[-1]), _known_keys(model, location[:-1]))
     if kind == "unknown_name":
-        return message, _suggest(str(detail["input"]), context["known"])
+        return message, suggest(str(detail["input"]), context["known"])
     if kind == "literal_error":
         known = [word.strip("' ") for word in context["expected"].replace(" or ", ",").split(",")]
-        return "not one of the choices", _suggest(str(detail["input"]), known)
+        return "not one of the choices", suggest(str(detail["input"]), known)
     if kind in ("float_type", "float_parsing"):
         return "not a number", f"write a number{f' in {unit}' if unit else ''}, without quotes"
     if kind.startswith(("greater_than", "less_than")):
@@ -150,13 +148,6 @@ def _explain(
     return _PROBLEMS.get(kind, message), _REMEDIES.get(
         kind, "see the commented examples for this key"
     )
-
-
-def _suggest(word: str, known: Iterable[str]) -> str:
-    names = sorted(known)
-    near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
-    listed = f"choose from {', '.join(names)}"
-    return f"did you mean {near[0]}? {listed}" if near else listed
 
 
 def _known_keys(model: type[BaseModel], location: _Location) -> list[str]:

@@ -1,0 +1,163 @@
+"""The command ``tpss check``: what a scenario says, without simulating it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss import library, units
+from tpss.cli.library import KINDS, words
+from tpss.cli.notes import lies_between, notes
+from tpss.model.build import build_model
+from tpss.model.supply import transformer_positions_km
+from tpss.model.traffic import build_services
+from tpss.scenario import Scenario, load_scenario
+from tpss.scenario.fields import Part
+from tpss.scenario.line import Line
+from tpss.scenario.override import parse_assignment
+from tpss.scenario.rolling_stock import Train
+from tpss.scenario.simulation import Simulation
+from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply
+from tpss.scenario.traffic import Traffic
+
+MOST_LISTED = 8
+"""Longer lists are told by their number and range."""
+
+
+def check_scenario(file: Path, assignments: list[str]) -> None:
+    """Validate a scenario, build its model, and print what it says.
+
+    Raises
+    ------
+    ScenarioError
+        It has faults; all are listed.
+    """
+    scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
+    model, _ = build_model(scenario)
+    build_services(scenario, model)
+    console = Console()
+    title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
+    console.print(title, highlight=False)
+    rows = Table.grid(padding=(0, 2))
+    for heading, text in summary(scenario):
+        rows.add_row(f"[dim]{heading}[/dim]", escape(text))
+    console.print(rows)
+    for note in notes(scenario):
+        console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
+    console.print(f"\nNo faults in {file}", highlight=False, markup=False, soft_wrap=True)
+
+
+def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Headings and texts that say what a scenario describes."""
+    yield from _line(scenario.line)
+    yield from _supply(scenario.supply)
+    for name, train in scenario.trains.items():
+        yield "train", f"{name}: {_train(train)}"
+    for entry in scenario.traffic:
+        yield "traffic", _service(entry)
+    yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
+
+
+def library_name(kind: str, part: Part) -> str:
+    """Name of the library's entry with the values of a part, or "own"."""
+    for name in library.entries(kind):
+        if type(part).model_validate(library.values(kind, name)) == part:
+            return name
+    return "own"
+
+
+def _line(line: Line) -> Iterator[tuple[str, str]]:
+    yield "line", f"{line.length_km:g} km"
+    yield "stations", _listed([f"{s.name} {s.position_km:g} km" for s in line.stations])
+    pieces = lies_between(line, 0.0, line.length_km)
+    lowest, highest = min(p for _, _, p in pieces), max(p for _, _, p in pieces)
+    climb_m = sum((end - start) * permille for start, end, permille in pieces)
+    spread = f"{lowest:g} ‰" if lowest == highest else f"{lowest:g} to {highest:g} ‰"
+    yield "gradients", f"{spread}; from beginning to end {climb_m:+.0f} m"
+    limits = [f"{limit.speed_kmh:g} km/h from {limit.from_km:g} km" for limit in line.speed_limits]
+    yield "speed limits", _listed(limits)
+
+
+def _listed(texts: list[str]) -> str:
+    """Texts in a row, or the first and the last of many."""
+    if len(texts) > MOST_LISTED:
+        return f"{texts[0]} ... {texts[-1]}, {len(texts)} in all"
+    return ", ".join(texts)
+
+
+def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
+    yield "frequency", f"{supply.frequency_hz:g} Hz"
+    catenary = supply.catenary
+    impedance = f"{catenary.r_ohm_per_km:g} + j{catenary.x_ohm_per_km:g} Ω/km"
+    yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
+    yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
+    for station in supply.converter_stations:
+        yield "converters", _station(station)
+
+
+def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
+    if line is None:
+        return "none"
+    positions = [f"{km:g} km" for km in transformer_positions_km(supply)]
+    between = library_name("transformers", line.line_transformer)
+    at_stations = library_name("transformers", line.station_transformer)
+    placed = f"{between} at {_listed(positions)}" if positions else "none between stations"
+    kind = library_name("high_voltage_lines", line.type)
+    return f"{kind}, {line.base_kv:g} kV; transformers: {placed}, {at_stations} at the stations"
+
+
+def _station(station: ConverterStation) -> str:
+    kind = library_name("converters", station.type)
+    return (
+        f"{station.name} {station.position_km:g} km: {station.converters} x {kind} of "
+        f"{station.type.rating_mva:g} MVA, control {station.control}"
+    )
+
+
+def _train(train: Train) -> str:
+    key_data = [
+        f"{words(key)} {getattr(train, key):g} {units.label(key)}"
+        for key in KINDS["locomotives"].shown
+    ]
+    usual = library.entries("locomotives")[train.model]
+    changed = [
+        f"{key} {_plain(getattr(train, key))} ({_plain(usual[key])})"
+        for key in type(train).model_fields
+        if key in usual and getattr(train, key) != usual[key]
+    ]
+    text = f"{train.model}, {', '.join(key_data)}"
+    return f"{text}; changed from the library: {', '.join(changed)}" if changed else text
+
+
+def _plain(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _service(entry: Traffic) -> str:
+    texts = [f"{entry.name}: {entry.train} from {entry.origin} to {entry.destination}"]
+    if entry.departures_min is not None:
+        texts.append(f"at {_listed([f'{minute:g} min' for minute in entry.departures_min])}")
+    else:
+        texts.append(f"every {entry.headway_min:g} min from {entry.first_departure_min:g} min")
+    if entry.already_running:
+        texts.append("already running at the start")
+    if entry.initial_trains:
+        texts.append(f"trains on the line at the start: {len(entry.initial_trains)}")
+    if entry.stops:
+        stops = [f"{stop.station} {stop.dwell_min:g} min" for stop in entry.stops]
+        texts.append(f"stops: {_listed(stops)}")
+    return ", ".join(texts)
+
+
+def _simulation(simulation: Simulation, studied: str) -> str:
+    step, duration = simulation.time_step_min, simulation.duration_min
+    end = f"until {studied} 1 arrives" if duration is None else f"for {duration:g} min"
+    choices = [
+        f"{key} {getattr(simulation, key)}"
+        for key, field in Simulation.model_fields.items()
+        if isinstance(field.default, str) and getattr(simulation, key) != field.default
+    ]
+    return ", ".join([f"steps of {step:g} min {end}", *choices])

@@ -1,0 +1,32 @@
+"""What the shell offers when a word of the command line is completed."""
+
+import shlex
+from pathlib import Path
+
+import typer
+
+from tpss import library
+
+
+def scenario_files(incomplete: str) -> list[str]:
+    """TOML files that begin like this; none, and so the shell's own choice, if a folder may be meant."""
+    folder, slash, beginning = incomplete.rpartition("/")
+    place = Path(folder + slash)
+    found = [path for path in place.glob("*") if path.name.startswith(beginning)]
+    names = [f"{folder}{slash}{path.name}" for path in found if path.suffix == ".toml"]
+    left_to_the_shell = any(path.is_dir() for path in found) or any(
+        shlex.quote(name) != name for name in names
+    )
+    return [] if left_to_the_shell else sorted(names)
+
+
+def library_kinds(incomplete: str) -> list[str]:
+    """Kinds of the library that begin like this."""
+    return [kind for kind in library.KINDS if kind.startswith(incomplete)]
+
+
+def library_names(context: typer.Context, incomplete: str) -> list[str]:
+    """Names of the kind before them that begin like this."""
+    kind = context.params.get("kind")
+    names = library.entries(kind) if kind in library.KINDS else {}
+    return [name for name in names if name.startswith(incomplete)]

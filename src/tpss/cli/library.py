@@ -1,0 +1,195 @@
+"""The command ``tpss library``: what ships as data, with units and sources."""
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import tomli_w
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss import library, units
+from tpss.errors import LibraryError, suggest
+
+if TYPE_CHECKING:
+    from tpss.scenario.fields import Part
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of entries: what they are, and how a scenario uses one."""
+
+    title: str
+    module: str
+    part: str
+    """Part of a scenario, of `module`, that an entry gives the values of."""
+    shown: tuple[str, ...]
+    """Keys that a list shows."""
+    place: str
+    """Table of a scenario in which `key` takes the name of an entry."""
+    key: str
+    remark: str
+    """How to depart from the entry."""
+
+
+OWN_TABLE = (
+    "or a table of your own in place of the name, such as its values:\n\n{key} = {{ {values} }}"
+)
+
+KINDS = {
+    "locomotives": Kind(
+        "Trains: a locomotive with what it hauls",
+        "tpss.scenario.rolling_stock",
+        "Train",
+        ("mass_t", "adhesive_mass_t", "max_speed_kmh", "max_motor_current_a"),
+        "[trains.freight]",
+        "model",
+        "and below the name any of its values, to change it",
+    ),
+    "catenaries": Kind(
+        "Contact-line systems",
+        "tpss.scenario.supply",
+        "Catenary",
+        ("r_ohm_per_km", "x_ohm_per_km", "capacitance_nf_per_km", "connection_r_ohm",
+         "connection_x_ohm"),
+        "[supply]",
+        "catenary",
+        OWN_TABLE,
+    ),
+    "converters": Kind(
+        "Frequency converters",
+        "tpss.scenario.supply",
+        "ConverterType",
+        ("rating_mva", "no_load_voltage_kv", "droop_kv_per_mvar"),
+        "[[supply.converter_stations]]",
+        "type",
+        OWN_TABLE,
+    ),
+    "transformers": Kind(
+        "Transformers between high-voltage line and contact line",
+        "tpss.scenario.supply",
+        "Transformer",
+        ("r_ohm", "x_ohm"),
+        "[supply.high_voltage_line]",
+        "line_transformer",
+        "and as station_transformer the one at the converter stations",
+    ),
+    "high_voltage_lines": Kind(
+        "High-voltage lines beside the track",
+        "tpss.scenario.supply",
+        "LineType",
+        ("r_ohm_per_km", "x_ohm_per_km"),
+        "[supply.high_voltage_line]",
+        "type",
+        OWN_TABLE,
+    ),
+}  # fmt: skip
+
+
+def print_library(kind: str | None, name: str | None) -> None:
+    """Print every kind, the entries of one, or one entry with all its values.
+
+    Raises
+    ------
+    LibraryError
+        There is no such kind or entry.
+    """
+    console = Console()
+    if kind is None:
+        for each in library.KINDS:
+            _print_entries(each, console)
+        _print_plain(console, "All values of an entry: tpss library KIND NAME")
+        return
+    kind = _known_kind(kind)
+    if name is None:
+        _print_entries(kind, console)
+        example = next(iter(library.entries(kind)))
+        _print_plain(console, f"All values of an entry: tpss library {kind} {example}")
+        return
+    if name not in library.entries(kind):
+        remedy = suggest(name, library.entries(kind))
+        raise LibraryError(f"the library has no {name!r} in {kind}\n    -> {remedy}")
+    _print_entry(kind, name, console)
+
+
+def usage(kind: str, name: str) -> str:
+    """Lines of a scenario that use an entry."""
+    how = KINDS[kind]
+    return f"{how.place}\n{tomli_w.dumps({how.key: name})}"
+
+
+def _known_kind(kind: str) -> str:
+    plain = kind.replace("-", "_")
+    if plain in library.KINDS:
+        return plain
+    remedy = suggest(plain, library.KINDS)
+    for each in library.KINDS:
+        if kind in library.entries(each):
+            remedy = f"{kind} is one of the {each}: tpss library {each} {kind}"
+    raise LibraryError(f"the library has no kind {kind!r}\n    -> {remedy}")
+
+
+def _print_entries(kind: str, console: Console) -> None:
+    how, entries = KINDS[kind], library.entries(kind)
+    console.print(f"\n[bold]{kind}[/bold]  {how.title}", highlight=False)
+    table = _table("name", *(_heading(key) for key in how.shown))
+    sources = Table.grid(padding=(0, 2))
+    for name, entry in entries.items():
+        table.add_row(escape(name), *(_value(entry.get(key)) for key in how.shown))
+        sources.add_row(f"  {escape(name)}:", escape(_source(entry)))
+    console.print(table)
+    console.print(sources)
+
+
+def _print_entry(kind: str, name: str, console: Console) -> None:
+    how, entry = KINDS[kind], library.entries(kind)[name]
+    console.print(f"\n[bold]{escape(name)}[/bold]  {how.title}", highlight=False)
+    console.print(_entry_table(kind, entry))
+    _print_plain(console, f"Source: {_source(entry)}\n\nIn a scenario:\n\n{usage(kind, name)}")
+    values = ", ".join(tomli_w.dumps(library.values(kind, name)).splitlines())
+    console.print(
+        how.remark.format(key=how.key, values=values), highlight=False, markup=False, soft_wrap=True
+    )
+
+
+def _entry_table(kind: str, entry: dict[str, Any]) -> Table:
+    """All keys of an entry's part, those that it leaves at their default too."""
+    how = KINDS[kind]
+    part: type[Part] = getattr(import_module(how.module), how.part)
+    table = _table("key", "value", "unit", "")
+    for key, field in part.model_fields.items():
+        if key != how.key:
+            value = _value(entry[key]) if key in entry else f"[dim]{_value(field.default)}[/dim]"
+            table.add_row(key, value, units.label(key), escape(field.description or ""))
+    return table
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for heading in headings:
+        table.add_column(heading)
+    return table
+
+
+def words(key: str) -> str:
+    """Key in words, without its unit."""
+    return key.removesuffix(units.suffix(key)).replace("_", " ")
+
+
+def _heading(key: str) -> str:
+    return f"{words(key)}\n[dim]{units.label(key)}[/dim]"
+
+
+def _value(value: Any) -> str:
+    return "-" if value is None else escape(str(value))
+
+
+def _source(entry: dict[str, Any]) -> str:
+    """Source of an entry, its citations of the bibliography without their markup."""
+    return str(entry["source"]).replace("]_", "]")
+
+
+def _print_plain(console: Console, text: str) -> None:
+    console.print(text, highlight=False, markup=False)

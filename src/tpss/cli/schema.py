@@ -1,0 +1,42 @@
+"""The command ``tpss schema``: the JSON Schema of the scenario format."""
+
+import json
+import os
+import tempfile
+from pathlib import Path
+
+from tpss.errors import ResultError
+from tpss.scenario.schema import TITLE, scenario_schema
+
+
+def write_schema(out: Path | None) -> None:
+    """Print the schema, or write it into a file, whole or not at all.
+
+    Raises
+    ------
+    ResultError
+        The file cannot be written, or is there and holds something else than a schema of TPSS.
+    """
+    text = json.dumps(scenario_schema(), indent=2, ensure_ascii=False) + "\n"
+    if out is None:
+        print(text, end="")
+        return
+    if os.path.lexists(out) and not _is_our_schema(out):
+        raise ResultError(f"{out} is there and is not a schema of TPSS; name another file")
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as folder:
+            part = Path(folder) / out.name
+            part.write_text(text, encoding="utf-8")
+            part.replace(out)
+    except OSError as error:
+        message = f"{out} cannot be written: {error.strerror}; name another file"
+        raise ResultError(message) from error
+    print(f"Wrote {out}.  In a scenario, the first line  #:schema {out.name}  leads editors to it.")
+
+
+def _is_our_schema(file: Path) -> bool:
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(document, dict) and document.get("title") == TITLE

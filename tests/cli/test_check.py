@@ -1,0 +1,164 @@
+"""The command ``tpss check``: every fault of a scenario, what it says, and what may not be meant."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from conftest import EXAMPLES
+
+MAIN_LINE = EXAMPLES / "thesis_160km.toml"
+STOP = EXAMPLES / "thesis_3_7_2.toml"
+
+
+def check(tpss_command, file, *changes):
+    """What `tpss check` says of a file with some values changed."""
+    return tpss_command("check", file, *(word for change in changes for word in ("--set", change)))
+
+
+def test_a_scenario_is_told_in_a_few_lines(tpss_command, tmp_path):
+    said = check(tpss_command, MAIN_LINE)
+    assert (said.code, said.err) == (0, "")
+    for words in (
+        "thesis-160km Rc4 freight trains every 10 minutes",
+        "line 160 km",
+        "West 0 km, Middle 80 km, East 160 km",
+        "gradients -3.4658 to 5.7058 ‰; from beginning to end +179 m",
+        "speed limits 100 km/h from 0 km",
+        "frequency 16.7 Hz",
+        "catenary BT: 0.21 + j0.2 Ω/km",
+        "132kV, 132 kV; transformers: 16MVA at 40 km, 80 km, 120 km, 25MVA at the stations",
+        "West 0 km: 6 x Q48/Q49 of 10 MVA, control all-on",
+        "freight: Rc4-freight-1470t, mass 1470 t, adhesive mass 79 t, max speed 135 km/h",
+        "eastbound: freight from West to East, every 10 min from 0 min, already running",
+        "steps of 0.5 min until eastbound 1 arrives",
+    ):
+        assert words in said.out, words
+    assert said.out.endswith(f"No faults in {MAIN_LINE}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_departs_from_the_library_and_the_defaults_is_told(tpss_command):
+    said = check(
+        tpss_command,
+        STOP,
+        "trains.freight.efficiency=0.9",
+        "supply.catenary={r_ohm_per_km = 0.1, x_ohm_per_km = 0.3}",
+        "simulation.rail=wet",
+        "traffic.0.already_running=false",
+        "traffic.0.initial_trains=[{position_km = 20.0, speed_kmh = 60.0}]",
+    )
+    assert said.code == 0
+    for words in (
+        "changed from the library: efficiency 0.9 (0.8)",
+        "own: 0.1 + j0.3 Ω/km",
+        "steps of 1 min until eastbound 1 arrives, rail wet",
+        "trains on the line at the start: 1, stops: Middle 2 min",
+    ):
+        assert words in said.out, words
+
+
+def test_long_lists_are_cut(tpss_command, short_file):
+    said = check(
+        tpss_command, short_file, "supply.high_voltage_line={type = '132kV', transformers = 20}"
+    )
+    assert "16MVA at 0.952381 km ... 19.0476 km, 20 in all" in said.out
+
+
+def test_the_values_of_a_saved_scenario_get_their_library_names_back(tpss_command, tmp_path):
+    tpss_command("run", MAIN_LINE, "--set", "traffic.0.already_running=false", "--quiet")
+    said = check(tpss_command, tmp_path / "results/thesis-160km-001/scenario.toml")
+    assert "catenary BT: 0.21 + j0.2 Ω/km" in said.out
+    assert "6 x Q48/Q49 of 10 MVA" in said.out
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
+def test_every_example_can_be_checked(tpss_command, file):
+    assert check(tpss_command, file).code == 0
+
+
+def test_all_faults_are_reported_as_by_a_run(tpss_command):
+    faults = ("supply.catenary=BTX", "line.length_km='160 km'", "traffic.0.to=Eats")
+    checked = check(tpss_command, MAIN_LINE, *faults)
+    options = [word for fault in faults for word in ("--set", fault)]
+    ran = tpss_command("run", MAIN_LINE, *options)
+    assert (checked.code, checked.out, checked.err) == (2, "", ran.err)
+    assert "did you mean BT?" in checked.err
+
+
+def test_a_train_placed_too_fast_is_a_fault(tpss_command):
+    trains = "traffic.0.initial_trains=[{position_km = 3.0, speed_kmh = 120.0}]"
+    said = check(tpss_command, MAIN_LINE, "traffic.0.already_running=false", trains)
+    assert (said.code, said.out) == (2, "")
+    assert "faster than the limit here, 100 km/h" in said.err
+
+
+@pytest.mark.parametrize(
+    ("changes", "note"),
+    [
+        (["trains.freight.max_speed_kmh=90"],
+         "trains.freight: its max_speed_kmh of 90 is below every speed limit of the line"),
+        (["trains.other={model = 'Rc4-freight-1470t'}"],
+         "trains.other is used by no traffic entry"),
+        (["supply.converter_stations.0.converters=1"],
+         "supply.converter_stations.0: control = \"loading\" has nothing to switch"),
+        (["traffic.0.stops.0.dwell_min=2.5"],
+         "traffic.0 (eastbound): the stop of 2.5 min at Middle takes whole time steps, 3 min"),
+        (["traffic.0.headway_min=7.25"],
+         "traffic.0 (eastbound): its departures are not all at whole time steps of 1 min"),
+        (["traffic.0.first_departure_min=30", "simulation={time_step_min = 1, duration_min = 30}"],
+         "traffic.0 (eastbound): its first departure, at 30 min, is not before the end of the run"),
+        (["line.length_km=160.1", "line.speed_limits=[{from_km = 0, speed_kmh = 100}, "
+          "{from_km = 161, speed_kmh = 60}]"],
+         "line.speed_limits.1 begins at 161 km, where the line has ended (160.1 km)"),
+    ],
+)  # fmt: skip
+def test_what_may_not_be_meant_is_noted(tpss_command, changes, note):
+    said = check(tpss_command, STOP, *changes)
+    assert said.code == 0
+    assert said.out.count("Note:") == 1
+    assert f"Note: {note}" in said.out
+
+
+def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, short_file):
+    (tmp_path / "profile.csv").write_text("position_km,gradient_permille\n2,1\n25,0\n")
+    changes = ("line.gradients_file=profile.csv", "line.length_km=20")
+    text = short_file.read_text().replace("gradients = [", "other = [")
+    start = text.index("other = [")
+    short_file.write_text(text[:start] + text[text.index("]", start) + 1 :])
+    said = check(tpss_command, short_file, *changes)
+    assert "Note: line.gradients begins at 2 km; its first gradient holds from 0 km on" in said.out
+    assert "Note: line.gradients goes on to 25 km, but the line ends at 20 km" in said.out
+    assert "gradients 1 ‰; from beginning to end +20 m" in said.out
+
+
+def test_a_gradient_on_which_a_train_cannot_start_is_noted(tpss_command, short_file):
+    """1470 t on 20 ‰ need 1470 · 9.81 · 0.020 + 15.4 = 303.8 kN.
+
+    Dry rails give 79 · 9.81 · (0.161 + 7.5/44) = 256.9 kN; with 15 ‰, 231.7 kN, the train can start.
+    """
+    at_15, at_20 = (
+        check(tpss_command, short_file, f"line.gradients=[{{from_km = 5, permille = {permille}}}]")
+        for permille in (15, 20)
+    )
+    assert "to start" not in at_15.out
+    assert (
+        "Note: traffic.0 (eastbound): between 0 and 20 km the gradient is 20 ‰, on which freight "
+        "needs 304 kN to start; dry rails give it 257 kN" in at_20.out
+    )
+
+
+def test_nothing_is_compiled_and_no_results_are_imported(tmp_path):
+    script = (
+        "import sys\n"
+        "from tpss.cli.check import check_scenario\n"
+        "from pathlib import Path\n"
+        "check_scenario(Path(sys.argv[1]), [])\n"
+        "assert not {'pandas', 'xarray', 'h5py'} & set(sys.modules)\n"
+    )
+    subprocess.run(
+        [sys.executable, "-c", script, MAIN_LINE],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}, check=True, capture_output=True,
+    )  # fmt: skip
+    assert not list(tmp_path.rglob("*.nbi"))

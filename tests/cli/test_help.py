@@ -1,0 +1,81 @@
+"""The command line teaches itself, completes words, and starts fast."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from conftest import EXAMPLES
+
+COMMANDS = ("run", "check", "new", "library", "schema")
+HEAVY = {"h5netcdf", "h5py", "numba", "numpy", "pandas", "scipy", "xarray"}
+
+
+def test_the_version_is_told(tpss_command):
+    assert tpss_command("--version").out.startswith("tpss ")
+
+
+def test_help_lists_the_commands_and_says_where_to_start(tpss_command):
+    said = tpss_command("--help")
+    assert said.code == 0
+    assert "Start with: tpss new my-line" in said.out
+    assert "--install-completion" in said.out
+    for command in COMMANDS:
+        assert f"│ {command} " in said.out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_every_command_has_an_example(tpss_command, command):
+    said = tpss_command(command, "--help")
+    assert said.code == 0
+    assert any(f"{word}: tpss {command}" in said.out for word in ("Example", "Examples"))
+
+
+def test_the_options_of_a_run_are_explained(tpss_command):
+    said = tpss_command("run", "--help")
+    for option in ("--out", "--set", "--force", "--quiet", "--show"):
+        assert option in said.out
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["library", "--help"]])
+def test_help_imports_nothing_heavy(arguments):
+    script = (
+        "import sys\n"
+        "from tpss.__main__ import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    print(*sys.modules, sep='\\n')\n"
+    )
+    call = [sys.executable, "-c", script, *arguments]
+    done = subprocess.run(call, capture_output=True, text=True, check=True)
+    assert not HEAVY & set(done.stdout.splitlines())
+
+
+def completed(words: str, folder) -> list[str]:
+    """What bash would offer for the last of some words."""
+    environment = {
+        **os.environ,
+        "_TPSS_COMPLETE": "complete_bash",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split(" ")) - 1),
+    }
+    call = [sys.executable, "-c", "from tpss.cli.main import app; app(prog_name='tpss')"]
+    done = subprocess.run(
+        call, env=environment, cwd=folder, capture_output=True, text=True, check=True
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("tpss sc", ["schema"]),
+        ("tpss library ca", ["catenaries"]),
+        ("tpss library transformers ", ["16MVA", "25MVA"]),
+        ("tpss library catenarys ", []),
+        ("tpss run examples/thesis_3", ["examples/thesis_3_3.toml", "examples/thesis_3_7_2.toml"]),
+        ("tpss run exa", []),  # a folder is left to the shell
+    ],
+)
+def test_words_are_completed(tmp_path, words, offered):
+    (tmp_path / "examples").symlink_to(EXAMPLES)
+    assert completed(words, tmp_path) == offered

@@ -1,0 +1,98 @@
+"""The command ``tpss library``: what ships as data, with units, sources and how to use it."""
+
+import copy
+import tomllib
+from importlib.resources import files
+
+import pytest
+
+import tpss
+from tpss import library
+from tpss.cli.library import KINDS, usage
+
+from scenarios import SHORT_LINE
+
+ENTRIES = [(kind, name) for kind in library.KINDS for name in library.entries(kind)]
+
+
+def test_every_file_of_the_library_is_a_kind():
+    names = {file.name for file in files(library).iterdir()}
+    assert {f"{kind}.toml" for kind in library.KINDS} == {n for n in names if n.endswith(".toml")}
+    assert set(KINDS) == set(library.KINDS)
+
+
+def test_everything_is_listed_with_its_source(tpss_command):
+    said = tpss_command("library")
+    assert (said.code, said.err) == (0, "")
+    for kind, name in ENTRIES:
+        assert f"{name}: " in said.out
+        source = library.entries(kind)[name]["source"].replace("]_", "]")
+        assert source in said.out, source
+
+
+def test_a_kind_is_listed_with_values_and_units(tpss_command):
+    said = tpss_command("library", "catenaries")
+    assert said.code == 0
+    assert "name Ω/km Ω/km nF/km Ω Ω" in said.out
+    assert "AT 0.0335 0.031 13.5 0.189 0.293" in said.out
+    assert "Q48/Q49" not in said.out
+    assert "tpss library catenaries BT" in said.out
+
+
+def test_a_kind_may_be_written_with_hyphens(tpss_command):
+    assert "132kV 0.051 0.062" in tpss_command("library", "high-voltage-lines").out
+
+
+@pytest.mark.parametrize(("kind", "name"), ENTRIES)
+def test_an_entry_is_shown_whole(tpss_command, kind, name):
+    said = tpss_command("library", kind, name)
+    assert (said.code, said.err) == (0, "")
+    for key, value in library.values(kind, name).items():
+        assert f"{key} {value}" in said.out
+    assert "Source: " in said.out
+
+
+def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
+    said = tpss_command("library", "locomotives", "Rc4-freight-1470t")
+    assert "mass_t 1470.0 t Mass of the whole train." in said.out
+    assert "motor_voltage new Motor voltage over speed alone" in said.out
+    assert "filter_reactance_ohm - Ω Reactance of the filter" in said.out
+    reactance = tpss_command("library", "converters", "Q48/Q49").out
+    assert "generator_reactance_pu 0.53 p.u. q-axis reactance of the generator." in reactance
+
+
+@pytest.mark.parametrize(("kind", "name"), ENTRIES)
+def test_the_shown_usage_is_that_of_a_scenario(kind, name):
+    """The lines are put into a scenario that names something else in that place, or nothing."""
+    document = copy.deepcopy(SHORT_LINE)
+    document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
+    used = tomllib.loads(usage(kind, name))
+    for table, part in used.items():
+        for key, value in part.items():
+            if isinstance(value, list):
+                document[table][key][0].update(value[0])
+            elif isinstance(value, dict):
+                document[table].setdefault(key, {}).update(value)
+            else:
+                document[table][key] = value
+    assert tpss.Scenario.from_document(document).name == "short-line"
+
+
+def test_a_table_of_one_s_own_is_shown_with_the_entry_s_values(tpss_command):
+    said = tpss_command("library", "high_voltage_lines", "132kV")
+    assert "type = { r_ohm_per_km = 0.051, x_ohm_per_km = 0.062 }" in said.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["catenary"], "no kind 'catenary' -> did you mean catenaries? choose from catenaries,"),
+        (["AT"], "no kind 'AT' -> AT is one of the catenaries: tpss library catenaries AT"),
+        (["catenaries", "ATX"], "no 'ATX' in catenaries -> did you mean AT? choose from AT, BT"),
+        (["converters", "9"], "no '9' in converters -> choose from Q48/Q49"),
+    ],
+)
+def test_an_unknown_name_is_explained(tpss_command, arguments, words):
+    said = tpss_command("library", *arguments)
+    assert (said.code, said.out) == (2, "")
+    assert f"the library has {words}" in said.err
