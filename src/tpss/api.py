@@ -2,7 +2,8 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,8 +15,15 @@ from tpss.results.dataset import build_dataset
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.run import Outcome, Progress, compile_kernels, run_services
+from tpss.simulation.run import (
+    Outcome,
+    Progress,
+    compile_kernels,
+    interruptible,
+    run_services,
+)
 from tpss.simulation.state import Model
+from tpss.simulation.timetable import Service
 from tpss.units import si
 
 
@@ -32,26 +40,57 @@ def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = N
     -------
     Result
         Its ``status`` says whether the run finished; a line that cannot carry its load or a train
-        that stalls ends it early, with everything up to then kept.
+        that stalls ends it early, and so does a Ctrl-C, with everything up to then kept.
 
     Raises
     ------
     ScenarioError
         A train that the scenario places on the line could not stop or slow down in time.
     """
+    prepared = prepare(scenario)
+    with interruptible() as interrupted:
+        return prepared.run(progress, interrupted)
+
+
+def prepare(scenario: Scenario) -> "Prepared":
+    """Build the model of a scenario and compile the kernels, all that comes before the first step.
+
+    Raises
+    ------
+    ScenarioError
+        As `simulate`.
+    """
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
-    duration = scenario.simulation.duration_min
-    steps = (
-        None
-        if duration is None
-        else steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    )
     compile_kernels(model)
-    started = time.perf_counter()
-    outcome = run_services(model, services, steps, progress)
-    elapsed_s = time.perf_counter() - started
-    return _result(scenario, outcome, model, layout, elapsed_s)
+    return Prepared(scenario, model, layout, services)
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scenario whose run can begin."""
+
+    scenario: Scenario
+    model: Model
+    layout: Layout
+    services: list[Service]
+
+    def run(
+        self,
+        progress: Callable[[Progress], None] | None = None,
+        interrupted: Sequence[int] = (),
+    ) -> Result:
+        """Result of the run; it ends early once `interrupted` is filled."""
+        duration = self.scenario.simulation.duration_min
+        steps = (
+            None
+            if duration is None
+            else steps_of(si(self.scenario.simulation, "duration_min"), self.model.options.step_s)
+        )
+        started = time.perf_counter()
+        outcome = run_services(self.model, self.services, steps, progress, interrupted)
+        elapsed_s = time.perf_counter() - started
+        return _result(self.scenario, outcome, self.model, self.layout, elapsed_s)
 
 
 def _result(

@@ -7,64 +7,23 @@ Exit codes: 0 done, 2 bad input, 3 no solution or a stalled train, 4 the audit f
 import json
 import os
 import re
-import signal
+import resource
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-import tomli_w
-import xarray as xr
 
 import tpss.api
 from tpss import load_result
 from tpss.cli.main import main
-from tpss.results import audit
-from tpss.simulation import run as clock
+from tpss.results import audit, store
 
 from conftest import EXAMPLES
-from scenarios import SHORT_LINE
 
 HEADWAY = EXAMPLES / "at_headway_3.toml"
 OVERLOADED = EXAMPLES / "overloaded.toml"
 SHORT = ("--set", "simulation.duration_min=3")
 STEEP = ("--set", "line.gradients=[{from_km = 0.0, permille = 30.0}]")
-
-
-@dataclass(frozen=True)
-class Said:
-    """What a call of the command line printed, its white space made even, and its exit code."""
-
-    code: int | str | None
-    out: str
-    err: str
-
-
-@pytest.fixture
-def tpss_command(monkeypatch, tmp_path, capsys):
-    """The command line in an empty folder; no call of it may print a traceback."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.delenv("TPSS_DEBUG", raising=False)
-
-    def call(*arguments: object) -> Said:
-        capsys.readouterr()
-        monkeypatch.setattr("sys.argv", ["tpss", *map(str, arguments)])
-        with pytest.raises(SystemExit) as exited:
-            main()
-        out, err = (" ".join(text.split()) for text in capsys.readouterr())
-        assert "Traceback" not in out + err
-        return Said(exited.value.code, out, err)
-
-    return call
-
-
-@pytest.fixture
-def short_file(tmp_path):
-    """The short line as a file."""
-    file = tmp_path / "short_line.toml"
-    file.write_text(tomli_w.dumps(SHORT_LINE), encoding="utf-8")
-    return file
 
 
 def files_in(folder: Path) -> dict[str, bytes]:
@@ -112,7 +71,7 @@ def test_a_run_prints_what_matters(tpss_command, short_file):
 
 def test_quiet_prints_nothing(tpss_command, tmp_path):
     said = tpss_command("run", HEADWAY, *SHORT, "--quiet")
-    assert said == Said(0, "", "")
+    assert (said.code, said.out, said.err) == (0, "", "")
     assert folders_in(tmp_path) == ["results", "results/at-headway-3-001"]
 
 
@@ -142,7 +101,7 @@ def test_an_existing_folder_is_refused_and_left_alone(tpss_command, tmp_path):
 
 
 def test_a_refused_folder_is_found_out_before_the_run(tpss_command, tmp_path, monkeypatch):
-    monkeypatch.setattr(tpss.api, "simulate", lambda *_: pytest.fail("it has run"))
+    monkeypatch.setattr(tpss.api, "prepare", lambda *_: pytest.fail("it has run"))
     (tmp_path / "a").mkdir()
     assert tpss_command("run", HEADWAY, "--out", "a").code == 2
 
@@ -176,7 +135,7 @@ def test_a_folder_below_a_file_is_refused(tpss_command, tmp_path):
     (tmp_path / "notes.txt").touch()
     said = tpss_command("run", HEADWAY, *SHORT, "--out", "notes.txt/a")
     assert said.code == 2
-    assert "notes.txt is not a folder that can be written; give another --out" in said.err
+    assert "notes.txt/a cannot be written: Not a directory; give another --out" in said.err
     assert list(files_in(tmp_path)) == ["notes.txt"]
 
 
@@ -185,28 +144,82 @@ def test_a_folder_that_may_not_be_written_is_refused(tpss_command, tmp_path):
     (tmp_path / "locked").mkdir(mode=0o500)
     said = tpss_command("run", HEADWAY, *SHORT, "--out", "locked/a")
     assert said.code == 2
-    assert "locked is not a folder that can be written" in said.err
+    assert "locked/a cannot be written: Permission denied" in said.err
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "loop/a"])
+def test_a_folder_that_cannot_be_made_is_found_out_before_the_run(
+    tpss_command, tmp_path, monkeypatch, name
+):
+    monkeypatch.setattr(tpss.api, "prepare", lambda *_: pytest.fail("it has run"))
+    (tmp_path / "loop").symlink_to("loop")
+    said = tpss_command("run", HEADWAY, "--out", name)
+    assert said.code == 2
+    assert "cannot be written: " in said.err
+    assert "give another --out" in said.err
+
+
+def test_a_link_to_a_folder_leads_the_result_there(tpss_command, tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "results").symlink_to("disk")
+    assert tpss_command("run", HEADWAY, *SHORT, "--quiet").code == 0
+    assert load_result(tmp_path / "disk" / "at-headway-3-001").status == "finished"
 
 
 def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkeypatch):
-    """The disc of ``results`` is full; the hours of computing are not lost."""
-    written = xr.Dataset.to_netcdf
+    """The disk of ``results`` fills up; the hours of computing are not lost."""
+    write = store._write
 
-    def to_netcdf(dataset, path, **options):
-        if "results" in Path(path).parts:
+    def to_a_full_disk(path, content):
+        if "results" in path.parts:
             raise OSError(28, "No space left on device")
-        return written(dataset, path, **options)
+        write(path, content)
 
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    monkeypatch.setattr(store, "_write", to_a_full_disk)
     said = tpss_command("run", HEADWAY, *SHORT)
     assert said.code == 2
-    assert "No space left on device" in said.err
-    (rescued,) = (tmp_path / "spare").glob("*/at-headway-3-001")
-    assert f"saved into {rescued} instead" in said.err
+    assert "results cannot be written: No space left on device" in said.err
+    (rescued,) = (tmp_path / "spare").iterdir()
+    assert f"The result was saved into {rescued} instead." in said.err
     assert load_result(rescued).status == "finished"
     assert folders_in(tmp_path / "results") == []
+
+
+@pytest.fixture
+def file_size_limit():
+    """Refuse to let any file grow beyond a size: the system's own way, as on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_full_disk_is_found_out_before_the_run(
+    tpss_command, tmp_path, monkeypatch, file_size_limit
+):
+    monkeypatch.setattr(tpss.api, "prepare", lambda *_: pytest.fail("it has run"))
+    file_size_limit(10_000)
+    said = tpss_command("run", HEADWAY)
+    assert said.code == 2
+    assert "results cannot be written: File too large; give another --out" in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("options", [(), ("--quiet",)], ids=["", "quiet"])
+def test_a_result_that_no_disk_can_hold_is_printed_at_least(
+    tpss_command, tmp_path, monkeypatch, file_size_limit, options
+):
+    (tmp_path / "spare").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
+    file_size_limit(store.TRIAL_BYTES)
+    said = tpss_command("run", HEADWAY, *SHORT, *options)
+    assert said.code == 2
+    assert "Energy over 3.00 min" in said.out
+    assert "results cannot be written: File too large" in said.err
+    assert "Nothing of the result is kept but what is printed here." in said.err
+    assert files_in(tmp_path) == {}
+    assert folders_in(tmp_path) == ["results", "spare"]
 
 
 def test_show_prints_a_row_for_every_step(tpss_command, capsys, monkeypatch):
@@ -331,44 +344,6 @@ def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_pat
     assert len(folders_in(tmp_path / "results")) == 1
 
 
-def press_ctrl_c(towards: int, monkeypatch: pytest.MonkeyPatch, times: int = 1) -> None:
-    """Press Ctrl-C when the clock sets out for a step; to step 0 it goes to compile the kernels."""
-    advance, left = clock.advance, [signal.SIGINT] * times
-
-    def interrupted(step, last, *arguments):
-        while last >= towards and left:
-            signal.raise_signal(left.pop())
-        return advance(step, last, *arguments)
-
-    monkeypatch.setattr(clock, "advance", interrupted)
-
-
-def test_an_interrupted_run_is_saved(tpss_command, tmp_path, short_file, monkeypatch):
-    press_ctrl_c(1, monkeypatch)
-    said = tpss_command("run", short_file)
-    assert said.code == 130
-    result = load_result(tmp_path / "results" / "short-line-001")
-    assert result.status == "interrupted"
-    assert result.audit["passed"]
-    minutes = float(result.dataset.time[-1]) / 60.0
-    assert 0.0 < minutes < 20.0
-    assert f"Interrupted. Stopped at {minutes:.2f} min" in said.out
-    assert "Run it again for the whole." in said.out
-
-
-def test_a_second_ctrl_c_does_not_wait(tpss_command, tmp_path, short_file, monkeypatch):
-    press_ctrl_c(1, monkeypatch, times=2)
-    assert tpss_command("run", short_file).code == 130
-    assert list(tmp_path.iterdir()) == [short_file]
-
-
-def test_an_interruption_before_there_are_trains_saves_nothing(tpss_command, tmp_path, monkeypatch):
-    press_ctrl_c(0, monkeypatch)
-    said = tpss_command("run", HEADWAY, *SHORT)
-    assert (said.code, said.out) == (130, "")
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize("figure", sorted(audit.LIMITS))
 def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
     monkeypatch.setitem(audit.LIMITS, figure, -1.0)
@@ -385,20 +360,11 @@ def test_a_failed_audit_counts_more_than_an_early_end(tpss_command, monkeypatch)
     assert tpss_command("run", OVERLOADED, "--quiet").code == 4
 
 
-def test_help_and_version(tpss_command):
-    assert tpss_command("--version").out.startswith("tpss ")
-    said = tpss_command("run", "--help")
-    assert said.code == 0
-    assert "Example: tpss run examples/thesis_160km.toml" in said.out
-    for option in ("--out", "--set", "--force", "--quiet", "--show"):
-        assert option in said.out
-
-
 def break_the_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
-    def simulate(*_):
+    def prepare(*_):
         raise RuntimeError("a wheel came off")
 
-    monkeypatch.setattr(tpss.api, "simulate", simulate)
+    monkeypatch.setattr(tpss.api, "prepare", prepare)
 
 
 def test_a_fault_of_the_program_says_so_without_a_traceback(tpss_command, monkeypatch):

@@ -1,9 +1,11 @@
 """The command ``tpss run``."""
 
+import os
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,17 +34,32 @@ def run_scenario(
 
     changes = dict(parse_assignment(text) for text in assignments)
     scenario = load_scenario(file, changes)
-    folder = out if out is not None else store.next_folder(scenario.name)
-    store.check_target(folder, force)
-    result = _simulate(scenario, quiet)
-    folder, as_asked = _save(result, folder, force)
-    known = result.dataset.train.to_numpy().tolist()
-    if not quiet:
-        _report(result, folder, show if show in known else None)
-    if show is not None and show not in known:
-        print(f"There is no train {show!r}; trains: {', '.join(known)}", file=sys.stderr)
-        return BAD_INPUT
-    return exit_code(result) if as_asked else BAD_INPUT
+    store.check_target(scenario, out, force)
+    try:
+        ended = _simulate_and_save(scenario, out, force, quiet)
+    except KeyboardInterrupt:
+        print("Interrupted; nothing was saved.", file=sys.stderr)
+        return INTERRUPTED
+    try:
+        return _report(ended, quiet, show)
+    except KeyboardInterrupt:
+        if not ended.fault:
+            print(f"Interrupted.  The result lies in {ended.folder}", file=sys.stderr)
+        return INTERRUPTED
+    finally:
+        if ended.fault:
+            print(ended.fault, file=sys.stderr)
+
+
+@dataclass(frozen=True)
+class _Ended:
+    """A run that has ended and was saved, if it could be."""
+
+    result: "Result"
+    folder: Path | None
+    fault: str
+    """Why the result could not be saved as asked; empty if it was."""
+    interrupted: bool
 
 
 def exit_code(result: "Result") -> int:
@@ -52,17 +69,27 @@ def exit_code(result: "Result") -> int:
     return {"finished": DONE, "interrupted": INTERRUPTED}.get(result.status, NO_SOLUTION)
 
 
-def _simulate(scenario: "Scenario", quiet: bool) -> "Result":
-    from tpss.api import simulate
+def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quiet: bool) -> _Ended:
+    """Simulate and save; from the first step on, a Ctrl-C ends the run and saves what there is."""
+    from tpss.api import prepare
     from tpss.kernel import kernels_are_compiled
+    from tpss.simulation.run import interruptible
 
-    if quiet:
-        return simulate(scenario)
-    console = Console(stderr=True)
+    console = Console(stderr=True, quiet=quiet)
     if not kernels_are_compiled():
         console.print("Compiling the numerical kernels; this takes up to half a minute, once.")
-    with _progress_bar(scenario.name, console) as progress:
-        return simulate(scenario, progress)
+    prepared = prepare(scenario)
+    with interruptible(None if quiet else _notice) as interrupted:
+        with nullcontext() if quiet else _progress_bar(scenario.name, console) as progress:
+            result = prepared.run(progress, interrupted)
+        folder, fault = _save(result, out, force)
+    return _Ended(result, folder, fault, bool(interrupted))
+
+
+def _notice() -> None:
+    """Written past the buffers of the program, which the Ctrl-C may have met at work on them."""
+    with suppress(OSError):
+        os.write(2, b"\nInterrupted: what there is will be saved; another Ctrl-C gives it up.\n")
 
 
 @contextmanager
@@ -84,24 +111,50 @@ def _progress_bar(name: str, console: Console) -> Iterator[Callable[["Progress"]
         yield report
 
 
-def _save(result: "Result", folder: Path, force: bool) -> tuple[Path, bool]:
-    """Save a result; if its folder fails, save into a temporary one, and say so.
+def _save(result: "Result", out: Path | None, force: bool) -> tuple[Path | None, str]:
+    """Save a result; if its folder fails, save into a temporary one.
 
-    Returns the folder, and whether it is the one that was asked for.
+    Returns the folder, if there is one, and what went wrong, if anything did.
     """
     try:
-        return result.save(folder, force=force), True
+        return result.save(out, force=force), ""
     except ResultError as error:
-        rescue = result.save(Path(tempfile.mkdtemp(prefix="tpss-")) / folder.name)
-        print(f"{error}\nThe result was saved into {rescue} instead.", file=sys.stderr)
-        return rescue, False
+        fault = str(error)
+    try:
+        rescue = _save_elsewhere(result)
+    except (ResultError, OSError) as error:
+        return None, f"{fault}\n{error}\nNothing of the result is kept but what is printed here."
+    return rescue, f"{fault}\nThe result was saved into {rescue} instead."
 
 
-def _report(result: "Result", folder: Path, show: str | None) -> None:
+def _save_elsewhere(result: "Result") -> Path:
+    spare = Path(tempfile.mkdtemp(prefix=f"tpss-{result.scenario.name}-"))
+    try:
+        return result.save(spare, force=True)
+    except ResultError:
+        spare.rmdir()
+        raise
+
+
+def _report(ended: _Ended, quiet: bool, show: str | None) -> int:
+    """Print what matters; return the exit code."""
     from tpss.cli import tables
 
-    console = Console()
-    tables.print_result(result, console)
-    if show is not None:
-        tables.print_train(result, show, console)
-    console.print(f"Saved in {folder}", highlight=False, soft_wrap=True, markup=False)
+    result, known = ended.result, ended.result.dataset.train.to_numpy().tolist()
+    if not quiet or ended.folder is None:
+        console = Console()
+        tables.print_result(result, console)
+        if show is not None and show in known:
+            tables.print_train(result, show, console)
+        if not ended.fault:
+            saved = f"Saved in {ended.folder}"
+            console.print(saved, highlight=False, soft_wrap=True, markup=False)
+        if ended.interrupted and result.status != "interrupted":
+            console.print("Interrupted when the run had ended: the result is whole.")
+    if ended.fault:
+        return BAD_INPUT
+    if show is not None and show not in known:
+        print(f"There is no train {show!r}; trains: {', '.join(known)}", file=sys.stderr)
+        return BAD_INPUT
+    code = exit_code(result)
+    return INTERRUPTED if code == DONE and ended.interrupted else code

@@ -51,13 +51,14 @@ class Result:
         """One row a converter station: energy, peaks, loading, converters."""
         return tables.stations(self.dataset)
 
-    def save(self, folder: str | Path, *, force: bool = False) -> Path:
+    def save(self, folder: str | Path | None = None, *, force: bool = False) -> Path:
         """Save into a folder, which is written whole or not at all.
 
         Parameters
         ----------
-        folder : path
-            Folder to make.
+        folder : path, optional
+            Folder to make; by default the first of ``results/<name>-001``, ``-002``, ... that is
+            free.
         force : bool
             Whether an existing result folder may be replaced.
 
@@ -71,7 +72,8 @@ class Result:
         ResultError
             The folder exists, or cannot be written.
         """
-        return store.save(self.scenario, self.dataset, self.summary, Path(folder), force)
+        place = None if folder is None else Path(folder)
+        return store.save(self.scenario, self.dataset, self.summary, place, force)
 
 
 def load_result(folder: str | Path) -> Result:

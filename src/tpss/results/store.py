@@ -4,6 +4,8 @@ import json
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,57 +19,142 @@ from tpss.scenario.scenario import Scenario
 
 DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
 
+TRIAL_BYTES = 2**16
+"""A disk without room for so much is full."""
 
-def check_target(folder: Path, force: bool) -> None:
+PARENT = Path("results")
+"""Folder of results that nobody has named."""
+
+
+def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
     """Find out, before any work is done, whether a result can be saved into a folder.
 
     Raises
     ------
     ResultError
-        It exists and may not be replaced, or its parent cannot be written.
+        It exists and may not be replaced, or it cannot be made, or the disk is full.
     """
-    if folder.exists() and not force:
+    with _told(folder):
+        if folder is not None:
+            _refuse_to_replace(folder, force)
+        _try_out(_real(folder or next_folder(scenario.name)))
+
+
+def save(
+    scenario: Scenario,
+    dataset: xr.Dataset,
+    summary: dict[str, Any],
+    folder: Path | None,
+    force: bool,
+) -> Path:
+    """Write a result folder.  See `Result.save`."""
+    with _told(folder):
+        if folder is not None:
+            _refuse_to_replace(folder, force)
+        target = _real(folder or next_folder(scenario.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with _folder_beside(target) as work:
+            new = work / "new"
+            new.mkdir()
+            # In memory first: on a full disk HDF5 cannot close its file, and brings the process down.
+            # The simulation has needed more memory than this.
+            _write(new / DATASET, dataset.to_netcdf(engine="h5netcdf"))
+            _write(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
+            text = json.dumps(summary, indent=2, ensure_ascii=False)
+            _write(new / SUMMARY, f"{text}\n".encode())
+            if folder is None:
+                return _move_to_next(new, scenario.name)
+            _refuse_to_replace(folder, force)
+            _move(new, target, old=work.with_name(f"{work.name}-replaced"))
+            return folder
+
+
+@contextmanager
+def _told(folder: Path | None) -> Iterator[None]:
+    """Say of what the system reports where it was, and what to do."""
+    try:
+        yield
+    except OSError as error:
+        place, reason = folder or PARENT, error.strerror or error
+        message = f"{place} cannot be written: {reason}; give another --out"
+        raise ResultError(message) from error
+
+
+def _real(folder: Path) -> Path:
+    """A folder's place on the disk, links followed."""
+    return Path(os.path.realpath(folder))
+
+
+def _refuse_to_replace(folder: Path, force: bool) -> None:
+    if not os.path.lexists(_real(folder)):
+        return
+    if not force:
         raise ResultError(f"{folder} exists already; give another --out, or --force to replace it")
-    if folder.exists() and not _is_replaceable(folder):
+    if not _is_replaceable(folder):
         raise ResultError(
             f"{folder} is not a result folder, so it is not replaced; give another --out"
         )
-    parent = folder.absolute().parent
-    while not parent.exists():
-        parent = parent.parent
-    if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
-        raise ResultError(f"{parent} is not a folder that can be written; give another --out")
 
 
 def _is_replaceable(folder: Path) -> bool:
     """Whether a folder is empty or holds a result."""
-    return folder.is_dir() and (not any(folder.iterdir()) or (folder / SUMMARY).exists())
+    if not folder.is_dir() or folder.is_mount():
+        return False
+    return not any(folder.iterdir()) or (folder / SUMMARY).exists()
 
 
-def save(
-    scenario: Scenario, dataset: xr.Dataset, summary: dict[str, Any], folder: Path, force: bool
-) -> Path:
-    """Write a result folder.  See `Result.save`."""
-    check_target(folder, force)
-    target = folder.absolute()
+@contextmanager
+def _folder_beside(target: Path) -> Iterator[Path]:
+    """A hidden folder to work in, on the disk of the nearest folder above `target` that exists."""
+    parent = next(folder for folder in target.parents if os.path.lexists(folder))
+    with tempfile.TemporaryDirectory(
+        prefix=f".{target.name}-", dir=parent, ignore_cleanup_errors=True
+    ) as work:
+        yield Path(work)
+
+
+def _try_out(target: Path) -> None:
+    """Write a little beside a folder to be made, as nothing else proves that it can be."""
+    with _folder_beside(target) as work:
+        (work / "trial").write_bytes(bytes(TRIAL_BYTES))
+
+
+def _write(path: Path, content: bytes | memoryview) -> None:
+    """Write a new file, and see to it that it is on the disk."""
+    with path.open("xb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _move(new: Path, target: Path, old: Path) -> None:
+    """Put a written folder into its place; one that it replaces goes only when that is done."""
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+        if target.exists():
+            target.rename(old)
+        new.rename(target)
+    finally:
+        if old.exists() and not target.exists():
+            old.rename(target)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _move_to_next(new: Path, name: str) -> Path:
+    """Put a written folder into the first free numbered place, which another run may take first."""
+    while True:
+        folder = next_folder(name)
         try:
-            dataset.to_netcdf(part / DATASET, engine="h5netcdf")
-            document = tomli_w.dumps(scenario.as_document())
-            (part / SCENARIO).write_text(document, encoding="utf-8")
-            text = json.dumps(summary, indent=2, ensure_ascii=False)
-            (part / SUMMARY).write_text(text + "\n", encoding="utf-8")
-            part.chmod(0o755)
-            if target.exists():
-                shutil.rmtree(target)
-            part.rename(target)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
-    except OSError as error:
-        message = f"{folder} cannot be written: {error.strerror or error}; give another --out"
-        raise ResultError(message) from error
+            return new.rename(folder)
+        except OSError:
+            if not folder.exists():
+                raise
+
+
+def next_folder(name: str, parent: Path = PARENT) -> Path:
+    """First free folder ``results/<name>-NNN``."""
+    number = 1
+    while os.path.lexists(folder := parent / f"{name}-{number:03d}"):
+        number += 1
     return folder
 
 
@@ -98,11 +185,3 @@ def _demand_a_result(dataset: xr.Dataset, summary: Any) -> None:
         raise ValueError(f"{SUMMARY} is not the summary of a run")
     if not {"position", "pantograph_voltage", "station_active_power"} <= set(dataset.data_vars):
         raise ValueError(f"{DATASET} is not the dataset of a run")
-
-
-def next_folder(name: str, parent: Path = Path("results")) -> Path:
-    """First free folder ``results/<name>-NNN``."""
-    number = 1
-    while (folder := parent / f"{name}-{number:03d}").exists():
-        number += 1
-    return folder

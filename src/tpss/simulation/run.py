@@ -8,7 +8,7 @@ import math
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -81,10 +81,15 @@ class Outcome:
 
 
 @contextmanager
-def interruptible() -> Iterator[list[int]]:
+def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int]]:
     """Give a list that a Ctrl-C fills, in place of an exception in the midst of a kernel.
 
     A second Ctrl-C interrupts as usual.  Outside the main thread nothing is changed.
+
+    Parameters
+    ----------
+    notice : callable, optional
+        Called at the first Ctrl-C, between any two instructions of the program.
     """
     received: list[int] = []
     if threading.current_thread() is not threading.main_thread():
@@ -95,6 +100,8 @@ def interruptible() -> Iterator[list[int]]:
     def note(number: int, _: object) -> None:
         received.append(number)
         signal.signal(signal.SIGINT, usual)
+        if notice is not None:
+            notice()
 
     signal.signal(signal.SIGINT, note)
     try:
@@ -195,6 +202,7 @@ def run_services(
     services: list[Service],
     steps: int | None,
     report: Callable[[Progress], None] | None = None,
+    interrupted: Sequence[int] = (),
 ) -> Outcome:
     """Run a model with its services.
 
@@ -207,6 +215,8 @@ def run_services(
         Number of steps; None: until the studied train arrives.
     report : callable, optional
         Called with the `Progress` after every stretch of steps.
+    interrupted : sequence
+        Ends the run, once it is filled, with the status "interrupted"; see `interruptible`.
 
     Raises
     ------
@@ -216,7 +226,7 @@ def run_services(
     Returns
     -------
     Outcome
-        A Ctrl-C ends the run with the status "interrupted" and what it has so far.
+        Also of a run that ended early: what it has until then.
     """
     h = model.options.step_s
     on_line = [
@@ -245,7 +255,7 @@ def run_services(
             "longer headway"
         )
     run = Run(model, trains, capacity)
-    status = _advance_to_end(run, services, steps, report)
+    status = _advance_to_end(run, services, steps, report, interrupted)
     return _outcome(run, status, studied)
 
 
@@ -254,30 +264,30 @@ def _advance_to_end(
     services: list[Service],
     steps: int | None,
     report: Callable[[Progress], None] | None,
+    interrupted: Sequence[int],
 ) -> str:
     """Advance by stretches until the run ends; return the name of its status."""
     h = run.model.options.step_s
     last = steps if steps is not None else int(LONGEST_RUN_S / h)
     stretch = 32
-    with interruptible() as interrupted:
-        while run.step < last:
-            if run.step == run.capacity:
-                more = min(last, run.capacity + run.capacity // 2 + 1)
-                departing = departing_trains(services, h, run.capacity, more)
-                trains = len(run.trains) + len(departing)
-                if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
-                    break
-                run.grow(more, departing)
-            started = time.perf_counter()
-            run.advance_to(min(run.step + stretch, run.capacity, last))
-            elapsed = time.perf_counter() - started
-            stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
-            if report is not None:
-                report(_progress(run, steps))
-            if run.status != Status.RUNNING:
-                return STATUS_NAME[run.status]
-            if interrupted:
-                return INTERRUPTED
+    while run.step < last:
+        if run.step == run.capacity:
+            more = min(last, run.capacity + run.capacity // 2 + 1)
+            departing = departing_trains(services, h, run.capacity, more)
+            trains = len(run.trains) + len(departing)
+            if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
+                break
+            run.grow(more, departing)
+        started = time.perf_counter()
+        run.advance_to(min(run.step + stretch, run.capacity, last))
+        elapsed = time.perf_counter() - started
+        stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
+        if report is not None:
+            report(_progress(run, steps))
+        if run.status != Status.RUNNING:
+            return STATUS_NAME[run.status]
+        if interrupted:
+            return INTERRUPTED
     return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
 
 

@@ -1,0 +1,148 @@
+"""Result folders are written whole or not at all, whatever befalls the program."""
+
+import os
+import signal
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from tpss import ResultError, load_result
+from tpss.results import store
+
+from scenarios import run
+
+
+@pytest.fixture(scope="module")
+def old():
+    return run({"simulation.duration_min": 1.0, "name": "old"})
+
+
+@pytest.fixture(scope="module")
+def new():
+    return run({"simulation.duration_min": 1.0, "name": "new"})
+
+
+def names_in(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_result_is_saved_into_the_next_numbered_folder(old, new, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    saved = [str(result.save()) for result in (old, old, new)]
+    assert saved == ["results/old-001", "results/old-002", "results/new-001"]
+
+
+def test_runs_that_end_at_once_each_get_a_folder(old, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with ThreadPoolExecutor(4) as runs:
+        folders = list(runs.map(lambda _: old.save(), range(4)))
+    assert sorted(map(str, folders)) == [f"results/old-00{n}" for n in range(1, 5)]
+    assert all(load_result(folder).scenario.name == "old" for folder in folders)
+    assert len(names_in(tmp_path / "results")) == 4
+
+
+def test_a_number_taken_in_the_last_moment_is_passed_over(old, new, tmp_path, monkeypatch):
+    """The first folder was free when it was looked for; another run has moved into it since."""
+    monkeypatch.chdir(tmp_path)
+    first, second = store.PARENT / "new-001", store.PARENT / "new-002"
+    old.save(first)
+    found = iter([first, first, second])
+    monkeypatch.setattr(store, "next_folder", lambda _: next(found))
+    assert new.save() == second
+    assert load_result(first).scenario.name == "old"
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+import tpss
+from tpss.results import store
+
+def kill(*_, **__):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+def kill_at_second(rename=Path.rename, calls=[]):
+    def at_second(path, target):
+        calls.append(path)
+        return kill() if len(calls) == 2 else rename(path, target)
+    return at_second
+
+new = tpss.load_result("new")
+if sys.argv[1] == "writing":
+    store.json.dumps = kill
+elif sys.argv[1] == "moving":
+    store._move = kill
+else:
+    Path.rename = kill_at_second()
+new.save("result", force=True)
+"""
+
+
+def save_and_be_killed(when: str, folder: Path) -> None:
+    done = subprocess.run([sys.executable, "-c", KILLED, when], cwd=folder, check=False)
+    assert done.returncode == -signal.SIGKILL
+
+
+@pytest.mark.parametrize("when", ["writing", "moving"])
+def test_a_killed_process_leaves_the_old_result(old, new, tmp_path, when):
+    old.save(tmp_path / "result")
+    new.save(tmp_path / "new")
+    save_and_be_killed(when, tmp_path)
+    assert load_result(tmp_path / "result").scenario.name == "old"
+
+
+def test_a_process_killed_between_the_old_result_and_the_new_one_leaves_both(old, new, tmp_path):
+    """A folder cannot take another's name in one step; for a moment both have a hidden one."""
+    old.save(tmp_path / "result")
+    new.save(tmp_path / "new")
+    save_and_be_killed("between", tmp_path)
+    left = [path.parent for path in tmp_path.rglob(".result-*/**/summary.json")]
+    assert {load_result(folder).scenario.name for folder in left} == {"old", "new"}
+
+
+def test_the_old_result_comes_back_if_the_new_one_cannot_take_its_place(
+    old, new, tmp_path, monkeypatch
+):
+    folder = old.save(tmp_path / "result")
+    rename = Path.rename
+
+    def failing(path, target):
+        if path.name == "new":
+            raise OSError(5, "Input/output error")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", failing)
+    with pytest.raises(ResultError, match="cannot be written: Input/output error"):
+        new.save(folder, force=True)
+    assert load_result(folder).scenario.name == "old"
+    assert names_in(tmp_path) == ["result"]
+
+
+def test_a_folder_that_another_run_has_written_meanwhile_is_not_replaced(
+    old, new, tmp_path, monkeypatch
+):
+    folder = tmp_path / "result"
+    write = store._write
+
+    def meanwhile(path, content):
+        monkeypatch.setattr(store, "_write", write)
+        old.save(folder)
+        write(path, content)
+
+    monkeypatch.setattr(store, "_write", meanwhile)
+    with pytest.raises(ResultError, match="exists already"):
+        new.save(folder)
+    assert load_result(folder).scenario.name == "old"
+    assert names_in(tmp_path) == ["result"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
+def test_a_link_stays_when_what_it_leads_to_is_replaced(old, new, tmp_path):
+    folder = old.save(tmp_path / "disk" / "result")
+    (tmp_path / "link").symlink_to(folder)
+    new.save(tmp_path / "link", force=True)
+    assert (tmp_path / "link").is_symlink()
+    assert load_result(folder).scenario.name == "new"
