@@ -147,3 +147,13 @@ def test_an_interruption_of_the_printing_says_where_the_result_lies(
 def test_a_failed_run_keeps_its_exit_code_when_its_saving_is_interrupted(tpss_command, monkeypatch):
     press_ctrl_c_while_saving(monkeypatch, times=1)
     assert tpss_command("run", EXAMPLES / "overloaded.toml", "--quiet").code == 3
+
+
+def test_where_ctrl_c_is_ignored_a_run_ignores_it_too(tpss_command, short_file, monkeypatch):
+    """So a shell script starts what it leaves in the background."""
+    press_ctrl_c(1, monkeypatch)
+    usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert tpss_command("run", short_file, "--quiet").code == 0
+    finally:
+        signal.signal(signal.SIGINT, usual)

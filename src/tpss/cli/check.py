@@ -1,5 +1,6 @@
 """The command ``tpss check``: what a scenario says, without simulating it."""
 
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -121,19 +122,20 @@ def _train(train: Train) -> str:
     key_data = [
         f"{words(key)} {getattr(train, key):g} {units.label(key)}"
         for key in KINDS["locomotives"].shown
+        if getattr(train, key) is not None
     ]
-    usual = library.entries("locomotives")[train.model]
+    usual = library.entries("locomotives").get(train.model, {})
     changed = [
         f"{key} {_plain(getattr(train, key))} ({_plain(usual[key])})"
         for key in type(train).model_fields
         if key in usual and getattr(train, key) != usual[key]
     ]
-    text = f"{train.model}, {', '.join(key_data)}"
+    text = f"{train.model or 'own'}, {', '.join(key_data)}"
     return f"{text}; changed from the library: {', '.join(changed)}" if changed else text
 
 
 def _plain(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:g}" if isinstance(value, float) else textwrap.shorten(str(value), 40)
 
 
 def _service(entry: Traffic) -> str:

@@ -84,7 +84,8 @@ class Outcome:
 def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int]]:
     """Give a list that a Ctrl-C fills, in place of an exception in the midst of a kernel.
 
-    A second Ctrl-C interrupts as usual.  Outside the main thread nothing is changed.
+    A second Ctrl-C interrupts as usual.  Nothing is changed outside the main thread, nor where a
+    Ctrl-C is ignored, as in the background of a shell script.
 
     Parameters
     ----------
@@ -92,10 +93,11 @@ def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int
         Called at the first Ctrl-C, between any two instructions of the program.
     """
     received: list[int] = []
-    if threading.current_thread() is not threading.main_thread():
+    usual = signal.getsignal(signal.SIGINT)
+    in_main = threading.current_thread() is threading.main_thread()
+    if not in_main or usual in (signal.SIG_IGN, None):
         yield received
         return
-    usual = signal.getsignal(signal.SIGINT)
 
     def note(number: int, _: object) -> None:
         received.append(number)
