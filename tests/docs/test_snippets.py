@@ -4,18 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from tpss.cli.main import app
-
 from snippets import Reader, assert_same_output, blocks, decimals_in_prose, was_seen
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = DOCS / "tutorial.md"
-COMMANDS = {each.callback.__name__ for each in app.registered_commands}
-NEEDS_SCHEMA = pytest.mark.skipif("schema" not in COMMANDS, reason="there is no tpss schema yet")
-HOW_TO = [
-    pytest.param(page, marks=NEEDS_SCHEMA if page.stem == "editor-completion" else ())
-    for page in sorted(DOCS.glob("how-to/*.md"))
-]
+HOW_TO = sorted(DOCS.glob("how-to/*.md"))
 
 
 def follow(page: Path, reader: Reader) -> None:
