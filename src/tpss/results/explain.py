@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.newton import LOWEST_VOLTAGE
 from tpss.simulation.run import INTERRUPTED, Outcome
 from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
 
@@ -26,10 +28,11 @@ def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
     drawing = state.trains[places.train]
     active_mw = drawing.active_power_w.sum() / 1e6
     reactive_mvar = drawing.reactive_power_var.sum() / 1e6
+    lowest_kv = LOWEST_VOLTAGE * BASE_VOLTAGE_V / 1e3
     problem = (
         f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains ask for "
-        f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and no solution of the load flow exists "
-        f"beyond {100 * share:.1f} % of that."
+        f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and beyond {100 * share:.1f} % of that the "
+        f"load flow has no stable solution with all voltages above {lowest_kv:.2f} kV."
     )
     advice = (
         "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or "
