@@ -102,7 +102,10 @@ def heed_limits_ahead(
     position_m: float, speed_m_s: float, wanted_m_s: float, from_m: Array, limit_m_s: Array,
     retardation_m_s2: float, step_s: float,
 ) -> float:  # fmt: skip
-    """Highest speed after this step, up to the wanted one, that every limit ahead allows. [m/s]
+    """Highest speed after this step, up to the wanted one, that every lower limit ahead allows. [m/s]
+
+    A limit no lower than the one before it asks for nothing: a train that is allowed to be faster than
+    both may stay so.
 
     Parameters
     ----------
@@ -116,7 +119,7 @@ def heed_limits_ahead(
     horizon_m = position_m + fastest * (2.0 * step_s + fastest / retardation_m_s2)
     j = step_index(position_m, from_m) + 1
     while j < from_m.size and from_m[j] <= horizon_m:
-        if limit_m_s[j] < fastest:
+        if limit_m_s[j] < min(fastest, limit_m_s[j - 1]):
             wanted_m_s = highest_speed_before_limit(
                 speed_m_s, wanted_m_s, from_m[j] - position_m, limit_m_s[j],
                 retardation_m_s2, step_s,

@@ -9,7 +9,7 @@ from tpss.kernel import plain
 from tpss.physics.gradient import step_index
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
-from tpss.simulation.state import Model
+from tpss.simulation.state import REGULATED, Model
 from tpss.simulation.timetable import Service
 from tpss.units import si
 
@@ -69,7 +69,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     limit = min(limits.value[here], kind.highest_speed_m_s)
     stop_m = min(m for m in service.stops_m if m > position_m)
     problem = ""
-    if speed > limit:
+    if speed > limit and model.options.driver == REGULATED:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif plain(shortest_stop)(speed, retardation, h) > stop_m - position_m:
         problem = f"too fast to stop at {stop_m / 1e3:g} km in whole time steps"

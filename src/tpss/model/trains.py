@@ -43,6 +43,7 @@ def _train_type(train: Train) -> tuple[float, ...]:
         "mass_kg": mass,
         "adhesive_mass_kg": adhesive,
         "inertia_kg": adhesive + (mass - adhesive) * (1.0 + train.rotating_mass_factor),
+        "coasting_inertia_kg": mass * (1.0 + train.rotating_mass_factor),
         "rotor_mass_kg": si(train, "motor_inertia_kg") * (1.0 + train.slip),
         "slip_factor": 1.0 + train.slip,
         "resistance_a_n": si(train, "resistance_a_n"),

@@ -10,6 +10,9 @@ acceleration that belongs to the force,
 
 with c = 4 K_J (κ + 1) the inertia of the rotors and M that of the train.
 
+The driver of the original program does not heed adhesion: at `FULL_EFFORT_N` the motors give, and are
+billed, all that the machine can; what the rails do not pass on (2.7) is lost to slip.
+
 Trains are records: `TRAIN_TYPE` holds what its owner states, `DEMAND` what stays fixed while a step
 is solved.  A record is one pointer to compiled code, however many fields it has.
 """
@@ -43,6 +46,9 @@ from tpss.physics.tractive_effort import (
     speed_and_current_bias,
 )
 
+FULL_EFFORT_N = 1e9
+"""Force cap of a driver who takes whatever the machine gives: more than any machine does. [N]"""
+
 MACHINE = np.dtype(
     (
         np.record,
@@ -60,6 +66,7 @@ TRAIN_TYPE = np.dtype(
         ("mass_kg", float),
         ("adhesive_mass_kg", float),
         ("inertia_kg", float),  # M = m_adh + (m - m_adh)(1 + H), eq. (2.11)
+        ("coasting_inertia_kg", float),  # m (1 + H), eq. (2.11), for the original driver
         ("rotor_mass_kg", float),  # c = 4 K_J (κ + 1)
         ("slip_factor", float),  # κ + 1
         ("resistance_a_n", float),
@@ -85,6 +92,7 @@ TRAIN_TYPE = np.dtype(
 DEMAND = np.dtype(
     [
         ("force_cap_n", float),  # wanted force or adhesion limit, the smaller; 0 with motors off
+        ("adhesion_n", float),  # force that the rails pass on at most
         ("resistance_n", float),
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
@@ -183,7 +191,7 @@ def prove_free_band(kind: TrainType, train: Demand, machine: Machine) -> None:
 def wheel_force(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
-    """Tractive force at the wheel rim at a voltage, and its slope. [N], [N/V]
+    """Force that the motors give at the wheel rim at a voltage, and its slope. [N], [N/V]
 
     References
     ----------
@@ -209,6 +217,29 @@ def wheel_force(
 
 
 @kernel
+def billed_speed(force_n: float, kind: TrainType, train: Demand) -> tuple[float, float]:
+    """Speed with which motor power is billed, and its slope over the force. [m/s], [m/s/N]
+
+    It is that at the start of the step (the thesis) or the step's mean, v + a h/2, with which
+    traction work, resistance, climb and kinetic energy balance.  A force beyond adhesion accelerates
+    no more than adhesion does.
+
+    Parameters
+    ----------
+    force_n : float
+        What the motors give at the wheel rim. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.7) and (2.11).
+    """
+    weight = train.mean_speed_weight_s
+    a = acceleration(min(force_n, train.adhesion_n), train.resistance_n, kind.inertia_kg)
+    slope = weight / kind.inertia_kg if force_n <= train.adhesion_n else 0.0
+    return max(0.0, train.speed_m_s + weight * a), slope
+
+
+@kernel
 def motor_state(
     force_n: float, kind: TrainType, train: Demand
 ) -> tuple[float, float, float, float]:
@@ -216,23 +247,17 @@ def motor_state(
 
     .. math:: P_{motor} = F_{motor} \, v \, (\kappa + 1)
 
-    The speed is that at the start of the step (the thesis) or the step's mean, v + a h/2, with which
-    traction work, resistance, climb and kinetic energy balance.
-
     References
     ----------
     [Boullanger2009]_, eq. (2.12) and (F.23a).
     """
-    weight = train.mean_speed_weight_s
     a = acceleration(force_n, train.resistance_n, kind.inertia_kg)
     motor = motor_force(force_n, a, kind.rotor_mass_kg)
-    speed = max(0.0, train.speed_m_s + weight * a)
+    speed, speed_slope = billed_speed(force_n, kind, train)
     if force_n <= 0.0 or motor <= 0.0:
         return 0.0, speed, 0.0, 0.0
     slip = kind.slip_factor
-    slope = slip * (
-        (1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed + motor * weight / kind.inertia_kg
-    )
+    slope = slip * ((1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed + motor * speed_slope)
     return motor, speed, motor * speed * slip, slope
 
 
@@ -277,14 +302,15 @@ def armature_demand(
     """Armature current at a force and full line voltage, and its slope. [A], [A/V]"""
     if force_n == train.force_cap_n:
         return train.cap_current_a, 0.0
-    motor, speed, _, _ = motor_state(force_n, kind, train)
+    motor, _, _, _ = motor_state(force_n, kind, train)
+    speed, speed_slope = billed_speed(force_n, kind, train)
     current = train_armature_current(motor, speed, kind, train)
     if current <= 0.0:
         return 0.0, 0.0
     # The current follows the force: by the motor force and, above base speed, by the speed too.
     relative = (1.0 + kind.rotor_mass_kg / kind.inertia_kg) / motor
     if train.speed_m_s >= kind.base_speed_m_s:
-        relative += train.mean_speed_weight_s / kind.inertia_kg / speed
+        relative += speed_slope / speed
     return current, current * relative * slope_n_per_v
 
 

@@ -17,6 +17,7 @@ from tpss.powerflow.network import Network
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.simulation.run import Outcome
 from tpss.simulation.state import (
+    AGGRESSIVE,
     STATE_ARRIVED,
     STATE_BRAKING,
     STATE_COASTING,
@@ -119,8 +120,9 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
 
 def _beyond_limits(figures: dict[str, float], model: Model) -> list[str]:
     judged = dict(LIMITS)
-    if not model.options.mean_power:
-        del judged["traction_balance"]  # billed at the start of a step, it does not close
+    if not model.options.mean_power or model.options.driver == AGGRESSIVE:
+        # Billed at the start of a step, or with what slip wastes, it does not close.
+        del judged["traction_balance"]
     return [
         f"{name} is {figures[name]:.3g}, limit {limit:g}"
         for name, limit in judged.items()
@@ -296,7 +298,10 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
     rest = trains["tractive_force"] - trains["braking_force"]
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
-    rest = rest - kind.inertia_kg * trains["acceleration"]
+    inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
+    if model.options.driver == AGGRESSIVE:
+        inertia_kg = np.where(state == STATE_COASTING, kind.coasting_inertia_kg, inertia_kg)
+    rest = rest - inertia_kg * trains["acceleration"]
     driven = (state == STATE_MOTORING) | (state == STATE_COASTING) | (state == STATE_BRAKING)
     return _largest((rest / (kind.mass_kg * GRAVITY_M_S2))[driven])
 

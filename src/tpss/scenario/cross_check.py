@@ -19,6 +19,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     if length is not None and length <= 0.0:
         length = None  # a fault of its own; nothing can be measured against it
     findings = [*_line(line, length), *_supply(supply, length)]
+    findings += _driver(_table(document, "simulation"))
     places = {
         station["name"]: position
         for _, station in _items(line, "stations")
@@ -33,6 +34,9 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
 
 
 _Fault = tuple[str, str, str, str]
+
+LONGEST_AGGRESSIVE_STEP_MIN = 1.0
+"""Longest step with the aggressive driver, and the longest that the thesis knew. [min]"""
 
 LARGEST = 1e300
 """Numbers beyond it are no numbers here; a whole number may have any number of digits."""
@@ -73,6 +77,16 @@ def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     if begin is not None and begin > 0.0:
         problem = "no speed limit holds from the beginning of the line"
         yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "let the first limit begin at 0"
+
+
+def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
+    step_min = _number(simulation, "time_step_min")
+    if simulation.get("driver") != "aggressive" or step_min is None:
+        return
+    if step_min > LONGEST_AGGRESSIVE_STEP_MIN:
+        problem = "too long for the aggressive driver, who looks at the speed only once a step"
+        remedy = f'take {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
+        yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
 
 
 def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:

@@ -38,8 +38,10 @@ class Simulation(Part):
     load_flow: Literal["equations"] = Field(
         default="equations", description="Solution of the load flow as a system of equations."
     )
-    driver: Literal["regulated"] = Field(
-        default="regulated", description="A driver who holds the speed limit."
+    driver: Literal["regulated", "aggressive"] = Field(
+        default="regulated",
+        description="A driver who holds the speed limit, or that of the original program: full "
+        "effort below the limit, coasting up to 5 km/h above it, braking beyond.",
     )
 
     @model_validator(mode="after")

@@ -17,10 +17,10 @@ def find_stalled(count: int, state: State) -> bool:
     for k in range(count):
         i = state.flow.standing[k].train
         train = state.trains[i]
-        if train.phase == DWELLING or train.force_n >= train.wanted_force_n:
+        if train.phase == DWELLING:
             continue
-        standing = train.speed_m_s <= 0.0
-        if train.next_speed_m_s < 0.0 or (standing and train.next_speed_m_s <= 0.0):
+        powerless = train.speed_m_s <= 0.0 and train.force_n < train.wanted_force_n
+        if train.next_speed_m_s < 0.0 or (powerless and train.next_speed_m_s <= 0.0):
             clock = state.clock[0]
             clock.stalled_train = i
             clock.force_needed_n = train.resistance_n

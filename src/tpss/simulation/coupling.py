@@ -76,15 +76,16 @@ def settle(train: Any, model: Model) -> None:
     """Force, brakes and next speed of a train at the voltage of the solution.
 
     With motors off the train brakes with exactly the wanted acceleration; below its wanted force it
-    takes what the machine gives.
+    takes what the machine gives and the rails pass on.
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.11), (F.19), (F.20).
+    [Boullanger2009]_, eq. (2.7), (2.11), (F.19), (F.20).
     """
     kind = model.types[train.train_type]
-    force, _ = wheel_force(train.voltage_v, kind, train, model.machine[0])
-    wanted = train.wanted_force_n
+    given, _ = wheel_force(train.voltage_v, kind, train, model.machine[0])
+    force, wanted = min(given, train.adhesion_n), train.wanted_force_n
+    train.wheel_force_n = given
     train.force_n = force
     train.braking_force_n = 0.0
     if train.phase == DWELLING:

@@ -2,28 +2,49 @@
 
 from typing import Any
 
+from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
 from tpss.driving.speed_limits import heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.kernel import inlined, kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
-from tpss.physics.locomotive import note_cap, prove_free_band, take_speed
+from tpss.physics.locomotive import (
+    FULL_EFFORT_N,
+    acceleration,
+    note_cap,
+    prove_free_band,
+    take_speed,
+)
 from tpss.physics.running_resistance import (
     DavisCoefficients,
     gradient_force,
     running_resistance,
 )
-from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
+from tpss.simulation.state import AGGRESSIVE, DRIVING, DWELLING, PLANNED, Model
 from tpss.simulation.traffic import distance_to_stop
+
+
+@inlined
+def fastest_and_coasting(train: Any, kind: Any, step_s: float) -> tuple[float, float]:
+    """Speeds after this step: the highest that the rails allow, and without motors or brakes. [m/s]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11) and (F.19).
+    """
+    v, resistance = train.speed_m_s, train.resistance_n
+    fastest = v + step_s * acceleration(train.adhesion_n, resistance, kind.inertia_kg)
+    coasting = v + step_s * acceleration(0.0, resistance, kind.coasting_inertia_kg)
+    return max(0.0, fastest), coasting
 
 
 @inlined
 def target_speed(train: Any, kind: Any, model: Model) -> float:
     """Speed that a train is to have after this step, if its machine can. [m/s]
 
-    The lower of line and train limits it; a braking plan and limits ahead lower it; a standing train
-    takes no more than leaves room for its next stop.
+    The lower of line and train limits it, or the original driver's rule; a braking plan and limits
+    ahead lower it; a standing train takes no more than leaves room for its next stop.
 
     References
     ----------
@@ -35,6 +56,10 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
     else:
         limit = limits.value[step_index(train.position_m, limits.from_m)]
         target = min(limit, kind.highest_speed_m_s)
+        if model.options.driver == AGGRESSIVE:
+            fastest, coasting = fastest_and_coasting(train, kind, h)
+            slowest = train.speed_m_s - retardation * h
+            target = aggressive_speed(train.speed_m_s, target, fastest, coasting, slowest)
         if train.speed_m_s <= 0.0:
             room_m = distance_to_stop(train, model)
             target = min(target, highest_speed_that_stops(0.0, room_m, retardation, h))
@@ -94,12 +119,17 @@ def aim(train: Any, model: Model) -> None:
     train.target_speed_m_s = 0.0
     train.wanted_force_n = 0.0
     if train.phase != DWELLING:
+        speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
+        train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
+        by_rule = options.driver == AGGRESSIVE and train.phase == DRIVING
         target = target_speed(train, kind, model)
         a = wanted_acceleration(train.speed_m_s, target, options.step_s)
         wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
-        speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
-        adhesion = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
-        train.force_cap_n = max(0.0, min(wanted, adhesion))
+        if by_rule:
+            fastest, coasting = fastest_and_coasting(train, kind, options.step_s)
+            wanted = aggressive_force(target, fastest, coasting, wanted, FULL_EFFORT_N)
+        allowed = wanted if wanted == FULL_EFFORT_N else min(wanted, train.adhesion_n)
+        train.force_cap_n = max(0.0, allowed)
         train.target_speed_m_s = target
         train.wanted_force_n = wanted
     prove_free_band(kind, train, model.machine[0])

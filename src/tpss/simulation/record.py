@@ -64,7 +64,7 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     i = state.flow.standing[k].train
     train, row = state.trains[i], recording.trains[step, i]
     kind = model.types[train.train_type]
-    motor, speed, _, _ = motor_state(train.force_n, kind, train)
+    motor, speed, _, _ = motor_state(train.wheel_force_n, kind, train)
     current = train_armature_current(motor, speed, kind, train)
     current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
     recording.train_state[step, i] = state_code(train)

@@ -34,6 +34,10 @@ DWELLING = 3
 ARRIVED = 4
 GONE = 5
 
+# Drivers.
+REGULATED = 0
+AGGRESSIVE = 1
+
 # Codes of `train_state` in the result.
 ABSENT = -1
 STATE_WAITING = 0
@@ -69,7 +73,8 @@ TRAIN = np.dtype(
         ("wanted_force_n", float),
         ("running_resistance_n", float),
         ("gradient_force_n", float),
-        ("force_n", float),  # what came of it
+        ("wheel_force_n", float),  # what came of it: given by the motors,
+        ("force_n", float),  # and passed on by the rails
         ("braking_force_n", float),
         ("next_speed_m_s", float),
     ],
@@ -118,6 +123,8 @@ class Options(NamedTuple):
     mean_gradient: bool
     adhesion_in_km_h: bool
     rail: int
+    driver: int
+    """`REGULATED`, or `AGGRESSIVE` as in the original program."""
     fixed_voltage_v: float
     """Voltage at every pantograph without a load flow, or 0 for the coupled simulation."""
     studied_train: int

@@ -17,6 +17,12 @@ When the driver wants 100 kN:
 and over a step of 60 s, with the step's mean speed 16.6667 + 30 · 0.0450905 = 18.0194 m/s:
 
     P_motor = 100 484.7 · 18.0194 = 1 810 672 W;  P_D = 2 414 841 W
+
+At full effort on rails that pass on 147 kN, all of F_max = 169 170 N is billed:
+
+    P_motor = 169 170.2 · 16.6667 = 2 819 503 W
+    a = (147 000 - 33 717)/1 470 000 = 0.0770633 m/s²;  mean speed 16.6667 + 30 a = 18.9786 m/s
+    P_motor = 169 170.2 · 18.9786 = 3 210 607 W
 """
 
 import math
@@ -29,8 +35,10 @@ from tpss.model.trains import build_machine
 from tpss.physics.adhesion import WET, adhesion_limit
 from tpss.physics.locomotive import (
     DEMAND,
+    FULL_EFFORT_N,
     TRAIN_TYPE,
     acceleration,
+    billed_speed,
     bridge_demand,
     electrical_demand,
     machine_force,
@@ -79,7 +87,7 @@ def freight(**changes):
 def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, kind=None):
     """A train in a step; the machine's limit is evaluated at every voltage."""
     train = blank_records(1, DEMAND)[0]
-    train.force_cap_n, train.resistance_n = cap_n, resistance_n
+    train.force_cap_n, train.resistance_n, train.adhesion_n = cap_n, resistance_n, NO_LIMIT_N
     train.speed_m_s, train.mean_speed_weight_s = speed_kmh / 3.6, mean_over_s / 2.0
     train.bias_speed_m_s = train.free_band_v = -1.0
     take_speed(15e3, kind or freight(), train, MACHINE)
@@ -271,6 +279,44 @@ def test_slopes_of_the_demand_are_those_over_voltage(
     _, _, active_slope, reactive_slope = drawn(voltage_v)
     active = central_difference(lambda v: drawn(v)[0], voltage_v, 0.1)
     reactive = central_difference(lambda v: drawn(v)[1], voltage_v, 0.1)
+    assert active_slope == pytest.approx(active, rel=1e-6, abs=1e-6)
+    assert reactive_slope == pytest.approx(reactive, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(("mean_over_s", "power_w"), [(0.0, 2_819_503), (60.0, 3_210_607)])
+def test_full_effort_is_billed_whatever_the_rails_pass_on(as_run, mean_over_s, power_w):
+    kind, train = freight(), demand(FULL_EFFORT_N, mean_over_s=mean_over_s)
+    train.adhesion_n = 147e3
+    active, *_ = as_run(electrical_demand)(15e3, kind, train, MACHINE)
+    assert (active - 151_500.0) * 0.8 == pytest.approx(power_w, abs=2.0)
+
+
+def test_speed_billed_follows_the_force_until_the_wheels_slip(as_run):
+    train = demand(FULL_EFFORT_N, mean_over_s=60.0)
+    train.adhesion_n = 147e3
+    assert as_run(billed_speed)(1e5, freight(), train)[1] == pytest.approx(30.0 / 1.47e6)
+    speed, slope = as_run(billed_speed)(168e3, freight(), train)
+    assert speed == pytest.approx(18.9786, abs=1e-4)
+    assert slope == 0.0
+
+
+@pytest.mark.parametrize("adhesion_n", [100e3, NO_LIMIT_N], ids=["slip", "grip"])
+@pytest.mark.parametrize("mean_over_s", [0.0, 60.0], ids=["start", "mean"])
+@pytest.mark.parametrize("speed_kmh", [60.0, 100.0])
+@pytest.mark.parametrize("reactive_model", [POWER_FACTOR, DOUBLE_BRIDGE], ids=["factor", "bridge"])
+def test_slopes_at_full_effort_are_those_over_voltage(
+    as_run, reactive_model, speed_kmh, mean_over_s, adhesion_n
+):
+    kind = freight(reactive_model=reactive_model, slip_factor=1.02)
+    train = demand(FULL_EFFORT_N, speed_kmh, mean_over_s)
+    train.adhesion_n = adhesion_n
+
+    def drawn(at_v):
+        return as_run(electrical_demand)(at_v, kind, train, MACHINE)
+
+    _, _, active_slope, reactive_slope = drawn(14.2e3)
+    active = central_difference(lambda v: drawn(v)[0], 14.2e3, 0.1)
+    reactive = central_difference(lambda v: drawn(v)[1], 14.2e3, 0.1)
     assert active_slope == pytest.approx(active, rel=1e-6, abs=1e-6)
     assert reactive_slope == pytest.approx(reactive, rel=1e-6, abs=1e-6)
 
