@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tpss.clock import clock_of
 from tpss.model import build_model
 from tpss.model.build import Layout, steps_of
 from tpss.model.traffic import build_services
@@ -15,7 +16,9 @@ from tpss.results.dataset import build_dataset
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
+from tpss.simulation.advance import advance
 from tpss.simulation.run import (
+    Clock,
     Outcome,
     Progress,
     compile_kernels,
@@ -45,7 +48,8 @@ def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = N
     Raises
     ------
     ScenarioError
-        A train that the scenario places on the line could not stop or slow down in time.
+        A train that the scenario places on the line could not stop or slow down in time, or scipy
+        is missing for ``load_flow = "least-squares"``.
     """
     prepared = prepare(scenario)
     with interruptible() as interrupted:
@@ -60,10 +64,13 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError
         As `simulate`.
     """
+    clock = clock_of(scenario)
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
     compile_kernels(model)
-    return Prepared(scenario, model, layout, services)
+    if clock is not advance:
+        compile_kernels(model, clock)
+    return Prepared(scenario, model, layout, services, clock)
 
 
 @dataclass(frozen=True)
@@ -74,6 +81,7 @@ class Prepared:
     model: Model
     layout: Layout
     services: list[Service]
+    clock: Clock
 
     def run(
         self,
@@ -88,7 +96,7 @@ class Prepared:
             else steps_of(si(self.scenario.simulation, "duration_min"), self.model.options.step_s)
         )
         started = time.perf_counter()
-        outcome = run_services(self.model, self.services, steps, progress, interrupted)
+        outcome = run_services(self.model, self.services, steps, progress, interrupted, self.clock)
         elapsed_s = time.perf_counter() - started
         return _result(self.scenario, outcome, self.model, self.layout, elapsed_s)
 

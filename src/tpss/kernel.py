@@ -56,9 +56,15 @@ def cache_folder() -> Path:
     return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / name
 
 
-def kernels_are_compiled() -> bool:
-    """Whether compiled kernels of exactly this source exist on disk (or compilation is off)."""
-    return bool(_config.DISABLE_JIT) or any(cache_folder().rglob("advance.advance-*.nbi"))
+def kernels_are_compiled(last: str = "advance") -> bool:
+    """Whether compiled kernels of exactly this source exist on disk (or compilation is off).
+
+    Parameters
+    ----------
+    last : str
+        Name of the kernel that is compiled last.
+    """
+    return bool(_config.DISABLE_JIT) or any(cache_folder().rglob(f"*.{last}-*.nbi"))
 
 
 def kernel(function: _Function) -> _Function:

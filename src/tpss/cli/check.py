@@ -12,6 +12,7 @@ from rich.table import Table
 from tpss import library, units
 from tpss.cli.library import KINDS, words
 from tpss.cli.notes import lies_between, notes
+from tpss.clock import clock_of
 from tpss.model.build import build_model
 from tpss.model.supply import transformer_positions_km
 from tpss.model.traffic import build_services
@@ -39,6 +40,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
     model, _ = build_model(scenario)
     build_services(scenario, model)
+    clock_of(scenario)
     console = Console()
     title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
     console.print(title, highlight=False)

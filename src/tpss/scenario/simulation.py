@@ -35,8 +35,10 @@ class Simulation(Part):
         "the thesis prints it.",
     )
     rail: Literal["dry", "wet"] = Field(default="dry", description="State of the rails.")
-    load_flow: Literal["equations"] = Field(
-        default="equations", description="Solution of the load flow as a system of equations."
+    load_flow: Literal["equations", "least-squares"] = Field(
+        default="equations",
+        description="Solution of the load flow as a system of equations, or by the least squares of "
+        "the power mismatches, as the original program did; that takes a few hundred times as long.",
     )
     driver: Literal["regulated", "aggressive"] = Field(
         default="regulated",

@@ -49,8 +49,38 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
 
 
 @inlined
-def end_step(step: int, count: int, model: Model, state: State, recording: Recording) -> None:
-    """Record the interval, then bring every train to the next instant."""
+def end_step(
+    step: int,
+    count: int,
+    share: float,
+    passes: int,
+    model: Model,
+    state: State,
+    recording: Recording,
+) -> int:
+    """Record the interval, then bring every train to the next instant; return a `Status`.
+
+    Parameters
+    ----------
+    count : int
+        Number of trains on the line.
+    share : float
+        1.0, or the share of the load that the line can carry.
+    passes : int
+        Evaluations of the network that the solution took.
+
+    Returns
+    -------
+    int
+        With `Status.COLLAPSED` and `Status.STALLED` the step is not carried out.
+    """
+    recording.passes[step] = passes
+    if share < 1.0:
+        state.clock[0].carried_share = share
+        return Status.COLLAPSED
+    if find_stalled(count, state):
+        return Status.STALLED
+    remember(step == 0, state.flow)
     for k in range(count):
         record_train(step, k, model, state, recording)
     if model.options.fixed_voltage_v <= 0.0:
@@ -58,6 +88,10 @@ def end_step(step: int, count: int, model: Model, state: State, recording: Recor
         note_loading(model, state)
     for k in range(count):
         move(step, state.trains[state.flow.standing[k].train], model, state)
+    studied = model.options.studied_train
+    if studied >= 0 and state.trains[studied].arrival_step == step + 1:
+        return Status.FINISHED
+    return Status.RUNNING
 
 
 @kernel
@@ -70,22 +104,15 @@ def advance(
     `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
     which is not carried out.
     """
-    for step in range(first, last):
+    step = first
+    status: int = Status.RUNNING
+    while step < last and status == Status.RUNNING:
         count = begin_step(step, model, state, recording)
         if step > 0:
             predict(state.flow)
         share, passes = solve_step(count, step > 0, model, state)
-        recording.passes[step] = passes
-        if share < 1.0:
-            state.clock[0].carried_share = share
-            return Status.COLLAPSED, step
-        if find_stalled(count, state):
-            return Status.STALLED, step
-        remember(step == 0, state.flow)
-        end_step(step, count, model, state, recording)
-        studied = model.options.studied_train
-        if studied >= 0 and state.trains[studied].arrival_step == step + 1:
-            record_instant(step + 1, state.trains, recording)
-            return Status.FINISHED, step + 1
-    record_instant(last, state.trains, recording)
-    return Status.RUNNING, last
+        status = end_step(step, count, share, passes, model, state, recording)
+        if status == Status.RUNNING or status == Status.FINISHED:
+            step += 1
+    record_instant(step, state.trains, recording)
+    return status, step

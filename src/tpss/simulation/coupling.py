@@ -39,19 +39,26 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     while True:
         share, more = solve_network(count, warm, model, state)
         passes += more
-        if share < 1.0:
+        if share < 1.0 or settle_all(count, model, state):
             return share, passes
-        planned = False
-        for k in range(count):
-            train = state.trains[state.flow.standing[k].train]
-            settle(train, model)
-            if must_plan(train, model):
-                begin_plan(train, model)
-                aim(train, model)
-                planned = True
-        if not planned:
-            return 1.0, passes
         warm = True
+
+
+@inlined
+def settle_all(count: int, model: Model, state: State) -> bool:
+    """Settle the trains at the voltages of a solution; return whether every decision stands.
+
+    If not, some trains have been put on their braking plan, and the step has to be solved again.
+    """
+    stands = True
+    for k in range(count):
+        train = state.trains[state.flow.standing[k].train]
+        settle(train, model)
+        if must_plan(train, model):
+            begin_plan(train, model)
+            aim(train, model)
+            stands = False
+    return stands
 
 
 @inlined

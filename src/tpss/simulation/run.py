@@ -80,6 +80,10 @@ class Outcome:
     state: State
 
 
+Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
+"""What runs steps, as `advance` does; a clock with another load flow may take its place."""
+
+
 @contextmanager
 def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int]]:
     """Give a list that a Ctrl-C fills, in place of an exception in the midst of a kernel.
@@ -112,16 +116,19 @@ def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int
         signal.signal(signal.SIGINT, usual)
 
 
-def compile_kernels(model: Model) -> None:
-    """Compile the clock, or load it from the cache, without simulating anything."""
-    Run(model, [], 0).advance_to(0)
+def compile_kernels(model: Model, clock: Clock = advance) -> None:
+    """Compile a clock, or load it from the cache, by a step without trains."""
+    Run(model, [], 1, clock).advance_to(1)
 
 
 class Run:
     """A run in progress: the state at `step`, and the recording up to it."""
 
-    def __init__(self, model: Model, trains: list[Train], capacity: int) -> None:
+    def __init__(
+        self, model: Model, trains: list[Train], capacity: int, clock: Clock = advance
+    ) -> None:
         self.model = model
+        self.clock = clock
         self.trains = trains
         self.capacity = capacity
         self.step = 0
@@ -131,7 +138,7 @@ class Run:
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""
-        status, self.step = advance(self.step, step, self.model, self.state, self.recording)
+        status, self.step = self.clock(self.step, step, self.model, self.state, self.recording)
         self.status = Status(status)
 
     def way_m(self, route: int) -> tuple[float, float]:
@@ -205,6 +212,7 @@ def run_services(
     steps: int | None,
     report: Callable[[Progress], None] | None = None,
     interrupted: Sequence[int] = (),
+    clock: Clock = advance,
 ) -> Outcome:
     """Run a model with its services.
 
@@ -219,6 +227,8 @@ def run_services(
         Called with the `Progress` after every stretch of steps.
     interrupted : sequence
         Ends the run, once it is filled, with the status "interrupted"; see `interruptible`.
+    clock : callable, optional
+        Runs the steps.
 
     Raises
     ------
@@ -256,7 +266,7 @@ def run_services(
             f"than {MOST_MEMORY_BYTES / 2**30:.0f}; take a longer time step, a shorter duration or a "
             "longer headway"
         )
-    run = Run(model, trains, capacity)
+    run = Run(model, trains, capacity, clock)
     status = _advance_to_end(run, services, steps, report, interrupted)
     return _outcome(run, status, studied)
 
