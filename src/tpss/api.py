@@ -16,7 +16,6 @@ from tpss.results.dataset import build_dataset
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.advance import advance
 from tpss.simulation.run import (
     Clock,
     Outcome,
@@ -68,8 +67,6 @@ def prepare(scenario: Scenario) -> "Prepared":
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
     compile_kernels(model)
-    if clock is not advance:
-        compile_kernels(model, clock)
     return Prepared(scenario, model, layout, services, clock)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from tpss import load_result
 from tpss.results import store
-from tpss.simulation import run as clock
+from tpss.simulation.run import Run
 
 from conftest import EXAMPLES
 
@@ -31,14 +31,14 @@ main()
 
 def press_ctrl_c(towards: int, monkeypatch: pytest.MonkeyPatch, times: int = 1) -> None:
     """Press Ctrl-C when the clock sets out for a step; to step 0 it goes to compile the kernels."""
-    advance, left = clock.advance, [signal.SIGINT] * times
+    advance_to, left = Run.advance_to, [signal.SIGINT] * times
 
-    def interrupted(step, last, *arguments):
-        while last >= towards and left:
+    def interrupted(run, step):
+        while step >= towards and left:
             signal.raise_signal(left.pop())
-        return advance(step, last, *arguments)
+        advance_to(run, step)
 
-    monkeypatch.setattr(clock, "advance", interrupted)
+    monkeypatch.setattr(Run, "advance_to", interrupted)
 
 
 def press_ctrl_c_while_saving(monkeypatch: pytest.MonkeyPatch, times: int) -> None:

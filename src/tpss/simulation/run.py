@@ -116,9 +116,9 @@ def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int
         signal.signal(signal.SIGINT, usual)
 
 
-def compile_kernels(model: Model, clock: Clock = advance) -> None:
-    """Compile a clock, or load it from the cache, by a step without trains."""
-    Run(model, [], 1, clock).advance_to(1)
+def compile_kernels(model: Model) -> None:
+    """Compile the clock, or load it from the cache, without simulating anything."""
+    Run(model, [], 0).advance_to(0)
 
 
 class Run:
