@@ -60,13 +60,14 @@ def sources(*kinds: tuple[int, dict[str, float]]) -> np.recarray:
 def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     """Trains that draw the same power at any voltage."""
     types = blank_records(len(powers_va), TRAIN_TYPE)
-    types.efficiency, types.inertia_kg, types.slip_factor = 1.0, 1.0, 1.0
+    types.inertia_kg, types.slip_factor = 1.0, 1.0
     types.filter_reactance_ohm = math.inf
     types.auxiliary_power_w = np.real(powers_va)
     types.auxiliary_reactive_power_var = np.imag(powers_va)
     trains = blank_records(len(powers_va), TRAIN)
     trains.train_type = np.arange(len(powers_va))
     trains.position_m = positions_m
+    trains.efficiency = 1.0
     return Loads(trains, types, build_machine())
 
 

@@ -24,6 +24,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_km": ("km", 1e3),
     "_kv": ("kV", 1e3),
     "_kw": ("kW", 1e3),
+    "_kn": ("kN", 1e3),
     "_kg": ("kg", 1.0),
     "_pu": ("p.u.", 1.0),
     "_hz": ("Hz", 1.0),
@@ -53,3 +54,9 @@ def si(source: object, name: str) -> float:
         The name has no unit suffix.
     """
     return float(getattr(source, name)) * SUFFIXES[suffix(name)][1]
+
+
+def si_list(source: object, name: str) -> list[float]:
+    """Values of the field `name` of `source`, a list of numbers, in SI units."""
+    factor = SUFFIXES[suffix(name)][1]
+    return [float(value) * factor for value in getattr(source, name)]

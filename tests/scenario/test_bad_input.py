@@ -193,9 +193,10 @@ MISSING = [
         f"{WEST}.position_km",
         f"{ENTRY}.from",
         f"{ENTRY}.train",
-        f"{FREIGHT}.model",
     )
 ] + [
+    pytest.param({f"{FREIGHT}.model": None}, f"{FREIGHT}.mass_t", "", "name a model that gives it",
+                 id="no-model"),
     pytest.param({"trains": {}}, "trains", "{}", "add at least one", id="no-trains"),
     pytest.param({"traffic": []}, "traffic", "[]", "add at least one", id="no-traffic"),
     pytest.param({"line.speed_limits": []}, "line.speed_limits", "[]", "add at least one",

@@ -35,7 +35,20 @@ def test_the_overloaded_example_ends_without_a_solution():
     assert "At 0.00 min the line cannot carry its load" in result.summary["problem"]
 
 
+def test_the_example_of_own_trains_runs_within_what_its_files_say():
+    """A multiple unit of 130 t, 2600 kW and η = 0.87; a freight train of 1500 A between two blocks."""
+    result = tpss.simulate(tpss.load_scenario(EXAMPLES / "own_trains.toml"))
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    regional = result.dataset.sel(train="regional 1")
+    assert float(regional.acceleration.max()) == pytest.approx(1.0, rel=1e-12)
+    motor_n = regional.tractive_force + 9000.0 * regional.acceleration
+    assert float(motor_n.max()) <= 200e3
+    assert float((motor_n * regional.speed).max()) == pytest.approx(2600e3, rel=1e-6)
+    freight = result.dataset.sel(train="freight 1")
+    assert 180e3 < float(freight.tractive_force.max()) < 270e3
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own."""
     names = {file.stem for file in EXAMPLES.glob("*.toml")}
-    assert names == {*REFERENCE, "overloaded", "thesis_original"}
+    assert names == {*REFERENCE, "overloaded", "own_trains", "thesis_original"}

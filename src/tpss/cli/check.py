@@ -126,7 +126,7 @@ def _train(train: Train) -> str:
         for key in KINDS["locomotives"].shown
         if getattr(train, key) is not None
     ]
-    usual = library.entries("locomotives").get(train.model, {})
+    usual = library.entries("locomotives").get(train.model or "", {})
     changed = [
         f"{key} {_plain(getattr(train, key))} ({_plain(usual[key])})"
         for key in type(train).model_fields

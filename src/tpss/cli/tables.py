@@ -17,11 +17,14 @@ from tpss.results.result import Result
 MOST_TRAINS = 30
 
 _LIMITED = {
-    "effort_extrapolated": "the tractive-effort network was used outside its training range",
+    "effort_extrapolated": "the tractive-effort network was used outside its training range, or a table "
+    "outside its speeds or voltages",
     "effort_clipped": "the tractive-effort network was negative and cut to 0",
     "bridge_extrapolated": "the reactive-power network was used outside its training range",
     "bridge_clipped": "the reactive-power network left 0 to 1 and was cut",
-    "power_factor_extrapolated": "the power-factor network was used outside its training range",
+    "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
+    "curve outside its speeds",
+    "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
     "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 

@@ -29,13 +29,15 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     network, plan = build_supply(scenario)
+    types, points = build_train_types(list(scenario.trains.values()))
     model = Model(
         options=_options(scenario),
         gradients=_gradients(scenario.line),
         limits=_limits(scenario.line),
         stops=_stops(scenario),
-        types=build_train_types(list(scenario.trains.values())),
+        types=types,
         machine=build_machine(),
+        points=points,
         network=network,
     )
     return model, Layout(

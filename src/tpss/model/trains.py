@@ -3,14 +3,25 @@
 import math
 from typing import Any
 
+import numpy as np
+
 from tpss import library
 from tpss.kernel import blank_records, plain, records
+from tpss.model.curves import CurveBook, interpolate
+from tpss.physics.effort_table import MOST_VOLTAGES
 from tpss.physics.locomotive import MACHINE, TRAIN_TYPE
+from tpss.physics.machine import LIMITS, NETWORK, TABLE
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.neural_network import build_network
-from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR, reactive_ratio
+from tpss.physics.reactive_power import (
+    DOUBLE_BRIDGE,
+    POWER_FACTOR,
+    POWER_FACTOR_CURVE,
+    reactive_ratio,
+)
+from tpss.scenario.machine import Curve, EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
-from tpss.units import si
+from tpss.units import si, si_list
 
 KM_H = 1.0 / 3.6
 KV = 1e3
@@ -31,14 +42,15 @@ def build_machine() -> Any:
     return machine
 
 
-def build_train_types(trains: list[Train]) -> Any:
-    """Records of `TRAIN_TYPE`, in the order of the trains."""
-    return records([_train_type(train) for train in trains], TRAIN_TYPE)
+def build_train_types(trains: list[Train]) -> tuple[Any, Any]:
+    """Records of `TRAIN_TYPE` in the order of the trains, and of `CURVE_POINT` for their curves."""
+    book = CurveBook()
+    rows = [_train_type(train, book) for train in trains]
+    return records(rows, TRAIN_TYPE), book.points()
 
 
-def _train_type(train: Train) -> tuple[float, ...]:
+def _train_type(train: Train, book: CurveBook) -> tuple[Any, ...]:
     mass, adhesive = si(train, "mass_t"), si(train, "adhesive_mass_t")
-    auxiliary_w = si(train, "auxiliary_power_kw")
     values = {
         "mass_kg": mass,
         "adhesive_mass_kg": adhesive,
@@ -49,20 +61,76 @@ def _train_type(train: Train) -> tuple[float, ...]:
         "resistance_a_n": si(train, "resistance_a_n"),
         "resistance_b_n_s_per_m": si(train, "resistance_b_n_s_per_m"),
         "resistance_c_n_s2_per_m2": si(train, "resistance_c_n_s2_per_m2"),
-        "highest_current_a": si(train, "max_motor_current_a"),
+        "highest_acceleration_m_s2": _si_or(train, "max_acceleration_m_s2", math.inf),
         "highest_retardation_m_s2": si(train, "max_retardation_m_s2"),
         "highest_speed_m_s": si(train, "max_speed_kmh"),
-        "efficiency": train.efficiency,
+        "efficiency": _over_speed(train.efficiency, book),
+        **_effort(train, book),
+        **_electric(train, book),
+    }
+    return tuple(values.get(name, 0) for name in TRAIN_TYPE.names or ())
+
+
+def _effort(train: Train, book: CurveBook) -> dict[str, Any]:
+    """Fields of `TRAIN_TYPE` that describe the tractive effort."""
+    effort = train.tractive_effort
+    if isinstance(effort, EffortTable):
+        return _effort_table(train, effort, book)
+    if isinstance(effort, EffortLimits):
+        return {
+            "effort_model": LIMITS,
+            "highest_force_n": si(effort, "max_force_kn"),
+            "highest_power_w": si(effort, "max_power_kw"),
+            "limit_speed_m_s": _si_or(effort, "limit_speed_kmh", math.inf),
+            "zero_voltage_v": _si_or(effort, "zero_voltage_kv", 0.0),
+            "full_voltage_v": _si_or(effort, "full_voltage_kv", 0.0),
+        }
+    return {"effort_model": NETWORK, "highest_current_a": si(train, "max_motor_current_a")}
+
+
+def _effort_table(train: Train, effort: EffortTable, book: CurveBook) -> dict[str, Any]:
+    """A table at the train's current limit: rows over speed, one a voltage."""
+    force_n = np.array(effort.force_kn) * 1e3
+    if effort.motor_current_a is not None:
+        currents = np.array(effort.motor_current_a)
+        force_n = interpolate(si(train, "max_motor_current_a"), currents, force_n)
+    voltages = [0.0] if effort.voltage_kv is None else si_list(effort, "voltage_kv")
+    speeds = si_list(effort, "speed_kmh")
+    places = [book.add(speeds, row) for row in np.atleast_2d(force_n)]
+    return {
+        "effort_model": TABLE,
+        "effort": places[0],
+        "effort_rows": len(voltages),
+        "effort_voltage_v": voltages + [math.inf] * (MOST_VOLTAGES - len(voltages)),
+    }
+
+
+def _electric(train: Train, book: CurveBook) -> dict[str, Any]:
+    """Fields of `TRAIN_TYPE` that describe auxiliaries, reactive power, motor voltage and current."""
+    auxiliary_w = si(train, "auxiliary_power_kw")
+    values: dict[str, Any] = {
         "auxiliary_power_w": auxiliary_w,
         "auxiliary_reactive_power_var": auxiliary_w
         * plain(reactive_ratio)(train.auxiliary_power_factor),
-        "base_speed_m_s": si(train, "base_speed_kmh"),
-        "highest_motor_voltage_v": si(train, "max_motor_voltage_v"),
+        "base_speed_m_s": _si_or(train, "base_speed_kmh", math.nan),
+        "highest_motor_voltage_v": _si_or(train, "max_motor_voltage_v", math.nan),
         "reactive_model": _REACTIVE[train.reactive_power],
         "voltage_model": _MODEL[train.motor_voltage],
         "current_model": _MODEL[train.motor_current],
-        "filter_reactance_ohm": si(train, "filter_reactance_ohm")
-        if train.filter_reactance_ohm is not None
-        else math.inf,
+        "filter_reactance_ohm": _si_or(train, "filter_reactance_ohm", math.inf),
     }
-    return tuple(values[name] for name in TRAIN_TYPE.names or ())
+    if train.power_factor is not None and train.reactive_power == "power-factor":
+        values["reactive_model"] = POWER_FACTOR_CURVE
+        values["power_factor"] = _over_speed(train.power_factor, book)
+    return values
+
+
+def _over_speed(value: float | Curve, book: CurveBook) -> tuple[int, int]:
+    if isinstance(value, Curve):
+        return book.add(si_list(value, "speed_kmh"), value.value)
+    return book.add_constant(value)
+
+
+def _si_or(source: object, name: str, default: float) -> float:
+    """Value of a field in SI units, or what stands for one that is left out."""
+    return default if getattr(source, name) is None else si(source, name)

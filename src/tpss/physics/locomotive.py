@@ -17,11 +17,15 @@ Trains are records: `TRAIN_TYPE` holds what its owner states, `DEMAND` what stay
 is solved.  A record is one pointer to compiled code, however many fields it has.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 
 from tpss.kernel import inlined, kernel
+from tpss.physics.curve import CURVE, Points, curve_at
+from tpss.physics.effort_table import MOST_VOLTAGES
+from tpss.physics.machine import highest_force, take_effort
 from tpss.physics.motor import (
     NEW,
     armature_current,
@@ -33,17 +37,13 @@ from tpss.physics.neural_network import NETWORK, NEURONS
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     POWER_FACTOR,
+    POWER_FACTOR_CURVE,
     TRANSFORMER_RATIO,
     bridge_reactive_power,
     bridge_sine,
     filter_reactive_power,
     power_factor,
     reactive_ratio,
-)
-from tpss.physics.tractive_effort import (
-    VOLTAGE,
-    maximum_motor_force,
-    speed_and_current_bias,
 )
 
 FULL_EFFORT_N = 1e9
@@ -72,13 +72,24 @@ TRAIN_TYPE = np.dtype(
         ("resistance_a_n", float),
         ("resistance_b_n_s_per_m", float),
         ("resistance_c_n_s2_per_m2", float),
-        ("highest_current_a", float),
+        ("effort_model", np.int64),
+        ("highest_current_a", float),  # of one motor, for the network
+        ("effort", CURVE),  # the first row of a table; the others follow
+        ("effort_rows", np.int64),
+        ("effort_voltage_v", float, (MOST_VOLTAGES,)),  # of the rows
+        ("highest_force_n", float),  # the limits, of all motors
+        ("highest_power_w", float),
+        ("limit_speed_m_s", float),  # infinite without a pull-out limit
+        ("zero_voltage_v", float),
+        ("full_voltage_v", float),
+        ("highest_acceleration_m_s2", float),  # infinite without such a limit
         ("highest_retardation_m_s2", float),
         ("highest_speed_m_s", float),
-        ("efficiency", float),
+        ("efficiency", CURVE),
+        ("power_factor", CURVE),
         ("auxiliary_power_w", float),
         ("auxiliary_reactive_power_var", float),
-        ("base_speed_m_s", float),
+        ("base_speed_m_s", float),  # NaN, as the next, where the motors' voltage is not known
         ("highest_motor_voltage_v", float),
         ("filter_reactance_ohm", float),  # infinite without a filter
         ("reactive_model", np.int64),
@@ -96,13 +107,17 @@ DEMAND = np.dtype(
         ("resistance_n", float),
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
+        ("efficiency", float),
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
-        ("bias_speed_m_s", float),  # speed to which `bias` and `reactive_ratio` belong
+        ("taken_speed_m_s", float),  # speed to which all that `take_speed` writes belongs
         ("free_voltage_v", float),  # voltage around which the machine does not limit the force
         ("free_force_n", float),  # what the machine gives there
         ("free_band_v", float),  # how far from it that is proven; negative: nowhere
+        ("steepest_n_per_v", float),  # bound of the slope of the machine's force over voltage
         ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
         ("neurons", float, (NEURONS,)),  # scratch of a network
+        ("row_force_n", float, (MOST_VOLTAGES,)),  # of a table's rows, or by limits the first
+        ("row_slope_n_per_v", float, (MOST_VOLTAGES,)),
         ("cap_power_w", float),  # of the motors at the force cap
         ("cap_current_a", float),
         ("active_power_w", float),  # what came of it at the voltage last tried
@@ -150,40 +165,46 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
 
 
 @inlined
-def take_speed(voltage_v: float, kind: TrainType, train: Demand, machine: Machine) -> None:
+def take_speed(
+    voltage_v: float, kind: TrainType, train: Demand, machine: Machine, points: Points
+) -> None:
     """Evaluate what depends on the speed alone, if the speed has changed since that was done last.
 
     A train that holds its speed limit has the same speed, to the last digit, step after step.  What
     the machine gives is evaluated anew at `voltage_v` too, if that has left the band of the last step.
     """
-    network = machine.tractive_effort
-    if train.speed_m_s == train.bias_speed_m_s:
+    if train.speed_m_s == train.taken_speed_m_s:
         if 0.0 < train.free_band_v <= abs(voltage_v - train.free_voltage_v):
             train.free_voltage_v = voltage_v
-            train.free_force_n, _ = maximum_motor_force(
-                voltage_v, train.bias, network, train.neurons
-            )
+            train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
         return
-    train.bias_speed_m_s = train.speed_m_s
+    speed = train.taken_speed_m_s = train.speed_m_s
+    train.efficiency = curve_at(speed, kind.efficiency.first, kind.efficiency.points, points)
     if kind.reactive_model == POWER_FACTOR:
-        factor = power_factor(train.speed_m_s, machine.power_factor, train.neurons)
+        factor = power_factor(speed, machine.power_factor, train.neurons)
         train.reactive_ratio = reactive_ratio(factor)
-    speed_and_current_bias(train.speed_m_s, kind.highest_current_a, network, train.bias)
+    elif kind.reactive_model == POWER_FACTOR_CURVE:
+        factor = curve_at(speed, kind.power_factor.first, kind.power_factor.points, points)
+        train.reactive_ratio = reactive_ratio(factor)
+    take_effort(kind, train, machine, points)
     train.free_voltage_v = voltage_v
-    train.free_force_n, _ = maximum_motor_force(voltage_v, train.bias, network, train.neurons)
+    train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
 
 
 @inlined
-def prove_free_band(kind: TrainType, train: Demand, machine: Machine) -> None:
+def prove_free_band(kind: TrainType, train: Demand) -> None:
     """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
-    The slope of the force is bounded (`NETWORK.steepest`), so a margin in force is a margin in
-    voltage; within it the network need not be evaluated again, and nothing is approximated.
+    The slope of the force is bounded (`take_effort`), so a margin in force is a margin in voltage;
+    within it the machine need not be evaluated again, and nothing is approximated.
     """
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
     margin = train.free_force_n - needed
-    train.free_band_v = margin / machine.tractive_effort.steepest[VOLTAGE]
+    if train.steepest_n_per_v > 0.0:
+        train.free_band_v = margin / train.steepest_n_per_v
+    else:  # no voltage changes the force
+        train.free_band_v = math.inf if margin >= 0.0 else -1.0
     train.machine_force_n = train.free_force_n
 
 
@@ -202,9 +223,7 @@ def wheel_force(
         return 0.0, 0.0
     if abs(voltage_v - train.free_voltage_v) < train.free_band_v:
         return cap, 0.0
-    force, slope = maximum_motor_force(
-        voltage_v, train.bias, machine.tractive_effort, train.neurons
-    )
+    force, slope = highest_force(voltage_v, kind, train, machine)
     train.machine_force_n = force
     if force < 0.0:
         force, slope = 0.0, 0.0
@@ -385,7 +404,7 @@ def electrical_demand(
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)
-    active = power / kind.efficiency + kind.auxiliary_power_w
+    active = power / train.efficiency + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
         reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)
     else:
@@ -395,4 +414,4 @@ def electrical_demand(
     reactive += kind.auxiliary_reactive_power_var + filtered
     reactive_slope += 2.0 * filtered / voltage_v
     train.active_power_w, train.reactive_power_var = active, reactive
-    return active, reactive, power_slope / kind.efficiency, reactive_slope
+    return active, reactive, power_slope / train.efficiency, reactive_slope

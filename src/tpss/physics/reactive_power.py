@@ -23,6 +23,7 @@ Array = npt.NDArray[np.float64]
 
 POWER_FACTOR = 0
 DOUBLE_BRIDGE = 1
+POWER_FACTOR_CURVE = 2
 
 TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
 """In-locomotive voltage over line voltage, U_locoRc / U = 487 V / 15 kV. [Boullanger2009]_, (F.32)."""

@@ -272,7 +272,8 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
     before, after = trains[:-1], trains[1:]
     way_m = after["position"] - before["position"]
-    power_w = (before["active_power"] - kind.auxiliary_power_w) * kind.efficiency
+    efficiency = _efficiency(before["speed"], kind, model.points)
+    power_w = (before["active_power"] - kind.auxiliary_power_w) * efficiency
     work = power_w * h / kind.slip_factor
     force = before["tractive_force"]
     rotor = np.where(
@@ -284,6 +285,27 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     total = np.nansum(work)
     difference = total - np.nansum(moving) - np.nansum(kinetic)
     return float(abs(difference) / max(total, 1.0))
+
+
+def _efficiency(speed: Floats, kind: Any, points: Any) -> Floats:
+    """Efficiency of each train at its speeds, shape (steps, trains). [1]"""
+    found = np.empty_like(speed)
+    for i, curve in enumerate(kind.efficiency):
+        own = points[curve.first : curve.first + curve.points]
+        found[:, i] = _curve(speed[:, i], own) if curve.points > 1 else own.value[0]
+    return found
+
+
+def _curve(x: Floats, points: Any) -> Floats:
+    """Values of a curve, written as Hermite's basis functions; beyond its ends the outer ones."""
+    x = np.clip(x, points.at[0], points.at[-1])
+    k = np.clip(np.searchsorted(points.at, x, side="right") - 1, 0, points.size - 2)
+    before, after = points[k], points[k + 1]
+    step = after.at - before.at
+    t = (x - before.at) / step
+    values = before.value * (1 + 2 * t) * (1 - t) ** 2 + after.value * t**2 * (3 - 2 * t)
+    slopes = before.slope * t * (1 - t) ** 2 - after.slope * t**2 * (1 - t)
+    return np.asarray(values + step * slopes, dtype=float)
 
 
 def force_balance(outcome: Outcome, model: Model) -> float:

@@ -41,7 +41,8 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
     """Dataset of a run.
 
     State variables (position, speed) hold at the instant; all others from that instant to the next.
-    Trains that are not on the line are NaN.
+    Trains that are not on the line are NaN, and so is the motor current of a train whose motors'
+    voltage is not described.
     """
     arrays = _arrays(outcome, layout)
     variables: dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]] = {

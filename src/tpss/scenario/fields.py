@@ -32,7 +32,19 @@ Whole = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 Name = Annotated[str, Field(min_length=1)]
 
+OWN_FILE = {
+    "type": "string",
+    "pattern": r"\.toml$",
+    "description": "A file of one's own beside the scenario, which holds the table.",
+}
+"""JSON Schema of a name that `tpss.scenario.inline` replaces by what is in the file."""
+
 _Item = TypeVar("_Item")
+
+
+def fault(problem: str, remedy: str) -> PydanticCustomError:
+    """A fault that brings its own words."""
+    return PydanticCustomError("fault", "{problem}", {"problem": problem, "remedy": remedy})
 
 
 @dataclass(frozen=True)
@@ -50,7 +62,7 @@ class FromLibrary:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         names = {"type": "string", "enum": sorted(library.entries(self.kind))}
-        return {"anyOf": [names, handler(schema)]}
+        return {"anyOf": [names, OWN_FILE, handler(schema)]}
 
     def _look_up(self, value: Any) -> Any:
         if not isinstance(value, str):

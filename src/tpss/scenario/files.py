@@ -32,15 +32,15 @@ def _remedy_for_missing(path: Path) -> str:
     return f"files of this kind there: {', '.join(here[:8])}" if here else "check the path"
 
 
-def read_toml(path: Path) -> dict[str, Any]:
-    """Document of a TOML file.
+def read_toml(path: Path, named_by: str = "") -> dict[str, Any]:
+    """Document of a TOML file, perhaps one that is named by a key of another.
 
     Raises
     ------
     ScenarioError
         The file cannot be read or is not TOML.
     """
-    text = read_text(path)
+    text = read_text(path, named_by)
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:

@@ -1,12 +1,13 @@
-"""The trains: a library model, any of its fields overridden."""
+"""The trains: a library model or one's own, any of its fields overridden."""
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Real
+from tpss.scenario.fields import Name, Part, Real, fault
+from tpss.scenario.machine import EffortTable, RatioOverSpeed, TractiveEffort
 
 
 def _is_a_library_model(name: str) -> str:
@@ -23,37 +24,68 @@ def _is_a_library_model(name: str) -> str:
 class Train(Part):
     """A train: the locomotive's machine and the whole train's mechanics."""
 
-    model: Annotated[Name, AfterValidator(_is_a_library_model)] = Field(
-        description="Library model; the other keys override its values."
+    model: Annotated[Name, AfterValidator(_is_a_library_model)] | None = Field(
+        default=None,
+        description="Library model, or a file of one's own that ends in .toml, whose values the "
+        "other keys override; leave it out, and give all of them.",
     )
-    machine: Literal["Rc4"] = Field(description="Machine whose networks give forces and currents.")
+    tractive_effort: TractiveEffort = Field(
+        description="What the motors give at most: the name of a machine (Rc4), a table over speed "
+        "(and voltage, and current limit), or a highest force and power."
+    )
     mass_t: Real = Field(gt=0, le=20_000, description="Mass of the whole train.")
     adhesive_mass_t: Real = Field(gt=0, description="Mass on driven axles.")
     rotating_mass_factor: Real = Field(
-        ge=0, le=1, description="Rotating parts of the hauled mass, H, as a share of it."
+        default=0.0,
+        ge=0,
+        le=1,
+        description="Rotating parts of the hauled mass, H, as a share of it.",
     )
     motor_inertia_kg: Real = Field(
-        ge=0, description="Inertia of the motors, 4 K_J, as a mass at the wheel rim."
+        default=0.0, ge=0, description="Inertia of the motors, 4 K_J, as a mass at the wheel rim."
     )
-    slip: Real = Field(ge=0, le=0.5, description="Slip ratio of the driven wheels, κ.")
+    slip: Real = Field(default=0.0, ge=0, le=0.5, description="Slip ratio of the driven wheels, κ.")
     resistance_a_n: Real = Field(ge=0, description="Running resistance A + B v + C v²: A.")
     resistance_b_n_s_per_m: Real = Field(ge=0, description="B.")
     resistance_c_n_s2_per_m2: Real = Field(ge=0, description="C.")
     max_speed_kmh: Real = Field(gt=0, le=500, description="Highest speed of the train.")
-    max_motor_current_a: Real = Field(
+    max_motor_current_a: Real | None = Field(
+        default=None,
+        validate_default=True,
         gt=0,
         le=5_000,
-        description="Highest current of one motor; the machine's curves end at 2080 A.",
+        description="Highest current of one motor, for the Rc4, whose curves end at 2080 A, and for "
+        "tables with several current limits.",
+    )
+    max_acceleration_m_s2: Real | None = Field(
+        default=None, gt=0, le=10, description="Highest acceleration; leave it out: no such limit."
     )
     max_retardation_m_s2: Real = Field(gt=0, le=5, description="Highest braking retardation.")
-    efficiency: Real = Field(gt=0, le=1, description="From pantograph to motor shaft.")
-    auxiliary_power_kw: Real = Field(ge=0, description="Active power of the auxiliaries.")
-    auxiliary_power_factor: Real = Field(gt=0, le=1, description="Their power factor.")
-    reactive_power: Literal["power-factor", "double-bridge"] = Field(
-        description="Reactive power of the motors by the power factor curve or by the bridges."
+    efficiency: RatioOverSpeed = Field(
+        description="From pantograph to motor shaft: a number, or a curve over speed."
     )
-    base_speed_kmh: Real = Field(gt=0, description="Speed of the highest motor voltage.")
-    max_motor_voltage_v: Real = Field(gt=0, description="Highest voltage of one motor.")
+    auxiliary_power_kw: Real = Field(ge=0, description="Active power of the auxiliaries.")
+    auxiliary_power_factor: Real = Field(default=0.8, gt=0, le=1, description="Their power factor.")
+    reactive_power: Literal["power-factor", "double-bridge"] = Field(
+        default="power-factor",
+        description="Reactive power of the motors by a power factor, or by the Rc4's bridges.",
+    )
+    power_factor: RatioOverSpeed | None = Field(
+        default=None,
+        validate_default=True,
+        description="Power factor of the motors, inductive: a number, or a curve over speed; leave "
+        "it out: that of the Rc4.",
+    )
+    base_speed_kmh: Real | None = Field(
+        default=None,
+        validate_default=True,
+        gt=0,
+        description="Speed of the highest motor voltage; leave it out, and the motors' current is "
+        "not known.",
+    )
+    max_motor_voltage_v: Real | None = Field(
+        default=None, validate_default=True, gt=0, description="Highest voltage of one motor."
+    )
     motor_voltage: Literal["new", "former"] = Field(
         default="new", description="Motor voltage over speed alone, or lowered below 14 kV too."
     )
@@ -66,6 +98,50 @@ class Train(Part):
         description="Reactance of the filter on the transformer's secondary side; -0.45 for an "
         "Rc4; leave it out: no filter.",
     )
+
+    @field_validator("max_motor_current_a")
+    @classmethod
+    def _current_of_the_machine(cls, current: float | None, info: ValidationInfo) -> float | None:
+        effort = info.data.get("tractive_effort")
+        known = effort.motor_current_a if isinstance(effort, EffortTable) else None
+        if current is None and (effort == "Rc4" or known):
+            raise fault("the tractive effort depends on it", "add it, such as 1250")
+        if current is not None and known and not known[0] <= current <= known[-1]:
+            raise fault(
+                "outside the current limits of the table of tractive effort",
+                f"choose between {known[0]:g} and {known[-1]:g} A, or extend the table",
+            )
+        return current
+
+    @field_validator("power_factor")
+    @classmethod
+    def _power_factor_of_the_machine(cls, factor: Any, info: ValidationInfo) -> Any:
+        effort = info.data.get("tractive_effort", "Rc4")
+        if factor is None and effort != "Rc4" and info.data.get("reactive_power") == "power-factor":
+            raise fault(
+                "the power factor of the Rc4 is not that of another machine",
+                "add power_factor, a number or a curve { speed_kmh = [...], value = [...] }",
+            )
+        return factor
+
+    @field_validator("base_speed_kmh", "max_motor_voltage_v")
+    @classmethod
+    def _voltage_of_the_motors(cls, value: float | None, info: ValidationInfo) -> float | None:
+        if value is None and info.data.get("reactive_power") == "double-bridge":
+            raise fault(
+                "the bridges' reactive power depends on it",
+                'add it, or choose reactive_power = "power-factor"',
+            )
+        return value
+
+    @model_validator(mode="after")
+    def _base_speed_and_motor_voltage_belong_together(self) -> Self:
+        if (self.base_speed_kmh is None) != (self.max_motor_voltage_v is None):
+            raise fault(
+                "base_speed_kmh and max_motor_voltage_v belong together",
+                "give both, or leave both out",
+            )
+        return self
 
     @model_validator(mode="after")
     def _adhesive_mass_is_a_part_of_the_mass(self) -> Self:

@@ -5,6 +5,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from tpss import library, units
+from tpss.scenario.fields import OWN_FILE
 from tpss.scenario.scenario import Scenario
 
 TITLE = "TPSS scenario"
@@ -39,6 +40,8 @@ def scenario_schema() -> dict[str, Any]:
         for key, field in part["properties"].items():
             _add_unit(key, field)
     _lean_on_the_library(parts["Train"])
+    line = schema["properties"]["line"]
+    schema["properties"]["line"] = {"anyOf": [OWN_FILE, line]}
     schema["description"] = "A line, its power supply, its trains and its traffic."
     return {"$schema": _OfToml.schema_dialect, "title": TITLE, **schema}
 
@@ -50,8 +53,11 @@ def _add_unit(key: str, field: dict[str, Any]) -> None:
 
 
 def _lean_on_the_library(train: dict[str, Any]) -> None:
-    """A train names a library model, which gives every key that its entries have."""
-    entries = library.entries("locomotives")
-    given = set.intersection(*(set(entry) for entry in entries.values()))
-    train["required"] = [key for key in train["required"] if key not in given]
-    train["properties"]["model"]["enum"] = sorted(entries)
+    """A train names a library model or a file, or gives by itself what those would give."""
+    names = {"type": "string", "enum": sorted(library.entries("locomotives"))}
+    model = train["properties"]["model"]
+    train["properties"]["model"] = {
+        "anyOf": [names, OWN_FILE],
+        "description": model["description"],
+    }
+    train["anyOf"] = [{"required": ["model"]}, {"required": train.pop("required")}]

@@ -1,19 +1,18 @@
 """Validation that reports every fault at once: each field by pydantic, then the parts together."""
 
 import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, Tag, ValidationError
 
 from tpss import units
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.cross_check import cross_check
-from tpss.scenario.files import read_gradients
+from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
 
 _Model = TypeVar("_Model", bound=BaseModel)
-
-_Location = tuple[int | str, ...]
 
 _PROBLEMS = {
     "missing": "it is missing",
@@ -57,66 +56,67 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     ScenarioError
         The document has faults; the error lists all of them.
     """
-    document = copy.deepcopy(document)
-    findings = _insert_profile(document, source)
+    inlined = inline_files(copy.deepcopy(document), source)
+    findings = inlined.findings
     scenario = None
     try:
-        scenario = model.model_validate(document)
+        scenario = model.model_validate(inlined.document)
     except ValidationError as error:
         details: list[dict[str, Any]] = [dict(d) for d in error.errors(include_url=False)]
-        locations: set[_Location] = {detail["loc"] for detail in details}
+        locations: set[Location] = {detail["loc"] for detail in details}
         findings += [
-            _finding(model, detail, source)
+            _finding(model, detail, inlined)
             for detail in details
-            if not _follows_from_another(detail, locations, document)
+            if not _follows_from_another(detail, locations, inlined)
         ]
-    findings += cross_check(document, str(source))
+    if not inlined.is_unread(("line",)):
+        findings += [
+            _traced(finding, inlined) for finding in cross_check(inlined.document, str(source))
+        ]
     if findings or scenario is None:
         raise ScenarioError(findings)
     return scenario
 
 
-def _insert_profile(document: dict[str, Any], source: Path) -> list[Finding]:
-    """Read the gradients that a document names as a file into it."""
-    line = document.get("line")
-    if not isinstance(line, dict) or not isinstance(line.get("gradients_file"), str):
-        return []
-    name = line["gradients_file"]
-    if "gradients" in line:
-        problem = "gradients are given twice, as a file and as a list"
-        remedy = "leave out gradients_file or gradients"
-        return [Finding(str(source), "line.gradients_file", repr(name), problem, remedy)]
-    del line["gradients_file"]
-    try:
-        line["gradients"] = read_gradients(source.parent / name)
-    except ScenarioError as error:
-        # A level line lets the rest of the document be judged.
-        line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]
-        return list(error.findings)
-    return []
-
-
 def _follows_from_another(
-    detail: dict[str, Any], locations: set[_Location], document: dict[str, Any]
+    detail: dict[str, Any], locations: set[Location], inlined: Inlined
 ) -> bool:
     """Whether a finding only repeats another: a list that lost its faulty items, and the like."""
     location = detail["loc"]
+    if inlined.is_unread(location):
+        return True
     if detail["type"] == "too_short":
         return any(other[: len(location)] == location != other for other in locations)
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.
-        return location[2] != "model" and (*location[:2], "model") in locations
+        return (*location[:2], "model") in locations
     if location == ("line", "gradients"):
-        return "gradients_file" in document.get("line", {}) and detail["type"] == "missing"
+        return "gradients_file" in inlined.document.get("line", {}) and detail["type"] == "missing"
     return False
 
 
-def _finding(model: type[BaseModel], detail: dict[str, Any], source: Path) -> Finding:
-    kind, location = detail["type"], detail["loc"]
-    shown = "" if kind in ("missing", "either_or", "conflict") else _short(detail["input"])
-    key = ".".join(str(part) for part in location)
-    problem, remedy = _explain(model, kind, location, detail)
-    return Finding(str(source), key, shown, problem, remedy)
+def _traced(finding: Finding, inlined: Inlined) -> Finding:
+    """A finding of a key path, with the file in which it stands."""
+    file, place = inlined.origin(tuple(finding.key.split(".")))
+    return replace(finding, file=str(file), key=".".join(str(name) for name in place))
+
+
+def _finding(model: type[BaseModel], detail: dict[str, Any], inlined: Inlined) -> Finding:
+    part, location = _follow(model, detail["loc"])
+    file, place = inlined.origin(location)
+    problem, remedy = _explain(part, place, detail)
+    key = ".".join(str(name) for name in place)
+    return Finding(str(file), key, _shown(detail), problem, remedy)
+
+
+def _shown(detail: dict[str, Any]) -> str:
+    """The value of a fault, where one value is at fault."""
+    value = detail["input"]
+    if detail["type"] in ("missing", "either_or"):
+        return ""
+    if "remedy" in detail.get("ctx", {}) and isinstance(value, dict | None):
+        return ""  # a fault between several values, or of one that is not there
+    return _short(value)
 
 
 def _short(value: Any) -> str:
@@ -124,16 +124,16 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _explain(
-    model: type[BaseModel], kind: str, location: _Location, detail: dict[str, Any]
-) -> tuple[str, str]:
-    context, message = detail.get("ctx", {}), detail["msg"]
-    words = [part for part in location if isinstance(part, str)]
+def _explain(part: type[BaseModel], place: Location, detail: dict[str, Any]) -> tuple[str, str]:
+    """What is wrong at a place of a file, and how to mend it."""
+    kind, context, message = detail["type"], detail.get("ctx", {}), detail["msg"]
+    words = [name for name in place if isinstance(name, str)]
     unit = units.label(words[-1]) if words else ""
     if kind == "extra_forbidden":
-        return "unknown key", suggest(str(location[-1]), _known_keys(model, location[:-1]))
+        return "unknown key", suggest(str(place[-1]), _keys(part))
     if kind == "unknown_name":
-        return message, suggest(str(detail["input"]), context["known"])
+        own = f"; or name a file of your own that ends in {SUFFIX}"
+        return message, suggest(str(detail["input"]), context["known"]) + own
     if kind == "literal_error":
         known = [word.strip("' ") for word in context["expected"].replace(" or ", ",").split(",")]
         return "not one of the choices", suggest(str(detail["input"]), known)
@@ -141,23 +141,57 @@ def _explain(
         return "not a number", f"write a number{f' in {unit}' if unit else ''}, without quotes"
     if kind.startswith(("greater_than", "less_than")):
         return "out of range", f"{message[0].lower()}{message[1:]}{f' {unit}' if unit else ''}"
-    if kind == "conflict":
+    if "remedy" in context:
         return message, context["remedy"]
-    if location == ("line", "gradients") and kind == "missing":
+    if kind == "too_long":
+        most = context["max_length"]
+        return f"the list has {context['actual_length']} items", f"leave at most {most}"
+    if kind == "missing" and words[-1:] == ["gradients"]:
         return "no gradients are given", "add gradients, or gradients_file with a CSV file"
+    if kind == "missing" and place[0] == "trains" and len(place) == 3:
+        return _PROBLEMS[kind], "add it, or name a model that gives it"
     return _PROBLEMS.get(kind, message), _REMEDIES.get(
         kind, "see the commented examples for this key"
     )
 
 
-def _known_keys(model: type[BaseModel], location: _Location) -> list[str]:
-    """Keys that the part of a scenario at a location knows."""
-    part = model
+def _keys(part: type[BaseModel]) -> list[str]:
+    """Keys of a part, as they are written."""
+    return [field.alias or name for name, field in part.model_fields.items()]
+
+
+def _follow(model: type[BaseModel], location: Location) -> tuple[type[BaseModel], Location]:
+    """Part of a scenario that holds a location, and the location as the user would write it.
+
+    Pydantic's locations name the alternative that it took (a number or a curve) too.
+    """
+    part, within = model, model
+    choices: dict[str, type[BaseModel] | None] = {}
+    written: list[int | str] = []
     for key in location:
+        if key in choices:
+            within = choices[str(key)] or within
+            choices = {}
+            continue
+        written.append(key)
+        part = within
         fields = {field.alias or name: field for name, field in part.model_fields.items()}
         if key in fields:  # otherwise the number of a list's item, or the name of a train
-            part = _part_in(fields[str(key)].annotation) or part
-    return [field.alias or name for name, field in part.model_fields.items()]
+            choices = _choices(fields[str(key)])
+            within = _part_in(fields[str(key)].annotation) or part
+    return part, tuple(written)
+
+
+def _choices(field: Any) -> dict[str, type[BaseModel] | None]:
+    """Alternatives of a field by their tags, with their parts."""
+    found: dict[str, type[BaseModel] | None] = {}
+    waiting = [field.annotation]
+    while waiting:
+        annotation = waiting.pop()
+        tags = [m.tag for m in getattr(annotation, "__metadata__", ()) if isinstance(m, Tag)]
+        found |= {tag: _part_in(annotation) for tag in tags}
+        waiting += [] if tags else get_args(annotation)
+    return found
 
 
 def _part_in(annotation: Any) -> type[BaseModel] | None:

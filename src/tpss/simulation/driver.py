@@ -43,8 +43,9 @@ def fastest_and_coasting(train: Any, kind: Any, step_s: float) -> tuple[float, f
 def target_speed(train: Any, kind: Any, model: Model) -> float:
     """Speed that a train is to have after this step, if its machine can. [m/s]
 
-    The lower of line and train limits it, or the original driver's rule; a braking plan and limits
-    ahead lower it; a standing train takes no more than leaves room for its next stop.
+    The lower of line and train limits it, or the original driver's rule, and the highest acceleration
+    that the train may have; a braking plan and limits ahead lower it; a standing train takes no more
+    than leaves room for its next stop.
 
     References
     ----------
@@ -60,6 +61,7 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
             fastest, coasting = fastest_and_coasting(train, kind, h)
             slowest = train.speed_m_s - retardation * h
             target = aggressive_speed(train.speed_m_s, target, fastest, coasting, slowest)
+        target = min(target, train.speed_m_s + kind.highest_acceleration_m_s2 * h)
         if train.speed_m_s <= 0.0:
             room_m = distance_to_stop(train, model)
             target = min(target, highest_speed_that_stops(0.0, room_m, retardation, h))
@@ -132,7 +134,7 @@ def aim(train: Any, model: Model) -> None:
         train.force_cap_n = max(0.0, allowed)
         train.target_speed_m_s = target
         train.wanted_force_n = wanted
-    prove_free_band(kind, train, model.machine[0])
+    prove_free_band(kind, train)
     note_cap(kind, train)
 
 
@@ -146,6 +148,6 @@ def prepare(train: Any, model: Model) -> None:
     """
     kind, options = model.types[train.train_type], model.options
     train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
-    take_speed(train.voltage_v, kind, train, model.machine[0])
+    take_speed(train.voltage_v, kind, train, model.machine[0], model.points)
     oppose(train, kind, model)
     aim(train, model)

@@ -5,18 +5,20 @@ import math
 from typing import Any
 
 from tpss.kernel import inlined, kernel
+from tpss.physics.curve import outside_curve
 from tpss.physics.locomotive import (
     motor_state,
     train_armature_current,
 )
+from tpss.physics.machine import effort_extrapolates
 from tpss.physics.motor import line_voltage_factor, motor_current, motor_voltage
 from tpss.physics.neural_network import outside
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
+    POWER_FACTOR_CURVE,
     TRANSFORMER_RATIO,
     bridge_outside_training,
 )
-from tpss.physics.tractive_effort import effort_outside_training
 from tpss.powerflow.pairs import magnitude, squared
 from tpss.simulation.converter_control import station_loading, station_power
 from tpss.simulation.state import (
@@ -84,12 +86,18 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
 
 @inlined
 def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
-    """Count where a network of a motoring train extrapolates or is clipped."""
+    """Count where a network or a curve of a motoring train extrapolates or is clipped."""
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
-    if effort_outside_training(speed, voltage, kind.highest_current_a, machine.tractive_effort):
+    if effort_extrapolates(speed, voltage, kind, machine, model.points):
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
     if train.machine_force_n < 0.0:
         counters[Counter.EFFORT_CLIPPED] += 1
+    if outside_curve(speed, kind.efficiency, model.points):
+        counters[Counter.EFFICIENCY_EXTRAPOLATED] += 1
+    if kind.reactive_model == POWER_FACTOR_CURVE:
+        if outside_curve(speed, kind.power_factor, model.points):
+            counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1
+        return
     if kind.reactive_model != DOUBLE_BRIDGE:
         if outside(speed, machine.power_factor, 0):
             counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1

@@ -106,6 +106,7 @@ class Counter(IntEnum):
     BRIDGE_CLIPPED = 3
     POWER_FACTOR_EXTRAPOLATED = 4
     SHORT_PIECE = 5
+    EFFICIENCY_EXTRAPOLATED = 6
 
 
 class Profile(NamedTuple):
@@ -145,6 +146,8 @@ class Model(NamedTuple):
     """Records of `TRAIN_TYPE`."""
     machine: Any
     """One record of `MACHINE`."""
+    points: Any
+    """Records of `CURVE_POINT`, of all curves of the trains."""
     network: Network
 
 

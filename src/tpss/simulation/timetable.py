@@ -111,7 +111,7 @@ def train_records(trains: list[Train], voltage_v: float) -> Any:
         rows[name] = [getattr(train, name) for train in trains]
     rows.arrival_step = -1
     rows.voltage_v = voltage_v
-    rows.bias_speed_m_s = -1.0
+    rows.taken_speed_m_s = -1.0
     return rows
 
 

@@ -31,6 +31,7 @@ import numpy as np
 import pytest
 
 from tpss.kernel import blank_records, records
+from tpss.model.curves import CurveBook
 from tpss.model.trains import build_machine
 from tpss.physics.adhesion import WET, adhesion_limit
 from tpss.physics.locomotive import (
@@ -50,6 +51,7 @@ from tpss.physics.locomotive import (
     train_bridge_sine,
     wheel_force,
 )
+from tpss.physics.machine import NETWORK
 from tpss.physics.motor import FORMER, NEW
 from tpss.physics.reactive_power import DOUBLE_BRIDGE, POWER_FACTOR
 from tpss.physics.tractive_effort import VOLTAGE
@@ -57,6 +59,9 @@ from tpss.physics.tractive_effort import VOLTAGE
 from alternatives import central_difference
 
 MACHINE = build_machine()[0]
+CURVES = CurveBook()
+EFFICIENCY = CURVES.add_constant(0.8)
+POINTS = CURVES.points()
 RESISTANCE_N = 33_717.0
 NO_LIMIT_N = 1e6
 
@@ -67,7 +72,8 @@ FREIGHT = {
     "rotor_mass_kg": 10_750.0,
     "slip_factor": 1.0,
     "highest_current_a": 1250.0,
-    "efficiency": 0.8,
+    "effort_model": NETWORK,
+    "efficiency": EFFICIENCY,
     "auxiliary_power_w": 151_500.0,
     "auxiliary_reactive_power_var": 113_625.0,
     "base_speed_m_s": 78 / 3.6,
@@ -89,8 +95,8 @@ def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, ki
     train = blank_records(1, DEMAND)[0]
     train.force_cap_n, train.resistance_n, train.adhesion_n = cap_n, resistance_n, NO_LIMIT_N
     train.speed_m_s, train.mean_speed_weight_s = speed_kmh / 3.6, mean_over_s / 2.0
-    train.bias_speed_m_s = train.free_band_v = -1.0
-    take_speed(15e3, kind or freight(), train, MACHINE)
+    train.taken_speed_m_s = train.free_band_v = -1.0
+    take_speed(15e3, kind or freight(), train, MACHINE, POINTS)
     note_cap(kind or freight(), train)
     return train
 
@@ -343,7 +349,7 @@ def random_trains(count):
 def test_band_is_the_margin_of_force_over_the_steepest_slope(as_run):
     """For 100 kN at the rim the motors need 100 484.7 N of the 169 170.2 N that they can give."""
     train = demand(1e5)
-    as_run(prove_free_band)(freight(), train, MACHINE)
+    as_run(prove_free_band)(freight(), train)
     margin_n = train.free_band_v * MACHINE.tractive_effort.steepest[VOLTAGE]
     assert margin_n == pytest.approx(169_170.2 - 100_484.7, abs=0.1)
     assert train.free_voltage_v == 15e3
@@ -353,7 +359,7 @@ def test_inside_the_proven_band_the_force_is_what_the_driver_wants(as_run):
     """The machine alone, evaluated anew with the band taken away, says the same."""
     proven = 0
     for kind, train in random_trains(300):
-        as_run(prove_free_band)(kind, train, MACHINE)
+        as_run(prove_free_band)(kind, train)
         band_v, train.free_band_v = train.free_band_v, -1.0
         if band_v > 0.0:
             proven += 1
@@ -365,7 +371,7 @@ def test_inside_the_proven_band_the_force_is_what_the_driver_wants(as_run):
 def test_force_does_not_depend_on_the_voltages_tried_before(as_run):
     """The band stays where it was proven, whatever is evaluated outside it."""
     for kind, train in random_trains(100):
-        as_run(prove_free_band)(kind, train, MACHINE)
+        as_run(prove_free_band)(kind, train)
         fresh = train.copy()
         for at_v in (11e3, 16.5e3, 13e3, 13.01e3, 15.2e3):
             force, _ = as_run(wheel_force)(at_v, kind, train, MACHINE)
@@ -382,7 +388,7 @@ def test_band_is_used_within_and_not_beyond(as_run):
 
 def test_nothing_is_proven_at_the_limit(as_run):
     train = demand(NO_LIMIT_N)
-    as_run(prove_free_band)(freight(), train, MACHINE)
+    as_run(prove_free_band)(freight(), train)
     assert train.free_band_v < 0.0
 
 
@@ -391,7 +397,7 @@ def test_what_depends_on_the_speed_is_taken_anew_when_the_speed_changes(as_run):
     train = demand(1e5)
     for speed_kmh, factor, force_n in ((60.0, 0.721158, 169_170), (100.0, 0.809358, 127_030)):
         train.speed_m_s = speed_kmh / 3.6
-        as_run(take_speed)(15e3, freight(), train, MACHINE)
+        as_run(take_speed)(15e3, freight(), train, MACHINE, POINTS)
         assert train.reactive_ratio == pytest.approx(math.sqrt(factor**-2 - 1.0), rel=1e-5)
         assert train.free_force_n == pytest.approx(force_n, abs=1.0)
 
@@ -399,7 +405,7 @@ def test_what_depends_on_the_speed_is_taken_anew_when_the_speed_changes(as_run):
 def test_the_same_speed_is_not_evaluated_twice(as_run):
     train = demand(1e5)
     train.free_force_n = 7.0
-    as_run(take_speed)(15e3, freight(), train, MACHINE)
+    as_run(take_speed)(15e3, freight(), train, MACHINE, POINTS)
     assert train.free_force_n == 7.0
 
 

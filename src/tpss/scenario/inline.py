@@ -1,0 +1,155 @@
+"""Put the files that a scenario names in place of their names.
+
+A name that ends in ``.toml`` stands for the table in that file, beside the scenario: of a train's
+model, of the line, of anything that the library has entries for.  ``gradients_file`` stands for a
+profile in CSV.  A scenario then holds everything that it says, and its faults are traced back to the
+files in which they stand.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tpss import library
+from tpss.errors import Finding, ScenarioError
+from tpss.scenario.files import read_gradients, read_toml
+
+Location = tuple[int | str, ...]
+
+SUFFIX = ".toml"
+
+PLACES: tuple[tuple[str, ...], ...] = (
+    ("line",),
+    ("supply", "catenary"),
+    ("supply", "high_voltage_line", "type"),
+    ("supply", "high_voltage_line", "line_transformer"),
+    ("supply", "high_voltage_line", "station_transformer"),
+    ("supply", "converter_stations", "*", "type"),
+    ("trains", "*", "model"),
+)
+"""Where a file may be named; ``*`` is any item or key."""
+
+
+@dataclass
+class Inlined:
+    """A document without file names, and where its parts came from."""
+
+    document: dict[str, Any]
+    source: Path
+    findings: list[Finding] = field(default_factory=list)
+    files: dict[Location, Path] = field(default_factory=dict)
+    """Files by the tables that they gave."""
+    own: dict[Location, set[str]] = field(default_factory=dict)
+    """Keys of such a table that the scenario itself gives."""
+    unread: set[Location] = field(default_factory=set)
+    """Tables whose file could not be read."""
+
+    def origin(self, location: Location) -> tuple[Path, Location]:
+        """File that holds a value, and the value's place in it."""
+        for table, file in self.files.items():
+            below = location[len(table) :]
+            if below and location[: len(table)] == table and below[0] not in self.own[table]:
+                return file, below
+        return self.source, location
+
+    def is_unread(self, location: Location) -> bool:
+        """Whether a location lies in a table whose file could not be read."""
+        return any(location[: len(table)] == table for table in self.unread)
+
+
+def inline_files(document: dict[str, Any], source: Path) -> Inlined:
+    """Replace the names of files in a document, which is changed, by what they hold."""
+    found = Inlined(document, source)
+    for place in PLACES:
+        for container, key, location in _named_files(document, place, ()):
+            if place[0] == "trains":
+                _merge_model(container, location[:-1], found)
+            else:
+                _insert_table(container, key, location, found)
+    _insert_profile(found)
+    return found
+
+
+def _named_files(
+    container: Any, place: tuple[str, ...], above: Location
+) -> Iterator[tuple[Any, Any, Location]]:
+    """Containers and keys at a place whose value is the name of a file."""
+    below = place[1:]
+    for name in _keys_at(container, place[0]):
+        value = container[name]
+        if below:
+            yield from _named_files(value, below, (*above, name))
+        elif isinstance(value, str) and value.endswith(SUFFIX):
+            yield container, name, (*above, name)
+
+
+def _keys_at(container: Any, key: str) -> list[Any]:
+    """Keys or numbers of a container's items that a key, or ``*``, means."""
+    if isinstance(container, dict):
+        return [name for name in container if key in ("*", name)]
+    return list(range(len(container))) if key == "*" and isinstance(container, list | tuple) else []
+
+
+def _read(name: str, location: Location, found: Inlined) -> dict[str, Any] | None:
+    """Table in a file, without its source; None, with a finding, if it cannot be read."""
+    key = ".".join(str(part) for part in location)
+    try:
+        table = read_toml(found.source.parent / name, key)
+    except ScenarioError as error:
+        found.findings += error.findings
+        return None
+    table.pop("source", None)
+    return table
+
+
+def _insert_table(container: Any, key: Any, location: Location, found: Inlined) -> None:
+    name = container[key]
+    table = _read(name, location, found)
+    if table is None:
+        found.unread.add(location)
+        return
+    container[key] = table
+    found.files[location] = found.source.parent / name
+    found.own[location] = set()
+
+
+def _merge_model(train: dict[str, Any], location: Location, found: Inlined) -> None:
+    """Let a train's file give what the train itself does not; the train then has no model."""
+    name = train.pop("model")
+    table = _read(name, (*location, "model"), found)
+    if table is None:
+        # Any values let what the scenario itself says be judged.
+        train["model"] = next(iter(library.entries("locomotives")))
+        return
+    path = found.source.parent / name
+    if "model" in table:
+        problem = "a model file gives all values itself"
+        remedy = "write the values of that model into this file"
+        found.findings.append(
+            Finding(str(path), "model", repr(table.pop("model")), problem, remedy)
+        )
+    found.files[location], found.own[location] = path, set(train)
+    for key, value in table.items():
+        train.setdefault(key, value)
+
+
+def _insert_profile(found: Inlined) -> None:
+    """Read the gradients that a line names as a file into it."""
+    line = found.document.get("line")
+    if not isinstance(line, dict) or not isinstance(line.get("gradients_file"), str):
+        return
+    file, location = found.origin(("line", "gradients_file"))
+    key, name = ".".join(str(part) for part in location), line["gradients_file"]
+    if "gradients" in line:
+        problem = "gradients are given twice, as a file and as a list"
+        remedy = "leave out gradients_file or gradients"
+        found.findings.append(Finding(str(file), key, repr(name), problem, remedy))
+        return
+    del line["gradients_file"]
+    try:
+        line["gradients"] = read_gradients(file.parent / name)
+    except ScenarioError as error:
+        # A level line lets the rest of the document be judged.
+        line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]
+        found.findings += error.findings

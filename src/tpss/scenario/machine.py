@@ -1,0 +1,203 @@
+"""A train's machine: what its motors give, and curves over speed in place of single numbers."""
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
+
+from tpss.scenario.fields import Part, Real, ascending_numbers, fault
+
+MOST_VOLTAGES = 16
+"""Rows that a table of tractive effort may have."""
+
+Ratio = Annotated[Real, Field(gt=0, le=1)]
+
+Speeds = Annotated[
+    tuple[Annotated[Real, Field(ge=0, le=500)], ...],
+    Field(min_length=2),
+    ascending_numbers("speed_kmh"),
+]
+
+
+def _demand_length(values: Sequence[object], name: str, count: int, axis: str) -> None:
+    if len(values) != count:
+        raise fault(
+            f"{name} has {len(values)} values where {axis} has {count}",
+            f"give as many values as {axis} has, in the same order",
+        )
+
+
+class Curve(Part):
+    """A quantity over speed; between its points it is interpolated without overshoot."""
+
+    speed_kmh: Speeds = Field(description="Speeds, ascending; beyond them the outer values hold.")
+    value: tuple[Ratio, ...] = Field(description="Values at these speeds.")
+
+    @field_validator("value")
+    @classmethod
+    def _a_value_a_speed(cls, value: tuple[float, ...], info: ValidationInfo) -> tuple[float, ...]:
+        if "speed_kmh" in info.data:
+            _demand_length(value, "value", len(info.data["speed_kmh"]), "speed_kmh")
+        return value
+
+
+def _is_a_table(value: object) -> bool:
+    return isinstance(value, dict | Part)
+
+
+RatioOverSpeed = Annotated[
+    Annotated[Ratio, Tag("number")] | Annotated[Curve, Tag("curve")],
+    Discriminator(lambda value: "curve" if _is_a_table(value) else "number"),
+]
+"""A number, or a curve over speed."""
+
+
+def _depth(value: object) -> str:
+    """Whether forces are a row over speed, rows over voltage, or blocks over current."""
+    names = ["row", "rows", "blocks"]
+    while isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
+        value = value[0]
+        names = names[1:] or ["blocks"]
+    return names[0]
+
+
+Force = Annotated[Real, Field(ge=0, le=10_000)]
+Row = tuple[Force, ...]
+Rows = tuple[Row, ...]
+Blocks = tuple[Rows, ...]
+
+
+class EffortTable(Part):
+    """Highest force of all motors over speed, and perhaps over line voltage and current limit.
+
+    It is interpolated without overshoot and with a continuous derivative; beyond its speeds and
+    voltages the outer values hold, and the steps in which they did are counted in the result.
+    """
+
+    speed_kmh: Speeds = Field(description="Speeds, ascending.")
+    voltage_kv: (
+        Annotated[
+            tuple[Annotated[Real, Field(gt=0, le=100)], ...],
+            Field(min_length=2, max_length=MOST_VOLTAGES),
+            ascending_numbers("voltage_kv"),
+        ]
+        | None
+    ) = Field(
+        default=None, description="Voltages at the pantograph; `force_kn` has a row for each."
+    )
+    motor_current_a: (
+        Annotated[
+            tuple[Annotated[Real, Field(gt=0, le=5_000)], ...],
+            Field(min_length=2),
+            ascending_numbers("motor_current_a"),
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="Current limits of a motor; `force_kn` has a block (rows over voltage, or a row) "
+        "for each, and the train's `max_motor_current_a` chooses between them.",
+    )
+    force_kn: Annotated[
+        Annotated[Row, Tag("row")]
+        | Annotated[Rows, Tag("rows")]
+        | Annotated[Blocks, Tag("blocks")],
+        Discriminator(_depth),
+    ] = Field(description="Force of all motors, a value a speed.")
+
+    @field_validator("force_kn")
+    @classmethod
+    def _a_value_a_point(cls, force: Any, info: ValidationInfo) -> Any:
+        axes = ("motor_current_a", "voltage_kv", "speed_kmh")
+        if not set(axes) <= set(info.data):
+            return force  # an axis has a fault of its own
+        level = [force]
+        name = "force_kn"
+        for axis in axes:
+            if info.data[axis] is None:
+                continue
+            for part in level:
+                if not isinstance(part, tuple):
+                    raise fault(
+                        "force_kn is nested less deeply than there are axes",
+                        "nest the lists: a row over speed, for each voltage, for each current",
+                    )
+                _demand_length(part, name, len(info.data[axis]), axis)
+            level = [item for part in level for item in part]
+            name = "a list of force_kn"
+        if any(isinstance(item, tuple) for item in level):
+            raise fault(
+                "force_kn is nested more deeply than there are axes",
+                "add voltage_kv or motor_current_a, or give a plain row over speed",
+            )
+        return force
+
+
+class EffortLimits(Part):
+    """Constant force, then constant power; from `limit_speed_kmh` on the force falls as 1/v²."""
+
+    max_force_kn: Real = Field(gt=0, le=10_000, description="Highest force of all motors.")
+    max_power_kw: Real = Field(
+        gt=0, le=1_000_000, description="Highest mechanical power of all motors, F v."
+    )
+    limit_speed_kmh: Real | None = Field(
+        default=None,
+        gt=0,
+        le=500,
+        description="Speed beyond which the motors' pull-out force limits, as 1/v²; leave it out: "
+        "constant power to the end.",
+    )
+    full_voltage_kv: Real | None = Field(
+        default=None,
+        gt=0,
+        le=100,
+        description="Line voltage from which force and power are whole; leave both voltages out: "
+        "at any.",
+    )
+    zero_voltage_kv: Real | None = Field(
+        default=None,
+        ge=0,
+        description="Line voltage below which there is none; in between they fall linearly.",
+    )
+
+    @model_validator(mode="after")
+    def _two_voltages_in_order(self) -> Self:
+        full, zero = self.full_voltage_kv, self.zero_voltage_kv
+        if (full is None) != (zero is None):
+            raise fault(
+                "full_voltage_kv and zero_voltage_kv belong together",
+                "give both, or leave both out",
+            )
+        if full is not None and zero is not None and zero >= full:
+            raise fault(
+                f"zero_voltage_kv ({zero:g} kV) is not below full_voltage_kv ({full:g} kV)",
+                "lower zero_voltage_kv, or raise full_voltage_kv",
+            )
+        return self
+
+
+_OF_A_TABLE = {"speed_kmh", "force_kn", "voltage_kv", "motor_current_a"}
+
+
+def _kind_of_effort(value: object) -> str | None:
+    if isinstance(value, EffortTable) or (isinstance(value, dict) and _OF_A_TABLE & set(value)):
+        return "table"
+    if _is_a_table(value):
+        return "limits"
+    return "name" if value == "Rc4" else None
+
+
+TractiveEffort = Annotated[
+    Annotated[Literal["Rc4"], Tag("name")]
+    | Annotated[EffortTable, Tag("table")]
+    | Annotated[EffortLimits, Tag("limits")],
+    Discriminator(
+        _kind_of_effort,
+        custom_error_type="fault",
+        custom_error_message="neither the name of a machine nor a table",
+        custom_error_context={
+            "remedy": 'write "Rc4", or a table with speed_kmh and force_kn, or one with max_force_kn '
+            "and max_power_kw"
+        },
+    ),
+]
+"""The name of a machine, a table, or limits."""
