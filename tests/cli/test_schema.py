@@ -76,6 +76,9 @@ def test_a_fault_is_found_at_its_place(changes, place):
         {"supply.high_voltage_line": {"type": "132kV", "transformers": 2}},
         {"traffic.0.headway_min": None, "traffic.0.departures_min": [0.0, 5.0]},
         {"trains.freight.mass_t": 1000},
+        {"trains.freight.model": "mine.toml"},
+        {"supply.catenary": "mine.toml"},
+        {"line": "mine.toml"},
     ],
 )
 def test_what_a_scenario_may_say_is_accepted(changes):
@@ -94,7 +97,8 @@ def test_every_key_is_described_with_its_unit():
 def test_names_of_the_library_are_offered():
     catenary = SCHEMA["$defs"]["Supply"]["properties"]["catenary"]
     assert catenary["anyOf"][0]["enum"] == ["AT", "BT"]
-    assert SCHEMA["$defs"]["Train"]["properties"]["model"]["enum"] == ["Rc4-freight-1470t"]
+    model = SCHEMA["$defs"]["Train"]["properties"]["model"]
+    assert model["anyOf"][0]["enum"] == ["Rc4-freight-1470t"]
 
 
 def test_it_is_printed(tpss_command, capsys):

@@ -7,9 +7,10 @@ from typing import Any, get_args
 
 import pytest
 import tomli_w
-from pydantic import BaseModel, BeforeValidator
+from pydantic import BaseModel
 
 from tpss import Finding, Scenario, ScenarioError, library, load_result, load_scenario, simulate
+from tpss.scenario.fields import FromLibrary
 from tpss.scenario.inline import PLACES
 
 from scenarios import SHORT_LINE
@@ -126,7 +127,7 @@ def test_every_place_that_takes_a_library_name_takes_a_file():
     def places(part: type[BaseModel], above: tuple[str, ...]) -> list[tuple[str, ...]]:
         found = []
         for name, field in part.model_fields.items():
-            if any(isinstance(item, BeforeValidator) for item in field.metadata):
+            if any(isinstance(item, FromLibrary) for item in field.metadata):
                 found.append((*above, name))
                 continue
             waiting = [(field.annotation, (*above, name))]

@@ -41,7 +41,7 @@ def scenario_schema() -> dict[str, Any]:
             _add_unit(key, field)
     _lean_on_the_library(parts["Train"])
     line = schema["properties"]["line"]
-    schema["properties"]["line"] = {"anyOf": [OWN_FILE, line]}
+    schema["properties"]["line"] = {"description": "The line.", "anyOf": [OWN_FILE, line]}
     schema["description"] = "A line, its power supply, its trains and its traffic."
     return {"$schema": _OfToml.schema_dialect, "title": TITLE, **schema}
 
