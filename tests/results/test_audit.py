@@ -9,7 +9,7 @@ import pytest
 from tpss import Scenario, load_scenario
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.results.audit import LIMITS, Audit, audit
+from tpss.results.audit import LIMITS, Audit, audit, limits_of
 from tpss.simulation.run import Outcome, run_services
 from tpss.simulation.state import Model
 
@@ -158,6 +158,45 @@ def test_billing_at_the_start_is_judged_by_all_else():
         "power_mismatch_va",
         "network_balance",
     }
+
+
+def test_a_run_without_work_of_the_motors_is_measured_by_what_gravity_does():
+    """1470 t at 10 km/h down 10 per mille: the brakes take 140 kN · 2.8 m/s all the way, and the
+    roundings of that are no fault."""
+    gradients = [{"from_km": 0.0, "permille": -10.0}]
+    limits = [{"from_km": 0.0, "speed_kmh": 10.0}]
+    changes = {"line.gradients": gradients, "line.speed_limits": limits}
+    case = Case(short_line({**changes, "simulation.time_step_min": 1.0}), 60)
+    assert not (case.outcome.recording.trains["tractive_force"] > 0.0).any()
+    assert case.audit().passed
+    assert case.audit_of_forgery("trains", "braking_force", 0, lambda f: 1.1 * f).failures
+
+
+def test_an_idle_train_is_no_reason_for_a_finer_balance_than_the_solver_promises():
+    """151.5 kW of auxiliaries: a mismatch of 1e-10 of 10 MVA in one step is 7e-9 of them."""
+    changes = {"traffic.0.stops": [{"station": "Middle", "dwell_min": 30.0}]}
+    placed = [{"position_km": 9.999, "speed_kmh": 0.0}]
+    case = Case(short_line({**changes, "traffic.0.initial_trains": placed}), 60)
+    power = case.outcome.recording.stations["station_active_power"][:60]
+    power[30, 0] += 1e-3
+    assert case.audit().passed
+    power[30, 0] += 1e3
+    assert not case.audit().passed
+
+
+def test_limits_follow_the_rounding_over_impedances_of_microohms():
+    """Transformers 1 m apart on the 132 kV line, |z| = 80 mΩ/km · 1 m / 64 = 1.25 µΩ:
+    4 · 2.2e-16 · 16500² / 1.25e-6 = 0.19 VA, 193 times the solver's usual 1e-10 of 10 MVA."""
+    high_voltage = {"type": "132kV", "transformers_km": [10.0, 10.001]}
+    near = Case(short_line({"supply.high_voltage_line": high_voltage}), 60)
+    far = Case(short_line({"supply.high_voltage_line.type": "132kV",
+                           "supply.high_voltage_line.transformers_km": [9.0, 11.0]}), 60)  # fmt: skip
+    assert limits_of(far.model) == LIMITS
+    assert near.audit().passed
+    limits = limits_of(near.model)
+    assert limits["power_mismatch_va"] == pytest.approx(1.93, rel=0.01)
+    assert limits["converter_residual"] == pytest.approx(1.93e-7, rel=0.01)
+    assert limits["traction_balance"] == LIMITS["traction_balance"]
 
 
 def test_the_figures_are_plain_values_by_name(arrival):

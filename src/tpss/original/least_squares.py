@@ -4,7 +4,7 @@ r"""The clock with the load flow of the original program: least squares of the p
 
 scipy's `least_squares` (a trust region with bounds, "dogbox") takes the place of GAMS; the band of
 plausible voltages is its bounds, and the values of the time step before are its start.  A minimum is a
-solution only if the largest mismatch there is below `TOLERANCE`; otherwise the load flow is attempted
+solution only if the largest mismatch there is below the network's tolerance; otherwise the load flow is attempted
 from a flat start, and at last by load continuation, as `powerflow.solve` does.  Traffic, drivers,
 converter control, motion and recording are the kernels of the usual clock.
 
@@ -20,7 +20,7 @@ from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.powerflow.network import Loads
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE, TOLERANCE
+from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.simulation.advance import begin_step, end_step
 from tpss.simulation.coupling import settle_all
@@ -132,7 +132,7 @@ class Search:
         )  # fmt: skip
         self.evaluations += minimum.nfev
         sign = np.linalg.slogdet(minimum.jac)[0]
-        if np.abs(minimum.fun).max() >= TOLERANCE or sign != self.stable_sign:
+        if np.abs(minimum.fun).max() >= self.model.network.tolerance or sign != self.stable_sign:
             return False
         self.found = minimum.x
         solution = problem.split(minimum.x)

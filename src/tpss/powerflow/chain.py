@@ -25,7 +25,7 @@ from typing import Any
 from tpss.kernel import inlined, kernel, switch
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
-from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
 from tpss.powerflow.pairs import scaled, squared
 
 WARM = switch(0)
@@ -34,9 +34,6 @@ FLAT = switch(1)
 """... takes the currents at base voltage, as if they did not depend on the voltage."""
 CHECK = switch(2)
 """... is a warm one without derivatives: for a state that is expected to be the solution."""
-
-SHORTEST_PIECE_M = 1.0
-"""Trains closer than this to each other or to a node count as this far away. [m]"""
 
 
 @inlined

@@ -10,11 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import blank_records, records
+from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import CONVERTER_LAW
 from tpss.powerflow.block_lu import Pattern, find_pattern
 
 Complexes = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
+
+TOLERANCE = 1e-10
+"""Largest mismatch of a solution, in per unit of base power or base voltage."""
+
+SHORTEST_PIECE_M = 1.0
+"""Trains closer than this to each other or to a node count as this far away. [m]"""
 
 SECTION = np.dtype(
     [
@@ -129,6 +136,8 @@ class Network(NamedTuple):
     source_of_node: Indices
     """Index of the source at each node, or -1."""
     pattern: Pattern
+    tolerance: float
+    """Largest mismatch of a solution, in per unit of base power or base voltage."""
 
 
 class Flow(NamedTuple):
@@ -159,6 +168,15 @@ class Loads(NamedTuple):
     """One record of `MACHINE`."""
 
 
+def resolution_va(impedance_ohm: float) -> float:
+    """Power mismatch that the rounding of voltages causes at the ends of an impedance. [VA]
+
+    A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
+    to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
+    """
+    return float(4.0 * np.finfo(float).eps * BASE_VOLTAGE_V**2 / impedance_ohm)
+
+
 def assemble(
     n_nodes: int,
     sections: list[tuple[int, int, float, float, complex, float]],
@@ -178,6 +196,9 @@ def assemble(
     """
     ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
     pattern, place = find_pattern(n_nodes, ends)
+    impedances = [abs(z) for *_, z in branches]
+    impedances += [abs(z) * max(SHORTEST_PIECE_M, b - a) for _, _, a, b, z, _ in sections]
+    rounding = max(map(resolution_va, impedances)) / BASE_POWER_VA
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
     source_of_node[sources.node] = np.arange(sources.size)
 
@@ -190,6 +211,7 @@ def assemble(
         sources=sources,
         source_of_node=source_of_node,
         pattern=pattern,
+        tolerance=max(TOLERANCE, rounding),
     )
 
 

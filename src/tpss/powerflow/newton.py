@@ -41,11 +41,8 @@ from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
 from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
-from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
 from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude, scaled
-
-TOLERANCE = 1e-10
-"""Largest mismatch of a solution, in per unit of base power or base voltage."""
 
 CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
@@ -211,7 +208,8 @@ def evaluate(
         if start != CHECK:
             sign *= _stamp_section(s, network, flow)
         residual = magnitude(found.gap_v) / BASE_VOLTAGE_V
-        impedance = magnitude(section.impedance_ohm_per_m) * (section.end_m - section.start_m)
+        length_m = max(SHORTEST_PIECE_M, section.end_m - section.start_m)
+        impedance = magnitude(section.impedance_ohm_per_m) * length_m
         mismatch = max(mismatch, residual * BASE_VOLTAGE_V**2 / impedance / BASE_POWER_VA)
         merit += residual**2
     # 3. Current balance of the nodes, or the law of the sources.
@@ -261,7 +259,7 @@ def _take_step(size: float, flow: Flow) -> None:
 def _close_gaps(flow: Flow) -> None:
     """Spread what is left of each section's gap over its pieces, in proportion to their length.
 
-    The gap is a rounding (below `TOLERANCE`), but over a closing piece of a metre even a rounding is
+    The gap is a rounding (below the tolerance), but over a closing piece of a metre even a rounding is
     a visible current; spread over the whole section it is none.
     """
     for s in range(flow.sections.size):
@@ -312,7 +310,7 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     passes = 1
     while passes < MOST_PASSES and math.isfinite(merit):
         sign = chains * _find_direction(network, flow)
-        if mismatch < TOLERANCE and start == WARM:
+        if mismatch < network.tolerance and start == WARM:
             return _conclude(sign, flow), passes
         _mark_base(flow)
         if mismatch < CLOSE and start == WARM:
@@ -320,7 +318,7 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
             _take_step(1.0, flow)
             mismatch, _, _ = evaluate(scale, CHECK, network, flow, loads)
             passes += 1
-            if mismatch < TOLERANCE:
+            if mismatch < network.tolerance:
                 return _conclude(sign, flow), passes
         size = 1.0
         for _ in range(MOST_HALVINGS):
@@ -328,7 +326,11 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
             mismatch, trial, chains = evaluate(scale, WARM, network, flow, loads)
             passes += 1
             # After a flat pass the merits belong to different equations.
-            if trial < merit or mismatch < TOLERANCE or (start == FLAT and math.isfinite(trial)):
+            if (
+                trial < merit
+                or mismatch < network.tolerance
+                or (start == FLAT and math.isfinite(trial))
+            ):
                 break
             size /= 2.0
         else:

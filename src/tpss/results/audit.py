@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.physics.constants import BASE_VOLTAGE_V, GRAVITY_M_S2
-from tpss.powerflow.chain import SHORTEST_PIECE_M
-from tpss.powerflow.network import Network
+from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V, GRAVITY_M_S2
+from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network, resolution_va
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.simulation.run import Outcome
 from tpss.simulation.state import (
@@ -28,8 +27,11 @@ from tpss.simulation.state import (
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 
+JUDGED_VA = 10.0 * TOLERANCE * BASE_POWER_VA
+"""Power mismatch that is judged, an order above the solver's tolerance. [VA]"""
+
 LIMITS = {
-    "power_mismatch_va": 0.01,
+    "power_mismatch_va": JUDGED_VA,
     "converter_residual": 1e-9,
     "network_balance": 1e-9,
     "traction_balance": 1e-9,
@@ -37,7 +39,7 @@ LIMITS = {
     "motion_error_m": 1e-6,
     "stop_error_m": 1e-3,
 }
-"""Highest value that each figure of a sound run may have."""
+"""Highest value that each figure of a sound run may have; see `limits_of`."""
 
 
 @dataclass(frozen=True)
@@ -118,14 +120,28 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     return Audit(**figures, lowest_voltage_v=lowest, highest_voltage_v=highest, failures=failures)
 
 
-def _beyond_limits(figures: dict[str, float], model: Model) -> list[str]:
-    judged = dict(LIMITS)
+def limits_of(model: Model) -> dict[str, float]:
+    """Limits of the figures that are judged in a run of this model.
+
+    Over impedances of some microohms, a few metres of line, rounding alone is a visible mismatch; the
+    limits of what it touches follow it.  A traction balance billed at the start of a step, or with
+    what slip wastes, does not close, and is not judged.
+    """
+    limits = dict(LIMITS)
+    blurred = model.network.tolerance / TOLERANCE
+    shortest_ohm = np.abs(model.network.sections.impedance_ohm_per_m).min() * SHORTEST_PIECE_M
+    limits["power_mismatch_va"] *= max(blurred, resolution_va(shortest_ohm) / JUDGED_VA)
+    limits["converter_residual"] *= blurred
+    limits["network_balance"] *= blurred
     if not model.options.mean_power or model.options.driver == AGGRESSIVE:
-        # Billed at the start of a step, or with what slip wastes, it does not close.
-        del judged["traction_balance"]
+        del limits["traction_balance"]
+    return limits
+
+
+def _beyond_limits(figures: dict[str, float], model: Model) -> list[str]:
     return [
         f"{name} is {figures[name]:.3g}, limit {limit:g}"
-        for name, limit in judged.items()
+        for name, limit in limits_of(model).items()
         if not figures[name] <= limit
     ]
 
@@ -257,8 +273,8 @@ def network_balance(outcome: Outcome, step_s: float) -> float:
     fed = np.nansum(recording.stations["station_active_power"]) * step_s
     drawn = np.nansum(recording.trains["active_power"]) * step_s
     lost = np.nansum(recording.network_losses) * step_s
-    # Relative to at least a kilowatt on average: an idle line feeds nothing but rounding.
-    least = 1e3 * step_s * max(outcome.steps, 1)
+    # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
+    least = TOLERANCE * BASE_POWER_VA / LIMITS["network_balance"] * step_s * max(outcome.steps, 1)
     return float(abs(fed - drawn - lost) / max(abs(fed), least))
 
 
@@ -282,9 +298,11 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     opposing = before["running_resistance"] + before["gradient_force"] + before["braking_force"]
     moving = np.where(way_m > 0.0, (rotor + opposing) * way_m, 0.0)
     kinetic = kind.inertia_kg / 2.0 * (after["speed"] ** 2 - before["speed"] ** 2)
-    total = np.nansum(work)
-    difference = total - np.nansum(moving) - np.nansum(kinetic)
-    return float(abs(difference) / max(total, 1.0))
+    difference = np.nansum(work) - np.nansum(moving) - np.nansum(kinetic)
+    # Where the motors do no work, gravity and the trains' own motion turn over the energy.
+    fallen = -np.nansum(np.minimum(before["gradient_force"], 0.0) * way_m)
+    slowed = -np.nansum(np.minimum(kinetic, 0.0))
+    return float(abs(difference) / max(np.nansum(work) + fallen + slowed, 1.0))
 
 
 def _efficiency(speed: Floats, kind: Any, points: Any) -> Floats:
