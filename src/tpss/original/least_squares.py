@@ -4,9 +4,9 @@ r"""The clock with the load flow of the original program: least squares of the p
 
 scipy's `least_squares` (a trust region with bounds, "dogbox") takes the place of GAMS; the band of
 plausible voltages is its bounds, and the values of the time step before are its start.  A minimum is a
-solution only if the largest mismatch there is below the network's tolerance; otherwise the load flow is attempted
-from a flat start, and at last by load continuation, as `powerflow.solve` does.  Traffic, drivers,
-converter control, motion and recording are the kernels of the usual clock.
+solution only if the largest mismatch there is below the network's tolerance; otherwise the load flow
+is attempted from a flat start, and at last by load continuation, as `powerflow.solve` does.  Traffic,
+drivers, converter control, motion and recording are the kernels of the usual clock.
 
 References
 ----------

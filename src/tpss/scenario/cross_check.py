@@ -7,6 +7,7 @@ or of the wrong type, so that they report their faults beside those of single fi
 import difflib
 import math
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from tpss.errors import Finding
@@ -37,6 +38,9 @@ _Fault = tuple[str, str, str, str]
 
 LONGEST_AGGRESSIVE_STEP_MIN = 1.0
 """Longest step with the aggressive driver, and the longest that the thesis knew. [min]"""
+
+CLOSEST_KM = 0.001 - 1e-9
+"""Least distance between two feeding points, with what decimal places may be off. [km]"""
 
 LARGEST = 1e300
 """Numbers beyond it are no numbers here; a whole number may have any number of digits."""
@@ -90,25 +94,60 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
 
 
 def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
-    stations = [_number(s, "position_km") for _, s in _items(supply, "converter_stations")]
+    stations: list[float] = []
     for i, station in _items(supply, "converter_stations"):
         key = f"supply.converter_stations.{i}.position_km"
-        yield from _outside(key, _number(station, "position_km"), length)
+        position = _number(station, "position_km")
+        yield from _outside(key, position, length)
+        if position is not None:
+            yield from _too_close(key, position, [s for s in stations if s != position])
+            stations.append(position)
     high_voltage = _table(supply, "high_voltage_line")
+    yield from _placed_transformers(high_voltage, stations, length)
+    yield from _spaced_transformers(high_voltage, sorted(stations))
+
+
+def _too_close(key: str, position: float, others: list[float]) -> Iterator[_Fault]:
+    """Two feeding points closer than a metre are one, which rounding cannot tell from the other."""
+    if any(abs(position - other) < CLOSEST_KM for other in others):
+        problem = "closer than a metre to another converter station or transformer"
+        yield key, f"{position:.17g}", problem, "leave one of them out, or place it elsewhere"
+
+
+def _placed_transformers(
+    high_voltage: Mapping[str, Any], stations: list[float], length: float | None
+) -> Iterator[_Fault]:
     given = high_voltage.get("transformers_km")
+    before: list[float] = []
     for i, position in enumerate(given if isinstance(given, list | tuple) else []):
         key = f"supply.high_voltage_line.transformers_km.{i}"
         number = _number({"position": position}, "position")
         yield from _outside(key, number, length)
-        if number is not None and number < 0.0:
+        if number is None:
+            continue
+        if number < 0.0:
             yield key, f"{number:g}", "before the beginning of the line", "place it at 0 or beyond"
-        if number is not None and number in stations:
+        if number in stations:
             problem = "a converter station stands here, which has a transformer of its own"
             yield key, f"{number:g}", problem, "leave it out, or place it elsewhere"
-    if _number(high_voltage, "transformers") and len(stations) < 2:
-        key = "supply.high_voltage_line.transformers"
+        else:
+            yield from _too_close(key, number, [*stations, *(km for km in before if km != number)])
+        before.append(number)
+
+
+def _spaced_transformers(
+    high_voltage: Mapping[str, Any], stations: list[float]
+) -> Iterator[_Fault]:
+    count = _number(high_voltage, "transformers")
+    if count is None or count <= 0.0:
+        return
+    key, shown = "supply.high_voltage_line.transformers", str(high_voltage["transformers"])
+    if len(stations) < 2:
         problem = "there are no two converter stations between which to space them"
-        yield key, str(high_voltage["transformers"]), problem, "give transformers_km instead"
+        yield key, shown, problem, "give transformers_km instead"
+    elif min(b - a for a, b in pairwise(stations)) / (count + 1.0) < CLOSEST_KM:
+        problem = "closer than a metre to each other between neighbouring converter stations"
+        yield key, shown, problem, "take fewer, or give transformers_km instead"
 
 
 def _is_named(entry: Mapping[str, Any]) -> bool:

@@ -30,7 +30,15 @@ class Part(BaseModel):
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
-Name = Annotated[str, Field(min_length=1)]
+
+
+def _is_one_line(name: str) -> str:
+    if any(ord(character) < 32 or ord(character) == 127 for character in name):
+        raise PydanticCustomError("control_character", "a control character in a name")
+    return name
+
+
+Name = Annotated[str, Field(min_length=1), AfterValidator(_is_one_line)]
 
 OWN_FILE = {
     "type": "string",

@@ -10,15 +10,17 @@ from tpss.scenario.fields import Name, Part, Real, ascending, one_of, unique
 class Gradient(Part):
     """A gradient that holds from its position to the next one's."""
 
-    from_km: Real = Field(description="Position from which the gradient holds.")
+    from_km: Real = Field(
+        ge=-100_000, le=100_000, description="Position from which the gradient holds."
+    )
     permille: Real = Field(ge=-100, le=100, description="Rise over run, positive uphill.")
 
 
 class SpeedLimit(Part):
     """A speed limit that holds from its position to the next one's."""
 
-    from_km: Real = Field(ge=0, description="Position from which the limit holds.")
-    speed_kmh: Real = Field(gt=0, le=500, description="Highest speed.")
+    from_km: Real = Field(ge=0, le=100_000, description="Position from which the limit holds.")
+    speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
 
 class Station(Part):
@@ -33,7 +35,9 @@ class Line(Part):
 
     model_config = ConfigDict(json_schema_extra=one_of("gradients", "gradients_file"))
 
-    length_km: Real = Field(gt=0, description="Length; the contact line runs along all of it.")
+    length_km: Real = Field(
+        ge=0.01, le=2_000, description="Length; the contact line runs along all of it."
+    )
     gradients_file: str | None = Field(
         default=None,
         description="CSV file beside the scenario with the columns position_km and "

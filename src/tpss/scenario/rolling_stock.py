@@ -33,8 +33,8 @@ class Train(Part):
         description="What the motors give at most: the name of a machine (Rc4), a table over speed "
         "(and voltage, and current limit), or a highest force and power."
     )
-    mass_t: Real = Field(gt=0, le=20_000, description="Mass of the whole train.")
-    adhesive_mass_t: Real = Field(gt=0, description="Mass on driven axles.")
+    mass_t: Real = Field(ge=1, le=20_000, description="Mass of the whole train.")
+    adhesive_mass_t: Real = Field(ge=1, le=20_000, description="Mass on driven axles.")
     rotating_mass_factor: Real = Field(
         default=0.0,
         ge=0,
@@ -42,30 +42,42 @@ class Train(Part):
         description="Rotating parts of the hauled mass, H, as a share of it.",
     )
     motor_inertia_kg: Real = Field(
-        default=0.0, ge=0, description="Inertia of the motors, 4 K_J, as a mass at the wheel rim."
+        default=0.0,
+        ge=0,
+        le=1_000_000,
+        description="Inertia of the motors, 4 K_J, as a mass at the wheel rim.",
     )
     slip: Real = Field(default=0.0, ge=0, le=0.5, description="Slip ratio of the driven wheels, κ.")
-    resistance_a_n: Real = Field(ge=0, description="Running resistance A + B v + C v²: A.")
-    resistance_b_n_s_per_m: Real = Field(ge=0, description="B.")
-    resistance_c_n_s2_per_m2: Real = Field(ge=0, description="C.")
-    max_speed_kmh: Real = Field(gt=0, le=500, description="Highest speed of the train.")
+    resistance_a_n: Real = Field(
+        ge=0, le=10_000_000, description="Running resistance A + B v + C v²: A."
+    )
+    resistance_b_n_s_per_m: Real = Field(ge=0, le=1_000_000, description="B.")
+    resistance_c_n_s2_per_m2: Real = Field(ge=0, le=100_000, description="C.")
+    max_speed_kmh: Real = Field(ge=1, le=500, description="Highest speed of the train.")
     max_motor_current_a: Real | None = Field(
         default=None,
         validate_default=True,
-        gt=0,
+        ge=1,
         le=5_000,
         description="Highest current of one motor, for the Rc4, whose curves end at 2080 A, and for "
         "tables with several current limits.",
     )
     max_acceleration_m_s2: Real | None = Field(
-        default=None, gt=0, le=10, description="Highest acceleration; leave it out: no such limit."
+        default=None,
+        ge=0.01,
+        le=10,
+        description="Highest acceleration; leave it out: no such limit.",
     )
-    max_retardation_m_s2: Real = Field(gt=0, le=5, description="Highest braking retardation.")
+    max_retardation_m_s2: Real = Field(ge=0.01, le=5, description="Highest braking retardation.")
     efficiency: RatioOverSpeed = Field(
         description="From pantograph to motor shaft: a number, or a curve over speed."
     )
-    auxiliary_power_kw: Real = Field(ge=0, description="Active power of the auxiliaries.")
-    auxiliary_power_factor: Real = Field(default=0.8, gt=0, le=1, description="Their power factor.")
+    auxiliary_power_kw: Real = Field(
+        ge=0, le=20_000, description="Active power of the auxiliaries."
+    )
+    auxiliary_power_factor: Real = Field(
+        default=0.8, ge=0.1, le=1, description="Their power factor."
+    )
     reactive_power: Literal["power-factor", "double-bridge"] = Field(
         default="power-factor",
         description="Reactive power of the motors by a power factor, or by the Rc4's bridges.",
@@ -79,12 +91,17 @@ class Train(Part):
     base_speed_kmh: Real | None = Field(
         default=None,
         validate_default=True,
-        gt=0,
+        ge=1,
+        le=500,
         description="Speed of the highest motor voltage; leave it out, and the motors' current is "
         "not known.",
     )
     max_motor_voltage_v: Real | None = Field(
-        default=None, validate_default=True, gt=0, description="Highest voltage of one motor."
+        default=None,
+        validate_default=True,
+        ge=10,
+        le=10_000,
+        description="Highest voltage of one motor.",
     )
     motor_voltage: Literal["new", "former"] = Field(
         default="new", description="Motor voltage over speed alone, or lowered below 14 kV too."
@@ -94,7 +111,8 @@ class Train(Part):
     )
     filter_reactance_ohm: Real | None = Field(
         default=None,
-        lt=0,
+        ge=-1_000,
+        le=-0.01,
         description="Reactance of the filter on the transformer's secondary side; -0.45 for an "
         "Rc4; leave it out: no filter.",
     )

@@ -18,7 +18,7 @@ class Simulation(Part):
         default=None, description="End with the arrival of the studied train (the default)."
     )
     duration_min: Real | None = Field(
-        default=None, gt=0, le=100_000, description="End after this time."
+        default=None, ge=0.001, le=100_000, description="End after this time."
     )
     power_sampling: Literal["mean", "start"] = Field(
         default="mean",

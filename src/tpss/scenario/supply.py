@@ -16,33 +16,56 @@ from tpss.scenario.fields import (
     unique,
 )
 
+SMALLEST_OHM = 0.0001
+"""Lumped impedances smaller than this are lost in the rounding of voltages. [Ω]"""
+
 
 class Catenary(Part):
     """A contact-line system, per kilometre; a connection impedance makes it an AT system."""
 
-    r_ohm_per_km: Real = Field(gt=0, le=10, description="Resistance.")
+    r_ohm_per_km: Real = Field(ge=0.001, le=10, description="Resistance.")
     x_ohm_per_km: Real = Field(ge=0, le=10, description="Reactance at the supply's frequency.")
-    capacitance_nf_per_km: Real = Field(default=0.0, ge=0, description="Capacitance to earth.")
+    capacitance_nf_per_km: Real = Field(
+        default=0.0, ge=0, le=1_000, description="Capacitance to earth."
+    )
     connection_r_ohm: Real = Field(
-        default=0.0, ge=0, description="Resistance between a feeding point and the line."
+        default=0.0, ge=0, le=100, description="Resistance between a feeding point and the line."
     )
     connection_x_ohm: Real = Field(
-        default=0.0, ge=0, description="Reactance between a feeding point and the line."
+        default=0.0, ge=0, le=100, description="Reactance between a feeding point and the line."
     )
+
+    @model_validator(mode="after")
+    def _a_connection_has_an_impedance_that_counts(self) -> Self:
+        impedance_ohm = abs(complex(self.connection_r_ohm, self.connection_x_ohm))
+        if 0.0 < impedance_ohm < SMALLEST_OHM:
+            raise PydanticCustomError(
+                "conflict",
+                "the connection impedance ({impedance} ohm) is next to nothing",
+                {
+                    "impedance": impedance_ohm,
+                    "remedy": f"give at least {SMALLEST_OHM:g} ohm, or 0: no connection impedance",
+                },
+            )
+        return self
 
 
 class Transformer(Part):
     """A transformer between high-voltage line and contact line."""
 
-    r_ohm: Real = Field(gt=0, description="Resistance on the contact line's side.")
-    x_ohm: Real = Field(gt=0, description="Reactance on the contact line's side.")
+    r_ohm: Real = Field(
+        ge=SMALLEST_OHM, le=100, description="Resistance on the contact line's side."
+    )
+    x_ohm: Real = Field(
+        ge=SMALLEST_OHM, le=100, description="Reactance on the contact line's side."
+    )
 
 
 class LineType(Part):
     """Conductors of a high-voltage line."""
 
-    r_ohm_per_km: Real = Field(gt=0, description="Resistance at the line's own voltage.")
-    x_ohm_per_km: Real = Field(ge=0, description="Reactance at the line's own voltage.")
+    r_ohm_per_km: Real = Field(ge=0.001, le=10, description="Resistance at the line's own voltage.")
+    x_ohm_per_km: Real = Field(ge=0, le=10, description="Reactance at the line's own voltage.")
 
 
 class HighVoltageLine(Part):
@@ -59,10 +82,11 @@ class HighVoltageLine(Part):
     transformers: Whole | None = Field(
         default=None,
         ge=0,
+        le=100,
         description="Number of transformers, equally spaced between neighbouring converter "
         "stations, in place of `transformers_km`.",
     )
-    base_kv: Real = Field(default=132.0, gt=0, description="Voltage of the line.")
+    base_kv: Real = Field(default=132.0, ge=15, le=400, description="Voltage of the line.")
     line_transformer: Annotated[Transformer, FromLibrary("transformers")] = Field(
         default="16MVA", validate_default=True, description="Transformer between stations."
     )
@@ -84,14 +108,18 @@ class HighVoltageLine(Part):
 class ConverterType(Part):
     """A frequency converter; reactances in per unit of their bases."""
 
-    rating_mva: Real = Field(gt=0, description="Rated power of one converter.")
-    no_load_voltage_kv: Real = Field(gt=0, description="Terminal voltage without load.")
-    droop_kv_per_mvar: Real = Field(ge=0, description="Fall of voltage per reactive power.")
-    generator_reactance_pu: Real = Field(ge=0, description="q-axis reactance of the generator.")
-    generator_base_mva: Real = Field(gt=0, description="Base of the generator's reactance.")
-    motor_reactance_pu: Real = Field(ge=0, description="q-axis reactance of the motor.")
-    motor_base_mva: Real = Field(gt=0, description="Base of the motor's reactance.")
-    base_voltage_kv: Real = Field(gt=0, description="Base of both, on the railway's side.")
+    rating_mva: Real = Field(ge=0.1, le=1_000, description="Rated power of one converter.")
+    no_load_voltage_kv: Real = Field(ge=8.25, le=19.8, description="Terminal voltage without load.")
+    droop_kv_per_mvar: Real = Field(ge=0, le=1, description="Fall of voltage per reactive power.")
+    generator_reactance_pu: Real = Field(
+        ge=0, le=10, description="q-axis reactance of the generator."
+    )
+    generator_base_mva: Real = Field(
+        ge=0.1, le=1_000, description="Base of the generator's reactance."
+    )
+    motor_reactance_pu: Real = Field(ge=0, le=10, description="q-axis reactance of the motor.")
+    motor_base_mva: Real = Field(ge=0.1, le=1_000, description="Base of the motor's reactance.")
+    base_voltage_kv: Real = Field(ge=1, le=100, description="Base of both, on the railway's side.")
 
 
 class ConverterStation(Part):
@@ -108,10 +136,13 @@ class ConverterStation(Part):
         description="Whether all converters run, or as many as the loading needs.",
     )
     grid_reactance_ohm: Real = Field(
-        default=0.0, ge=0, description="Reactance of the 50 Hz grid, on the railway's side."
+        default=0.0, ge=0, le=100, description="Reactance of the 50 Hz grid, on the railway's side."
     )
     grid_reactive_power_mvar: Real = Field(
-        default=0.0, description="Reactive power that the station delivers to the 50 Hz grid."
+        default=0.0,
+        ge=-100,
+        le=100,
+        description="Reactive power that the station delivers to the 50 Hz grid.",
     )
     grid_angle_deg: Real = Field(
         default=0.0,

@@ -8,7 +8,7 @@ from pydantic_core import PydanticCustomError
 from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers, one_of
 
 Times = Annotated[
-    tuple[Annotated[Real, Field(ge=0)], ...],
+    tuple[Annotated[Real, Field(ge=0, le=100_000)], ...],
     Field(min_length=1),
     ascending_numbers("departures_min"),
 ]
@@ -18,14 +18,14 @@ class Stop(Part):
     """A stop on the way."""
 
     station: Name = Field(description="Station of the line.")
-    dwell_min: Real = Field(ge=0, description="Time that the train stands.")
+    dwell_min: Real = Field(ge=0, le=100_000, description="Time that the train stands.")
 
 
 class InitialTrain(Part):
     """A train that is on the line when the simulation begins, heading for its next stop."""
 
     position_km: Real = Field(ge=0, description="Position on the line.")
-    speed_kmh: Real = Field(ge=0, description="Speed.")
+    speed_kmh: Real = Field(ge=0, le=500, description="Speed.")
 
 
 class Traffic(Part):
@@ -37,12 +37,14 @@ class Traffic(Part):
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
-    headway_min: Real | None = Field(default=None, ge=0.01, description="Time between departures.")
+    headway_min: Real | None = Field(
+        default=None, ge=0.01, le=100_000, description="Time between departures."
+    )
     departures_min: Times | None = Field(
         default=None, description="Times of departure, in place of a headway."
     )
     first_departure_min: Real = Field(
-        default=0.0, ge=0, description="Time of the first departure, with a headway."
+        default=0.0, ge=0, le=100_000, description="Time of the first departure, with a headway."
     )
     already_running: Flag = Field(
         default=False,

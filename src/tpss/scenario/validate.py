@@ -20,11 +20,13 @@ _PROBLEMS = {
     "bool_type": "neither true nor false",
     "int_type": "not a whole number",
     "int_from_float": "not a whole number",
+    "int_parsing_size": "a number of too many digits",
     "finite_number": "not a finite number",
     "tuple_type": "not a list",
     "dict_type": "not a table",
     "model_type": "not a table, nor a name of the library",
     "string_too_short": "an empty name",
+    "string_unicode": "not text in Unicode",
     "string_pattern_mismatch": "not a plain name",
     "too_short": "the list is too short",
 }
@@ -35,11 +37,14 @@ _REMEDIES = {
     "bool_type": "write true or false, without quotes",
     "int_type": "write a whole number, without quotes",
     "int_from_float": "write a whole number",
+    "int_parsing_size": "write a smaller number",
     "finite_number": "write a finite number",
     "tuple_type": "write a list in square brackets",
     "dict_type": "write a table",
     "model_type": "write a table",
     "string_too_short": "write a name",
+    "string_unicode": "write text in UTF-8",
+    "control_character": "write it on one line, without tabs and other control characters",
     "string_pattern_mismatch": "use letters, digits, dots, hyphens and underscores only",
     "too_short": "add at least one more",
     "not_ascending": "put them in ascending order, each place once",
@@ -120,7 +125,10 @@ def _shown(detail: dict[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a number of thousands of digits"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
