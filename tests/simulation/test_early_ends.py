@@ -1,6 +1,9 @@
 """Runs that cannot finish say so, and keep what they have."""
 
+import pytest
+
 import tpss
+from tpss.errors import TooLargeError
 
 from scenarios import short_line
 
@@ -12,6 +15,19 @@ def test_a_train_that_cannot_start_on_a_gradient_stalls_at_once():
     assert "eastbound 1 stands and cannot start at 0.00 km" in result.summary["problem"]
     assert "231.7 kN" in result.summary["problem"]
     assert result.audit["passed"]
+
+
+def test_a_train_that_stalls_in_the_step_of_its_departure_is_in_the_result():
+    """It departs at 3 min, the run ends there: its position at that instant is all there is of it."""
+    changes = {
+        "line.gradients": [{"from_km": 0.0, "permille": 15.0}],
+        "traffic.0.first_departure_min": 3.0,
+    }
+    result = tpss.simulate(short_line(changes))
+    assert result.status == "stalled"
+    assert "At 3.00 min eastbound 1 stands and cannot start" in result.summary["problem"]
+    assert result.trips.train.to_list() == ["eastbound 1"]
+    assert float(result.dataset.position[-1, 0]) == 0.0
 
 
 def test_a_train_that_would_roll_back_stalls_on_the_way():
@@ -47,3 +63,19 @@ def test_too_many_trains_on_a_weak_line_collapse_and_keep_what_was_simulated():
     assert "near" in result.summary["advice"]
     assert result.audit["passed"]
     assert result.audit["lowest_voltage_v"] > 8_250.0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"simulation.duration_min": 100_000.0, "traffic.0.headway_min": 0.01},
+        {"traffic.0.first_departure_min": 100_000.0, "simulation.time_step_min": 0.001},
+        {"line.length_km": 2_000.0, "line.stations.2.position_km": 2_000.0,
+         "line.speed_limits.0.speed_kmh": 1.0, "simulation.time_step_min": 0.001,
+         "traffic.0.already_running": True},
+    ],
+    ids=["many trains", "late departure", "long trip"],
+)  # fmt: skip
+def test_a_run_that_memory_cannot_hold_is_refused_before_it_is_laid_out(changes):
+    with pytest.raises(TooLargeError, match="GiB of memory"):
+        tpss.simulate(short_line(changes))

@@ -121,6 +121,22 @@ def compile_kernels(model: Model) -> None:
     Run(model, [], 0).advance_to(0)
 
 
+def demand_room(model: Model, steps: int, trains: int) -> None:
+    """Refuse a run whose recording would not fit into memory.
+
+    Raises
+    ------
+    TooLargeError
+    """
+    needed = recording_bytes(model, steps, trains)
+    if needed > MOST_MEMORY_BYTES:
+        raise TooLargeError(
+            f"{steps} steps with {trains} trains need {needed / 2**30:.0f} GiB of memory, more than "
+            f"{MOST_MEMORY_BYTES / 2**30:.0f}; take a longer time step, a shorter duration or a longer "
+            "headway"
+        )
+
+
 class Run:
     """A run in progress: the state at `step`, and the recording up to it."""
 
@@ -132,6 +148,7 @@ class Run:
         self.trains = trains
         self.capacity = capacity
         self.step = 0
+        demand_room(model, capacity, len(trains))
         self.status = Status.RUNNING
         self.state = new_state(model, train_records(trains, NOMINAL_VOLTAGE_V))
         self.recording = new_recording(model, capacity, len(trains))
@@ -148,6 +165,7 @@ class Run:
 
     def grow(self, capacity: int, departing: list[Train]) -> None:
         """Make room for more steps and for the trains that depart in them."""
+        demand_room(self.model, capacity, len(self.trains) + len(departing))
         before, state = self.recording, self.state
         self.trains = [*self.trains, *departing]
         records = train_records(self.trains, NOMINAL_VOLTAGE_V)
@@ -192,6 +210,19 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
         name = f"{service.name} initial {len(trains) + 1}"
         trains.append(replace(train_now(lone[0], run.state.trains[0]), name=name))
     return trains
+
+
+def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
+    """Trains that stand along the line at the start."""
+    return [
+        train
+        for service in services
+        for train in (
+            trains_already_running(model, service)
+            if service.already_running
+            else placed_trains(service)
+        )
+    ]
 
 
 def foreseen_steps(model: Model, service: Service) -> int:
@@ -241,17 +272,11 @@ def run_services(
         Also of a run that ended early: what it has until then.
     """
     h = model.options.step_s
-    on_line = [
-        train
-        for service in services
-        for train in (
-            trains_already_running(model, service)
-            if service.already_running
-            else placed_trains(service)
-        )
-    ]
+    on_line = trains_on_line(model, services)
     first_s = next(services[0].departure_times_s(math.inf))
     capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
+    departures = sum(service.departures_before(capacity * h) for service in services)
+    demand_room(model, capacity, len(on_line) + departures)
     departing = departing_trains(services, h, 0, capacity)
     names = [train.name for train in (*on_line, *departing)]
     studied_name = f"{services[0].name} 1"
@@ -259,13 +284,6 @@ def run_services(
     ends_with = studied if steps is None else -1
     model = model._replace(options=model.options._replace(studied_train=ends_with))
     trains = [*on_line, *departing]
-    needed = recording_bytes(model, capacity, len(trains))
-    if needed > MOST_MEMORY_BYTES:
-        raise TooLargeError(
-            f"{capacity} steps with {len(trains)} trains need {needed / 2**30:.0f} GiB of memory, more "
-            f"than {MOST_MEMORY_BYTES / 2**30:.0f}; take a longer time step, a shorter duration or a "
-            "longer headway"
-        )
     run = Run(model, trains, capacity, clock)
     status = _advance_to_end(run, services, steps, report, interrupted)
     return _outcome(run, status, studied)
@@ -319,7 +337,8 @@ def _outcome(run: Run, status: str, studied: int) -> Outcome:
     """The run as it ended, its recording cut to the steps carried out."""
     rows = run.step + 1
     # A train that is due at the last instant has not departed.
-    count = sum(train.departure_step < max(run.step, 1) for train in run.trains)
+    begun = run.step + (status in (STATUS_NAME[Status.COLLAPSED], STATUS_NAME[Status.STALLED]))
+    count = sum(train.departure_step < max(begun, 1) for train in run.trains)
     kept = run.recording
     recording = Recording(
         trains=kept.trains[:rows, :count],

@@ -41,6 +41,12 @@ class Service:
             yield time
             count += 1
 
+    def departures_before(self, until_s: float) -> int:
+        """Number of departures before `until_s`."""
+        if self.departures_s:
+            return sum(time < until_s for time in self.departures_s)
+        return max(0, math.ceil((until_s - self.first_s) / self.headway_s))
+
 
 @dataclass(frozen=True)
 class Train:
