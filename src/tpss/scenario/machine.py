@@ -10,7 +10,7 @@ from tpss.scenario.fields import Part, Real, ascending_numbers, fault
 MOST_VOLTAGES = 16
 """Rows that a table of tractive effort may have."""
 
-Ratio = Annotated[Real, Field(gt=0, le=1)]
+Ratio = Annotated[Real, Field(ge=0.1, le=1)]
 
 Speeds = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=500)], ...],

@@ -44,8 +44,9 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
     """Speed that a train is to have after this step, if its machine can. [m/s]
 
     The lower of line and train limits it, or the original driver's rule, and the highest acceleration
-    that the train may have; a braking plan and limits ahead lower it; a standing train takes no more
-    than leaves room for its next stop.
+    that the train may have; a braking plan and limits ahead lower it.  A train that stands, or as
+    good as does, takes no more than leaves room for its next stop: a plan only ever lowers the speed,
+    so one that creeps would creep on to the stop.
 
     References
     ----------
@@ -61,10 +62,12 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
             fastest, coasting = fastest_and_coasting(train, kind, h)
             slowest = train.speed_m_s - retardation * h
             target = aggressive_speed(train.speed_m_s, target, fastest, coasting, slowest)
-        target = min(target, train.speed_m_s + kind.highest_acceleration_m_s2 * h)
-        if train.speed_m_s <= 0.0:
+        if train.speed_m_s < target / 2.0:
             room_m = distance_to_stop(train, model)
-            target = min(target, highest_speed_that_stops(0.0, room_m, retardation, h))
+            most = highest_speed_that_stops(train.speed_m_s, room_m, retardation, h)
+            if most >= 2.0 * train.speed_m_s:
+                target = min(target, most)
+        target = min(target, train.speed_m_s + kind.highest_acceleration_m_s2 * h)
     allowed = heed_limits_ahead(
         train.position_m, train.speed_m_s, target, limits.from_m, limits.value, retardation, h
     )

@@ -3,6 +3,7 @@
 from typing import Any
 
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
+from tpss.driving.speed_limits import SLACK_M
 from tpss.kernel import inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
@@ -74,7 +75,7 @@ def must_plan(train: Any, model: Model) -> bool:
     way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
     retardation = model.types[train.train_type].highest_retardation_m_s2
     needed_m = shortest_stop(max(train.next_speed_m_s, 0.0), retardation, h)
-    return distance_to_stop(train, model) - way_m < needed_m
+    return distance_to_stop(train, model) - way_m < needed_m - SLACK_M
 
 
 @kernel
