@@ -146,7 +146,7 @@ def test_every_place_that_takes_a_library_name_takes_a_file():
 
 # Changes of the train's file, and the key, value and remedy of the finding there.
 FAULTS = [
-    pytest.param({"mass_t": -3}, "mass_t", "-3", "greater than 0 t", id="range"),
+    pytest.param({"mass_t": -3}, "mass_t", "-3", "greater than or equal to 1 t", id="range"),
     pytest.param({"max_powr_kw": 3}, "max_powr_kw", "3", "choose from", id="unknown key"),
     pytest.param({"mass_t": None}, "mass_t", "", "add it", id="missing"),
     pytest.param({"mass_t": "122 t"}, "mass_t", "'122 t'", "a number in t", id="text"),
@@ -178,7 +178,7 @@ FAULTS = [
                  id="effort as a number"),
     pytest.param({"tractive_effort": None}, "tractive_effort", "", "add it", id="no effort"),
     pytest.param({"max_acceleration_m_s2": 0.0}, "max_acceleration_m_s2", "0.0",
-                 "greater than 0 m/s²", id="acceleration"),
+                 "greater than or equal to 0.01 m/s²", id="acceleration"),
 ]  # fmt: skip
 
 
