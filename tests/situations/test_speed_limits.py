@@ -157,12 +157,8 @@ def test_a_limit_at_the_place_of_departure_holds_at_once():
 
 def test_the_lower_of_line_and_train_is_met_at_its_position():
     """The train may run 50 km/h; the line asks for 70, then 40, then 70."""
-    way = journey(
-        run({
-            **LIGHT, **FINE, **limits((0, 70), (8, 40), (12, 70)),
-            "trains.freight.max_speed_kmh": 50.0,
-        })
-    )  # fmt: skip
+    profile = limits((0, 70), (8, 40), (12, 70))
+    way = journey(run({**LIGHT, **FINE, **profile, "trains.freight.max_speed_kmh": 50.0}))
     assert way.v[way.x < 8e3].max() == kmh(50)
     assert way.v[(way.x >= 8e3) & (way.x < 12e3)].max() == pytest.approx(kmh(40), rel=1e-9)
     assert way.v[way.x >= 12e3].max() == kmh(50)

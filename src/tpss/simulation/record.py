@@ -80,18 +80,20 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
     row.active_power = train.active_power_w
     row.reactive_power = train.reactive_power_var
-    if train.force_n > 0.0:
+    if train.force_cap_n > 0.0:
         count_limits(train, kind, model, recording.counters)
 
 
 @inlined
 def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
-    """Count where a network or a curve of a motoring train extrapolates or is clipped."""
+    """Count where a network or a curve extrapolates or is clipped, of a train whose driver wants force."""
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
     if effort_extrapolates(speed, voltage, kind, machine, model.points):
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
     if train.machine_force_n < 0.0:
         counters[Counter.EFFORT_CLIPPED] += 1
+    if train.force_n <= 0.0:
+        return
     if outside_curve(speed, kind.efficiency, model.points):
         counters[Counter.EFFICIENCY_EXTRAPOLATED] += 1
     if kind.reactive_model == POWER_FACTOR_CURVE:
