@@ -1,7 +1,7 @@
 """Slow, obvious twins of the kernels: the definition, written down once more without a trick."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -72,3 +72,38 @@ def least_remaining_distances(
         dist.sum(axis=0), A_eq=np.array(rows), b_eq=values, bounds=bounds, method="highs"
     )
     return float(result.fun) * retardation * step_s**2 if result.status == 0 else None
+
+
+def fastest_run(
+    limit_m_s: Array, gradient: Array, piece_m: float, train: Mapping[str, float]
+) -> tuple[float, float, Array]:
+    """Running time [s], energy at the pantograph [J] and speeds [m/s] of the fastest run of a train.
+
+    The line is cut into short pieces, each with a limit and a gradient.  First the limits are lowered
+    so that the highest retardation suffices between them, from the end backwards; then the train
+    takes the highest acceleration that force, power, comfort and these limits allow.
+
+    Parameters
+    ----------
+    limit_m_s, gradient : Array, shape (n,)
+        At the pieces' beginnings; the train stands at the end of the last piece.
+    train : mapping
+        ``mass_kg``, ``rotating`` (share of the mass), ``force_n``, ``power_w``, ``a``, ``b``, ``c`` of
+        the running resistance, ``acceleration``, ``retardation``, ``efficiency``.
+    """
+    highest = np.append(np.minimum(limit_m_s, np.append(limit_m_s[1:], np.inf)) ** 2, 0.0)
+    for i in range(limit_m_s.size - 1, -1, -1):
+        highest[i] = min(highest[i], highest[i + 1] + 2.0 * train["retardation"] * piece_m)
+    inertia = train["mass_kg"] * (1.0 + train["rotating"])
+    squares, energy, time = np.zeros(highest.size), 0.0, 0.0
+    for i in range(limit_m_s.size):
+        v = max(math.sqrt(squares[i]), 1e-3)
+        resistance = train["a"] + train["b"] * v + train["c"] * v * v
+        resistance += train["mass_kg"] * 9.81 * gradient[i]
+        force = min(train["force_n"], train["power_w"] / v)
+        most = min(train["acceleration"], (force - resistance) / inertia)
+        squares[i + 1] = min(squares[i] + 2.0 * most * piece_m, highest[i + 1])
+        force = inertia * (squares[i + 1] - squares[i]) / (2.0 * piece_m) + resistance
+        energy += max(0.0, force) * piece_m / train["efficiency"]
+        time += 2.0 * piece_m / (math.sqrt(squares[i]) + math.sqrt(squares[i + 1]))
+    return time, energy, np.sqrt(squares)
