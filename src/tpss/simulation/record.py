@@ -86,7 +86,7 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
 
 @inlined
 def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
-    """Count where a network or a curve extrapolates or is clipped, of a train whose driver wants force."""
+    """Count where what describes a train is extrapolated or clipped, if its driver wants force."""
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
     if effort_extrapolates(speed, voltage, kind, machine, model.points):
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
