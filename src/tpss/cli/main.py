@@ -167,9 +167,7 @@ def schema(
     write_schema(out)
 
 
-imports = typer.Typer(
-    help="Make scenario files from the files of others.", no_args_is_help=True
-)
+imports = typer.Typer(help="Make scenario files from the files of others.", no_args_is_help=True)
 app.add_typer(imports, name="import")
 
 
