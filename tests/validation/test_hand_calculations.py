@@ -1,0 +1,76 @@
+"""The expected values of the closed forms, worked out once more by code of their own."""
+
+import json
+import math
+from importlib.resources import files
+
+import pytest
+
+from cases import HERE, load_case
+
+TRACTIVE_EFFORT = json.loads((files("tpss.library") / "networks.json").read_text("utf-8"))[
+    "tractive_effort"
+]
+
+
+def expected(folder):
+    """Expected values of a case by quantity and run."""
+    quantities = load_case(HERE / folder).expected.quantities
+    return {(q.name, run): value for q in quantities for run, value in q.published.items()}
+
+
+def motor_force_n(speed_kmh, voltage_kv, current_a):
+    """The network of [Boullanger2009], appendix C, as it is printed: inputs and output on ±1."""
+    net = TRACTIVE_EFFORT
+    inputs = [
+        2.0 * (x - low) / (high - low) - 1.0
+        for x, low, high in zip(
+            (speed_kmh, voltage_kv, current_a), net["input_min"], net["input_max"], strict=True
+        )
+    ]
+    output = net["b2"] + sum(
+        w2 * math.tanh(b1 + sum(w * x for w, x in zip(w1, inputs, strict=True)))
+        for w1, b1, w2 in zip(net["W1"], net["b1"], net["w2"], strict=True)
+    )
+    return net["output_min"] + (output + 1.0) / 2.0 * (net["output_max"] - net["output_min"])
+
+
+def balancing_speed_kmh(permille, voltage_kv):
+    """Where the force at 1250 A equals A + B v + C v² + m g α, by bisection."""
+    low, high = 40.0, 240.0
+    while high - low > 1e-9:
+        kmh = (low + high) / 2.0
+        v = kmh / 3.6
+        resistance = 15_400.0 + 279.0 * v + 49.2 * v**2 + 1_470e3 * 9.81 * permille / 1e3
+        if motor_force_n(kmh, voltage_kv, 1250.0) > resistance:
+            low = kmh
+        else:
+            high = kmh
+    return low
+
+
+@pytest.mark.parametrize("permille", [0, 5, 10])
+def test_the_balancing_speed_is_the_root_of_the_force_balance(permille):
+    """The second assertion is the reason of the tolerance: what ten volts are worth."""
+    value = expected("Closed_form_balancing_speed")["balancing speed", f"{permille} ‰"]
+    at_16_500_v = balancing_speed_kmh(permille, 16.5)
+    assert value == pytest.approx(at_16_500_v, abs=5e-4)
+    assert at_16_500_v - balancing_speed_kmh(permille, 16.49) <= 0.048
+
+
+def test_the_voltage_between_two_equal_stations_is_the_root_of_a_quadratic():
+    """U⁴ - (E² - 2 R P) U² + |Z|² P² = 0, Z = z x (L - x) / L = 30 km of BT catenary."""
+    z = complex(0.21, 0.20) * 40.0 * 120.0 / 160.0
+    b = 16_500.0**2 - 2.0 * z.real * 2e6
+    voltage = math.sqrt((b + math.sqrt(b**2 - 4.0 * abs(z) ** 2 * 2e6**2)) / 2.0)
+    values = expected("Closed_form_two_stations")
+    assert values["voltage at the train", "equal voltages"] == pytest.approx(voltage, abs=5e-3)
+
+
+def test_rotary_stations_share_inversely_to_their_reactances():
+    """X_q^m / 3 + X_q^g of a Q48/Q49, by the number that run, and j0.2 Ω/km of line."""
+    x = 0.49 * 16.5**2 / 10.7 / 3.0 + 0.53 * 16.5**2 / 10.0
+    west, east = x / 4.0 + 0.2 * 40.0, x / 2.0 + 0.2 * 120.0
+    values = expected("Closed_form_two_stations")
+    share = values["first station's share of the active power", "rotary, 4 and 2"]
+    assert share == pytest.approx(100.0 * east / (west + east), abs=5e-3)
