@@ -140,10 +140,16 @@ def table(case: Case, outcomes: Sequence[Outcome]) -> str:
     for outcome in outcomes:
         quantity = outcome.quantity
         start = [quantity.name, outcome.run, stated(outcome.published, quantity), rule(quantity)]
-        rows.setdefault((id(quantity), outcome.run), start).append(cell(outcome))
+        row = rows.setdefault((id(quantity), outcome.run), [*start[:2], *map(unbroken, start[2:])])
+        row.append(unbroken(cell(outcome)))
     head = ["quantity", "run", source, "tolerance", *ours]
     lines = [f"| {' | '.join(row)} |" for row in [head, *rows.values()]]
     return "\n".join([lines[0], f"|{'---|' * len(head)}", *lines[1:]])
+
+
+def unbroken(text: str) -> str:
+    """A text that stays on one line."""
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def cell(outcome: Outcome) -> str:
