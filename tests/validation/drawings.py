@@ -53,13 +53,15 @@ def stop(runs: Mapping[str, tpss.Result], stop_km: float, trains: str) -> Figure
 
 @rc_context(STYLE)
 def overview(outcomes: Sequence[Outcome]) -> Figure:
-    """Differences of total energies and trip times, each on its tolerance."""
-    figure = Figure(figsize=(7.0, 6.5))
+    """Differences of judged total energies and trip times, each on its tolerance."""
+    names = ("E1 + E2", "trip time")
+    outcomes = [o for o in outcomes if o.quantity.name in names and o.agrees is not None]
+    figure = Figure(figsize=(7.0, 7.0))
     axes = figure.subplots(1, 2, sharey=True)
     labels = list(dict.fromkeys(row_label(outcome) for outcome in outcomes))
     for panel, name, axis in zip(
         axes,
-        ("E1 + E2", "trip time"),
+        names,
         ("difference of E1 + E2 [%]", "difference of the trip time [min]"),
         strict=True,
     ):
@@ -87,9 +89,8 @@ def row_label(outcome: Outcome) -> str:
 def mark(panel: Axes, outcome: Outcome, row: int) -> None:
     """Draw an outcome's difference in its row, on its tolerance."""
     quantity = outcome.quantity
-    allowed = quantity.within if quantity.within is not None else quantity.within_percent
-    if allowed is not None:
-        panel.barh(row, 2 * allowed, left=-allowed, height=0.8, color="#E3E8EF")
+    allowed = quantity.within or quantity.within_percent or 0.0
+    panel.barh(row, 2 * allowed, left=-allowed, height=0.8, color="#E3E8EF")
     k = "AB".index(outcome.variant)
     panel.plot(outcome.difference, row + (-0.17, 0.17)[k], "os"[k], color=colour(k), markersize=5.0)
 

@@ -115,6 +115,13 @@ def power_follows_inclination(result: tpss.Result, from_km: float, to_km: float)
 
 
 @measure
+def power_swing(result: tpss.Result) -> float:
+    """Mean change of the studied train's power from step to step, over its mean power."""
+    power = studied(result).active_power.to_numpy()
+    return float(np.abs(np.diff(power)).mean() / power.mean())
+
+
+@measure
 def stop_error_mm(result: tpss.Result, stop_km: float, trains: str) -> float:
     """Largest distance between a stop and where trains of a kind stood or arrived.
 
