@@ -30,6 +30,8 @@ from pydantic import (
 
 import tpss
 
+from measures import MEASURES
+
 HERE = Path(__file__).parent
 PARAGRAPHS = ("Source", "Stated", "Assumed")
 
@@ -122,7 +124,7 @@ class Miss(Part):
 class Drawing(Part):
     """A figure to draw from runs of the case."""
 
-    draw: str
+    draw: Literal["journey", "voltage_along_line", "station_powers", "station_loading", "stop"]
     runs: tuple[str, ...] = Field(min_length=1)
     variants: tuple[str, ...] = Field(min_length=1)
     arguments: dict[str, float | str] = {}
@@ -238,7 +240,7 @@ def _in_words(document: dict[str, Any], fault: Any) -> str:
 
 
 def _check_names(case: Case) -> None:
-    """Raise a `CaseError` if a run, variant or quantity is named that is not there."""
+    """Raise a `CaseError` if a run, variant, measure or quantity is named that is not there."""
     runs, variants = set(case.plan.runs), set(case.plan.variants)
     used = [(set(q.published) | ({q.against} - {None}), set()) for q in case.expected.quantities]
     used += [(set(d.runs), set(d.variants)) for d in case.expected.figures]
@@ -247,6 +249,10 @@ def _check_names(case: Case) -> None:
         if unknown := (named_runs - runs) | (named_variants - variants):
             names = ", ".join(sorted(unknown))
             raise CaseError(f"{case.name}: expected.toml names {names}, which is not run")
+    measures = {quantity.measure for quantity in case.expected.quantities}
+    if unknown := measures - set(MEASURES):
+        known = ", ".join(MEASURES)
+        raise CaseError(f"{case.name}: no measure {', '.join(sorted(unknown))}; there are {known}")
     names = {quantity.name for quantity in case.expected.quantities}
     if unknown := {miss.quantity for miss in case.expected.misses} - names:
         raise CaseError(f"{case.name}: a miss of {', '.join(sorted(unknown))}, no such quantity")

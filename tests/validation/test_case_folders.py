@@ -89,6 +89,19 @@ def test_a_value_of_a_run_that_is_not_run_is_refused(folder):
     assert "expected.toml names before, which is not run" in refusal(folder)
 
 
+def test_a_measure_that_is_not_there_is_refused(folder):
+    spoil(folder / "expected.toml", '"trip_time_min"', '"trip_min"')
+    assert "no measure trip_min; there are trip_time_min, " in refusal(folder)
+
+
+def test_a_drawing_that_is_not_there_is_refused(folder):
+    file = folder / "expected.toml"
+    drawing = '[[figures]]\ndraw = "jorney"\nruns = ["after"]\nvariants = ["A"]\n'
+    text = file.read_text("utf-8") + drawing + 'caption = "The journey of a train."\n'
+    file.write_text(text, "utf-8")
+    assert "figures.0.draw: Input should be 'journey'" in refusal(folder)
+
+
 def test_a_miss_of_something_else_is_refused(folder):
     spoil(
         folder / "expected.toml", '[[misses]]\nquantity = "trip time"', '[[misses]]\nquantity = "E"'
