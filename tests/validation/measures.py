@@ -260,3 +260,11 @@ def share_percent(result: tpss.Result, power: str) -> float:
 def last_voltage_v(result: tpss.Result) -> float:
     """Voltage at the only train, in the last step."""
     return float(before_end(result).pantograph_voltage.to_numpy()[-1, 0])
+
+
+@measure
+def train_power_w(result: tpss.Result, at_km: float) -> float:
+    """Active power that the studied train draws in the step that passes a place."""
+    data = studied(result)
+    passed = int((data.position.to_numpy() <= at_km * 1e3).sum()) - 1
+    return float(data.active_power[passed])

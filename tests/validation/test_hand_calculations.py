@@ -74,3 +74,11 @@ def test_rotary_stations_share_inversely_to_their_reactances():
     values = expected("Closed_form_two_stations")
     share = values["first station's share of the active power", "rotary, 4 and 2"]
     assert share == pytest.approx(100.0 * east / (west + east), abs=5e-3)
+
+
+@pytest.mark.parametrize(("run", "permille"), [("level", 0.0), ("5 ‰", 5.0)])
+def test_the_power_at_constant_speed_is_that_of_resistance_and_climb(run, permille):
+    v = 60.0 / 3.6
+    force = 15_400.0 + 279.0 * v + 49.2 * v**2 + 1_470e3 * 9.81 * permille / 1e3
+    value = expected("Closed_form_power_at_constant_speed")["power at 80 km", run]
+    assert value == pytest.approx(force * v / 0.8 + 151_500.0, abs=0.5)
