@@ -268,3 +268,17 @@ def train_power_w(result: tpss.Result, at_km: float) -> float:
     data = studied(result)
     passed = int((data.position.to_numpy() <= at_km * 1e3).sum()) - 1
     return float(data.active_power[passed])
+
+
+@measure
+def time_to_speed_s(result: tpss.Result, speed_m_s: float) -> float:
+    """Time after which the studied train has a speed for the first time."""
+    data = studied(result)
+    return float(np.interp(speed_m_s, data.speed.to_numpy(), data.time.to_numpy()))
+
+
+@measure
+def way_to_speed_m(result: tpss.Result, speed_m_s: float) -> float:
+    """Way after which the studied train has a speed for the first time."""
+    data = studied(result)
+    return float(np.interp(speed_m_s, data.speed.to_numpy(), data.position.to_numpy()))

@@ -82,3 +82,17 @@ def test_the_power_at_constant_speed_is_that_of_resistance_and_climb(run, permil
     force = 15_400.0 + 279.0 * v + 49.2 * v**2 + 1_470e3 * 9.81 * permille / 1e3
     value = expected("Closed_form_power_at_constant_speed")["power at 80 km", run]
     assert value == pytest.approx(force * v / 0.8 + 151_500.0, abs=0.5)
+
+
+@pytest.mark.parametrize("speed_m_s", [20.0, 40.0])
+def test_time_and_way_of_a_start_are_those_of_constant_force_then_power(speed_m_s):
+    """Energy P t = M v² / 2 and its integral; the second assertion is the reason of the tolerance."""
+    mass_kg, force_n, power_w, step_s = 400e3, 200e3, 4e6, 0.06
+    v1 = power_w / force_n
+    time_s = mass_kg * v1 / force_n + mass_kg * (speed_m_s**2 - v1**2) / (2.0 * power_w)
+    way_m = mass_kg * v1**2 / (2.0 * force_n) + mass_kg * (speed_m_s**3 - v1**3) / (3.0 * power_w)
+    values = expected("Closed_form_constant_power")
+    run = f"to {speed_m_s:g} m/s"
+    assert values["time from standstill", run] == pytest.approx(time_s, abs=5e-3)
+    assert values["way from standstill", run] == pytest.approx(way_m, abs=5e-3)
+    assert step_s / 2.0 * math.log(speed_m_s / v1) <= 0.021
