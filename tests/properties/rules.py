@@ -44,7 +44,7 @@ def knows_its_current(result: Result) -> np.ndarray:
     train_of = {entry.name: entry.train for entry in result.scenario.traffic}
     services = result.dataset.service.to_numpy()
     trains = [result.scenario.trains[train_of[service]] for service in services]
-    return np.array([train.base_speed_kmh is not None for train in trains])
+    return np.array([train.base_speed_kmh is not None for train in trains], dtype=bool)
 
 
 def judge_departures(result: Result) -> None:
