@@ -27,7 +27,9 @@ proposal, and all faults of a file are reported at once. Paths are relative to t
 `simulation.time_step_min` or `traffic.0.headway_min`. A key without a default may be left out
 unless it is marked as required."""
 
-MODELS = "the model's"
+GIVEN = {"model": ("locomotives", "the model's"), "system": ("voltage_limits", "the system's")}
+"""Keys that name an entry of the library, its kind, and whose values the others then have."""
+
 DEFAULTS = {
     "Line.gradients_file": "this or `gradients`",
     "Line.gradients": "this or `gradients_file`",
@@ -156,15 +158,16 @@ def _default(part: Part, name: str) -> str:
     written = DEFAULTS.get(f"{part.__name__}.{name}")
     if written is not None:
         return written
-    if "model" in part.model_fields and name in _keys_of_every_model():
-        return MODELS
+    for key, (kind, whose) in GIVEN.items():
+        if key in part.model_fields and name in _keys_of_every_entry(kind):
+            return whose
     if field.is_required():
         return "**required**"
     return "" if field.default in (None, (), "") else code(field.default)
 
 
-def _keys_of_every_model() -> set[str]:
-    return set.intersection(*(set(entry) for entry in library.entries("locomotives").values()))
+def _keys_of_every_entry(kind: str) -> set[str]:
+    return set.intersection(*(set(entry) for entry in library.entries(kind).values()))
 
 
 def _library_kind(field: FieldInfo) -> str | None:

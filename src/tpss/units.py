@@ -1,13 +1,16 @@
 """The one table of unit suffixes: what a name's suffix means, and its factor to SI.
 
-Files and the scenario's fields carry engineering units in their names (``length_km``); the program
-computes in SI.  The conversion happens once, in `tpss.model`, through `si`.
+Files, the scenario's fields and the columns of tables carry engineering units in their names
+(``length_km``); the program computes in SI.  A scenario is converted once, in `tpss.model`, through
+`si`.
 """
 
 import math
 
 SUFFIXES: dict[str, tuple[str, float]] = {
     # suffix: (label, factor to SI)
+    "_wh_per_t_km": ("Wh/t km", 3.6e-3),
+    "_kwh_per_km": ("kWh/km", 3.6e3),
     "_ohm_per_km": ("Ω/km", 1e-3),
     "_nf_per_km": ("nF/km", 1e-12),
     "_n_s_per_m": ("N s/m", 1.0),
@@ -15,16 +18,19 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_kv_per_mvar": ("kV/MVAr", 1e-3),
     "_permille": ("‰", 1e-3),
     "_m_s2": ("m/s²", 1.0),
+    "_mvarh": ("MVArh", 3.6e9),
     "_mvar": ("MVAr", 1e6),
+    "_mwh": ("MWh", 3.6e9),
     "_mva": ("MVA", 1e6),
     "_ohm": ("Ω", 1.0),
     "_kmh": ("km/h", 1.0 / 3.6),
     "_min": ("min", 60.0),
     "_deg": ("°", math.pi / 180.0),
     "_km": ("km", 1e3),
+    "_kn": ("kN", 1e3),
     "_kv": ("kV", 1e3),
     "_kw": ("kW", 1e3),
-    "_kn": ("kN", 1e3),
+    "_mw": ("MW", 1e6),
     "_kg": ("kg", 1.0),
     "_pu": ("p.u.", 1.0),
     "_hz": ("Hz", 1.0),
@@ -32,6 +38,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_a": ("A", 1.0),
     "_v": ("V", 1.0),
     "_n": ("N", 1.0),
+    "_s": ("s", 1.0),
 }
 
 
@@ -43,6 +50,16 @@ def suffix(name: str) -> str:
 def label(name: str) -> str:
     """Unit of a field as it is written for people; empty for a pure number."""
     return SUFFIXES[suffix(name)][0] if suffix(name) else ""
+
+
+def words(name: str) -> str:
+    """A name in words, without its unit."""
+    return name.removesuffix(suffix(name)).replace("_", " ")
+
+
+def heading(name: str) -> str:
+    """A name as the heading of a column, such as ``energy [MWh]``."""
+    return f"{words(name)} [{label(name)}]" if suffix(name) else words(name)
 
 
 def si(source: object, name: str) -> float:

@@ -32,6 +32,7 @@ def test_a_scenario_is_told_in_a_few_lines(tpss_command, tmp_path):
         "West 0 km: 6 x Q48/Q49 of 10 MVA, control all-on",
         "freight: Rc4-freight-1470t, mass 1470 t, adhesive mass 79 t, max speed 135 km/h",
         "eastbound: freight from West to East, every 10 min from 0 min, already running",
+        "standards 15kV-16.7Hz: 12 to 17.25 kV, at times 11 to 18 kV",
         "steps of 0.5 min until eastbound 1 arrives",
     ):
         assert words in said.out, words
@@ -48,6 +49,9 @@ def test_what_departs_from_the_library_and_the_defaults_is_told(tpss_command):
         "simulation.rail=wet",
         "traffic.0.already_running=false",
         "traffic.0.initial_trains=[{position_km = 20.0, speed_kmh = 60.0}]",
+        "standards.voltage_limits.umin1_kv=12.5",
+        "standards.peak_from_min=10",
+        "standards.zones=[{name = 'hill', from_km = 20, to_km = 40}]",
     )
     assert said.code == 0
     for words in (
@@ -55,6 +59,8 @@ def test_what_departs_from_the_library_and_the_defaults_is_told(tpss_command):
         "own: 0.1 + j0.3 Ω/km",
         "steps of 1 min until eastbound 1 arrives, rail wet",
         "trains on the line at the start: 1, stops: Middle 2 min",
+        "standards 15kV-16.7Hz: 12.5 to 17.25 kV, at times 11 to 18 kV; changed from the library: "
+        "umin1_kv 12.5 (12); peak window 10 min to the end; zones hill",
     ):
         assert words in said.out, words
 
@@ -112,6 +118,12 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
         (["line.length_km=160.1", "line.speed_limits=[{from_km = 0, speed_kmh = 100}, "
           "{from_km = 161, speed_kmh = 60}]"],
          "line.speed_limits.1 begins at 161 km, where the line has ended (160.1 km)"),
+        (["standards.voltage_limits.system=25kV-50Hz",
+          "supply.converter_stations.1.type={rating_mva = 10, no_load_voltage_kv = 27.5, "
+          "droop_kv_per_mvar = 0.05, generator_reactance_pu = 0.5, generator_base_mva = 10, "
+          "motor_reactance_pu = 0.5, motor_base_mva = 10, base_voltage_kv = 16.5}"],
+         "supply.converter_stations.0: it feeds 16.5 kV without load, outside of the 19 to 27.5 kV of "
+         "standards.voltage_limits (25kV-50Hz)"),
     ],
 )  # fmt: skip
 def test_what_may_not_be_meant_is_noted(tpss_command, changes, note):

@@ -68,6 +68,7 @@ def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
     used = tomllib.loads(usage(kind, name))
     for table, part in used.items():
+        document.setdefault(table, {})
         for key, value in part.items():
             if isinstance(value, list):
                 document[table][key][0].update(value[0])

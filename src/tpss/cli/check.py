@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
-from tpss.cli.library import KINDS, words
+from tpss.cli.library import KINDS
 from tpss.cli.notes import lies_between, notes
 from tpss.clock import clock_of
 from tpss.model.build import build_model
@@ -22,6 +22,7 @@ from tpss.scenario.line import Line
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
+from tpss.scenario.standards import Standards
 from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply
 from tpss.scenario.traffic import Traffic
 
@@ -61,6 +62,7 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield "train", f"{name}: {_train(train)}"
     for entry in scenario.traffic:
         yield "traffic", _service(entry)
+    yield "standards", _standards(scenario.standards)
     yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
 
 
@@ -120,20 +122,40 @@ def _station(station: ConverterStation) -> str:
     )
 
 
+def _standards(standards: Standards) -> str:
+    limits = standards.voltage_limits
+    texts = [
+        f"{limits.system}: {limits.umin1_kv:g} to {limits.umax1_kv:g} kV, at times "
+        f"{limits.umin2_kv:g} to {limits.umax2_kv:g} kV",
+        *_changed(limits, "voltage_limits", limits.system),
+    ]
+    if standards.peak_from_min or standards.peak_to_min is not None:
+        end = "the end" if standards.peak_to_min is None else f"{standards.peak_to_min:g} min"
+        texts.append(f"peak window {standards.peak_from_min:g} min to {end}")
+    if standards.zones:
+        texts.append(f"zones {_listed([zone.name for zone in standards.zones])}")
+    return "; ".join(texts)
+
+
+def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
+    """What a part changes of the entry of the library that it starts from, if anything."""
+    usual = library.entries(kind).get(entry or "", {})
+    changed = [
+        f"{key} {_plain(getattr(part, key))} ({_plain(usual[key])})"
+        for key in type(part).model_fields
+        if key in usual and getattr(part, key) != usual[key]
+    ]
+    return [f"changed from the library: {', '.join(changed)}"] if changed else []
+
+
 def _train(train: Train) -> str:
     key_data = [
-        f"{words(key)} {getattr(train, key):g} {units.label(key)}"
+        f"{units.words(key)} {getattr(train, key):g} {units.label(key)}"
         for key in KINDS["locomotives"].shown
         if getattr(train, key) is not None
     ]
-    usual = library.entries("locomotives").get(train.model or "", {})
-    changed = [
-        f"{key} {_plain(getattr(train, key))} ({_plain(usual[key])})"
-        for key in type(train).model_fields
-        if key in usual and getattr(train, key) != usual[key]
-    ]
     text = f"{train.model or 'own'}, {', '.join(key_data)}"
-    return f"{text}; changed from the library: {', '.join(changed)}" if changed else text
+    return "; ".join([text, *_changed(train, "locomotives", train.model)])
 
 
 def _plain(value: Any) -> str:

@@ -85,6 +85,15 @@ KINDS = {
         "type",
         OWN_TABLE,
     ),
+    "voltage_limits": Kind(
+        "Limits of the voltage at the pantograph",
+        "tpss.scenario.standards",
+        "VoltageLimits",
+        ("umin2_kv", "umin1_kv", "un_kv", "umax1_kv", "umax2_kv", "mean_useful_kv"),
+        "[standards.voltage_limits]",
+        "system",
+        "and below the name any of its values, to change it",
+    ),
 }  # fmt: skip
 
 
@@ -173,13 +182,8 @@ def _table(*headings: str) -> Table:
     return table
 
 
-def words(key: str) -> str:
-    """Key in words, without its unit."""
-    return key.removesuffix(units.suffix(key)).replace("_", " ")
-
-
 def _heading(key: str) -> str:
-    return f"{words(key)}\n[dim]{units.label(key)}[/dim]"
+    return f"{units.words(key)}\n[dim]{units.label(key)}[/dim]"
 
 
 def _value(value: Any) -> str:

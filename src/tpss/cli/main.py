@@ -127,7 +127,8 @@ def library(
     kind: Annotated[
         str | None,
         typer.Argument(
-            help="locomotives, catenaries, converters, transformers or high_voltage_lines.",
+            help="locomotives, catenaries, converters, transformers, high_voltage_lines or "
+            "voltage_limits.",
             show_default=False,
             autocompletion=complete.library_kinds,
         ),

@@ -24,6 +24,7 @@ def notes(scenario: Scenario) -> list[str]:
     return [
         *_profile(scenario.line),
         *_supply(scenario),
+        *_voltage_limits(scenario),
         *_trains(scenario),
         *(note for i, entry in enumerate(scenario.traffic) for note in _times(scenario, i, entry)),
         *(note for i, entry in enumerate(scenario.traffic) for note in _climb(scenario, i, entry)),
@@ -61,6 +62,18 @@ def _supply(scenario: Scenario) -> Iterator[str]:
             yield (
                 f'supply.converter_stations.{i}: control = "loading" has nothing to switch with one '
                 "converter, which always runs"
+            )
+
+
+def _voltage_limits(scenario: Scenario) -> Iterator[str]:
+    limits = scenario.standards.voltage_limits
+    for i, station in enumerate(scenario.supply.converter_stations):
+        without_load_kv = station.type.no_load_voltage_kv
+        if not limits.umin1_kv <= without_load_kv <= limits.umax1_kv:
+            yield (
+                f"supply.converter_stations.{i}: it feeds {without_load_kv:g} kV without load, outside "
+                f"of the {limits.umin1_kv:g} to {limits.umax1_kv:g} kV of standards.voltage_limits "
+                f"({limits.system})"
             )
 
 

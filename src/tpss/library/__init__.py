@@ -1,4 +1,4 @@
-"""What ships as data: locomotives, catenaries, converters, transformers, high-voltage lines.
+"""What ships as data: locomotives, catenaries, converters, transformers, lines, limits.
 
 Each kind is a TOML file of this folder, each entry a table with units in its keys and a ``source``.
 """
@@ -9,7 +9,14 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-KINDS = ("locomotives", "catenaries", "converters", "transformers", "high_voltage_lines")
+KINDS = (
+    "locomotives",
+    "catenaries",
+    "converters",
+    "transformers",
+    "high_voltage_lines",
+    "voltage_limits",
+)
 
 
 @cache

@@ -21,6 +21,8 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
         length = None  # a fault of its own; nothing can be measured against it
     findings = [*_line(line, length), *_supply(supply, length)]
     findings += _driver(_table(document, "simulation"))
+    for i, zone in _items(_table(document, "standards"), "zones"):
+        findings += _outside(f"standards.zones.{i}.to_km", _number(zone, "to_km"), length)
     places = {
         station["name"]: position
         for _, station in _items(line, "stations")

@@ -13,6 +13,7 @@ from tpss.scenario.line import Line
 from tpss.scenario.override import override
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
+from tpss.scenario.standards import Standards
 from tpss.scenario.supply import Supply
 from tpss.scenario.traffic import Traffic
 from tpss.scenario.validate import validate
@@ -38,6 +39,9 @@ class Scenario(Part):
     )
     traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")] = Field(
         description="Services, at least one; the first train of the first one is studied."
+    )
+    standards: Standards = Field(
+        default={}, validate_default=True, description="By what the result is judged."
     )
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)

@@ -39,7 +39,8 @@ def scenario_schema() -> dict[str, Any]:
         part.pop("title", None)
         for key, field in part["properties"].items():
             _add_unit(key, field)
-    _lean_on_the_library(parts["Train"])
+    _start_from_a_model(parts["Train"])
+    _start_from_a_system(parts["VoltageLimits"])
     line = schema["properties"]["line"]
     schema["properties"]["line"] = {"description": "The line.", "anyOf": [OWN_FILE, line]}
     schema["description"] = "A line, its power supply, its trains and its traffic."
@@ -52,12 +53,17 @@ def _add_unit(key: str, field: dict[str, Any]) -> None:
         field["description"] = f"{field.get('description', '')} [{unit}]".strip()
 
 
-def _lean_on_the_library(train: dict[str, Any]) -> None:
+def _start_from_a_model(train: dict[str, Any]) -> None:
     """A train names a library model or a file, or gives by itself what those would give."""
     names = {"type": "string", "enum": sorted(library.entries("locomotives"))}
-    model = train["properties"]["model"]
-    train["properties"]["model"] = {
-        "anyOf": [names, OWN_FILE],
-        "description": model["description"],
-    }
+    description = train["properties"]["model"]["description"]
+    train["properties"]["model"] = {"anyOf": [names, OWN_FILE], "description": description}
     train["anyOf"] = [{"required": ["model"]}, {"required": train.pop("required")}]
+
+
+def _start_from_a_system(limits: dict[str, Any]) -> None:
+    """Voltage limits start from a system of the library, which gives every key that all have."""
+    entries = library.entries("voltage_limits")
+    given = set.intersection(*(set(entry) for entry in entries.values()))
+    limits["required"] = [name for name in limits["required"] if name not in given]
+    limits["properties"]["system"]["enum"] = sorted(entries)

@@ -1,0 +1,123 @@
+"""By what a result is judged: limits of the voltage, the peak window, zones of the line."""
+
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tpss import library
+from tpss.scenario.fields import Name, Part, Real, unique
+
+KIND = "voltage_limits"
+
+
+def _is_a_library_system(name: str) -> str:
+    known = library.entries(KIND)
+    if name not in known:
+        raise PydanticCustomError(
+            "unknown_name",
+            "the library has no such entry in {kind}",
+            {"kind": KIND, "known": sorted(known)},
+        )
+    return name
+
+
+class VoltageLimits(Part):
+    """Limits of the voltage at the pantograph: those of a system in the library, or one's own."""
+
+    system: Annotated[Name, AfterValidator(_is_a_library_system)] = Field(
+        default="15kV-16.7Hz", description="Library entry; the other keys override its values."
+    )
+    un_kv: Real = Field(gt=0, description="Nominal voltage, Un.")
+    umin2_kv: Real = Field(gt=0, description="Lowest non-permanent voltage, Umin2.")
+    umin1_kv: Real = Field(gt=0, description="Lowest permanent voltage, Umin1.")
+    umax1_kv: Real = Field(gt=0, description="Highest permanent voltage, Umax1.")
+    umax2_kv: Real = Field(gt=0, description="Highest non-permanent voltage, Umax2.")
+    longest_low_min: Real = Field(ge=0, description="Longest time below Umin1 at a stretch.")
+    longest_high_min: Real = Field(ge=0, description="Longest time above Umax1 at a stretch.")
+    mean_useful_kv: Real | None = Field(
+        default=None,
+        gt=0,
+        description="Least mean useful voltage of zones and trains; leave it out: not judged.",
+    )
+    mean_useful_fast_kv: Real | None = Field(
+        default=None, gt=0, description="The same on lines with speeds above 200 km/h."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _start_from_the_library(cls, given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        known = library.entries(KIND)
+        system = given.get("system", cls.model_fields["system"].default)
+        # An unknown system is reported by its own field; any values let the others be judged too.
+        entry = system if isinstance(system, str) and system in known else next(iter(known))
+        return {**library.values(KIND, entry), **given}
+
+    @model_validator(mode="after")
+    def _limits_are_in_order(self) -> Self:
+        keys = ("umin2_kv", "umin1_kv", "un_kv", "umax1_kv", "umax2_kv")
+        for low, high in zip(keys, keys[1:], strict=False):
+            if getattr(self, low) > getattr(self, high):
+                raise PydanticCustomError(
+                    "conflict",
+                    "{low} ({low_kv} kV) is more than {high} ({high_kv} kV)",
+                    {
+                        "low": low,
+                        "low_kv": getattr(self, low),
+                        "high": high,
+                        "high_kv": getattr(self, high),
+                        "remedy": f"keep to the order {', '.join(keys)}",
+                    },
+                )
+        return self
+
+
+class Zone(Part):
+    """A stretch of line whose mean useful voltage is asked for."""
+
+    name: Name = Field(description="Name, shown in the results.")
+    from_km: Real = Field(ge=0, description="Where it begins.")
+    to_km: Real = Field(gt=0, description="Where it ends.")
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        _demand_growth(self, "from_km", "to_km")
+        return self
+
+
+class Standards(Part):
+    """By what the result is judged; it changes no result."""
+
+    voltage_limits: VoltageLimits = Field(
+        default={},
+        validate_default=True,
+        description="Limits of the voltage at the pantograph.",
+    )
+    peak_from_min: Real = Field(
+        default=0.0, ge=0, description="Where the peak window of the mean useful voltage begins."
+    )
+    peak_to_min: Real | None = Field(
+        default=None, gt=0, description="Where it ends; leave it out: with the run."
+    )
+    zones: Annotated[tuple[Zone, ...], unique("name")] = Field(
+        default=(),
+        description="Zones of the mean useful voltage; leave them out: the feeding sections "
+        "between converter stations.",
+    )
+
+    @model_validator(mode="after")
+    def _peak_window_has_a_length(self) -> Self:
+        _demand_growth(self, "peak_from_min", "peak_to_min")
+        return self
+
+
+def _demand_growth(part: Part, first: str, last: str) -> None:
+    begin, end = getattr(part, first), getattr(part, last)
+    if end is not None and end <= begin:
+        raise PydanticCustomError(
+            "conflict",
+            "{last} ({end}) does not lie beyond {first} ({begin})",
+            {"first": first, "begin": begin, "last": last, "end": end, "remedy": f"raise {last}"},
+        )

@@ -1,0 +1,73 @@
+"""By what a result is judged: limits of the library, any of them changed, a peak window, zones."""
+
+import pytest
+
+from tpss import ScenarioError, library
+from tpss.scenario.standards import VoltageLimits
+
+from scenarios import short_line
+
+LIMITS = "standards.voltage_limits"
+
+
+def test_a_scenario_that_says_nothing_is_judged_by_the_limits_of_15_kv():
+    standards = short_line().standards
+    limits = standards.voltage_limits
+    found = (limits.umin2_kv, limits.umin1_kv, limits.un_kv, limits.umax1_kv, limits.umax2_kv)
+    assert found == (11.0, 12.0, 15.0, 17.25, 18.0)
+    assert (limits.longest_low_min, limits.longest_high_min) == (2.0, 5.0)
+    assert (limits.mean_useful_kv, limits.mean_useful_fast_kv) == (13.5, 14.2)
+    assert (standards.peak_from_min, standards.peak_to_min, standards.zones) == (0.0, None, ())
+
+
+def test_any_figure_may_be_changed_alone():
+    limits = short_line({f"{LIMITS}.umin1_kv": 12.5}).standards.voltage_limits
+    assert (limits.umin1_kv, limits.umin2_kv) == (12.5, 11.0)
+
+
+@pytest.mark.parametrize("system", library.entries("voltage_limits"))
+def test_every_system_of_the_library_can_be_chosen_and_says_where_it_is_from(system):
+    limits = short_line({f"{LIMITS}.system": system}).standards.voltage_limits
+    assert limits == VoltageLimits(system=system)
+    source = library.entries("voltage_limits")[system]["source"]
+    assert "[EN50163]_" in source
+    assert "check your edition" in source
+
+
+def test_the_document_holds_the_limits_so_that_the_run_can_be_judged_again():
+    document = short_line({f"{LIMITS}.umin1_kv": 12.5}).as_document()
+    assert document["standards"]["voltage_limits"]["umin1_kv"] == 12.5
+    assert document["standards"]["voltage_limits"]["umax2_kv"] == 18.0
+    assert type(short_line()).from_document(document).as_document() == document
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "problem", "remedy"),
+    [
+        ({f"{LIMITS}.umin1_kv": 10.0}, LIMITS,
+         "umin2_kv (11.0 kV) is more than umin1_kv (10.0 kV)", "keep to the order"),
+        ({f"{LIMITS}.umin1": 12.0}, f"{LIMITS}.umin1", "unknown key", "did you mean umin1_kv?"),
+        ({f"{LIMITS}.system": "25kV"}, f"{LIMITS}.system", "the library has no such entry",
+         "did you mean 25kV-50Hz?"),
+        ({f"{LIMITS}.umin1_kv": "12 kV"}, f"{LIMITS}.umin1_kv", "not a number",
+         "write a number in kV"),
+        ({f"{LIMITS}.longest_low_min": -1.0}, f"{LIMITS}.longest_low_min", "out of range",
+         "greater than or equal to 0 min"),
+        ({"standards.peak_from_min": 30.0, "standards.peak_to_min": 30.0}, "standards",
+         "peak_to_min (30.0) does not lie beyond peak_from_min (30.0)", "raise peak_to_min"),
+        ({"standards.zones": [{"name": "a", "from_km": 5.0, "to_km": 5.0}]}, "standards.zones.0",
+         "to_km (5.0) does not lie beyond from_km (5.0)", "raise to_km"),
+        ({"standards.zones": [{"name": "a", "from_km": 5.0, "to_km": 25.0}]},
+         "standards.zones.0.to_km", "outside the line, which ends at 20 km", "between 0 and 20 km"),
+        ({"standards.zones": [{"name": "a", "from_km": 0.0, "to_km": 5.0}] * 2},
+         "standards.zones", "name a occurs twice", "give each one its own"),
+        ({"standards": {"zone": []}}, "standards.zone", "unknown key", "did you mean zones?"),
+    ],
+)  # fmt: skip
+def test_a_fault_is_told_with_its_place_and_a_remedy(changes, key, problem, remedy):
+    with pytest.raises(ScenarioError) as caught:
+        short_line(changes)
+    (finding,) = caught.value.findings
+    assert finding.key == key
+    assert problem in finding.problem
+    assert remedy in finding.remedy
