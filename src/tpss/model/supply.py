@@ -5,6 +5,7 @@ on the contact line, and on an AT system, if a converter stands there, one more 
 impedance; with a high-voltage line it has a node on that line too.  The line's ends are nodes.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +18,11 @@ from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Catenary, ConverterStation, HighVoltageLine, Supply
 from tpss.units import si
 
+CONTACT_LINE = "contact line"
+HIGH_VOLTAGE_LINE = "high-voltage line"
+TRANSFORMER = "transformer"
+CONNECTION = "connection"
+
 
 @dataclass
 class SupplyPlan:
@@ -28,6 +34,7 @@ class SupplyPlan:
     """Own voltage of the node over that of the contact line."""
     branches: list[tuple[int, int, complex]] = field(default_factory=list)
     branch_names: list[str] = field(default_factory=list)
+    branch_kinds: list[str] = field(default_factory=list)
     sections: list[tuple[int, int, float, float, complex, float]] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
     branch_level: list[float] = field(default_factory=list)
@@ -41,11 +48,12 @@ class SupplyPlan:
         return len(self.nodes) - 1
 
     def add_branch(
-        self, name: str, start: int, end: int, impedance_ohm: complex, level: float = 1.0
+        self, kind: str, name: str, start: int, end: int, impedance_ohm: complex, level: float = 1.0
     ) -> None:
-        """Add a lumped branch."""
+        """Add a lumped branch; its label begins with its kind."""
         self.branches.append((start, end, impedance_ohm))
-        self.branch_names.append(name)
+        self.branch_names.append(f"{kind} {name}")
+        self.branch_kinds.append(kind)
         self.branch_level.append(level)
 
     def branch_labels(self) -> list[str]:
@@ -55,7 +63,22 @@ class SupplyPlan:
 
     def branch_levels(self) -> list[float]:
         """Own voltage of each of them over that of the contact line."""
-        return [*self.branch_level, *(1.0 for _ in self.section_names for _ in range(2))]
+        return [*self.branch_level, *(1.0 for _ in self._section_ends())]
+
+    def branch_kind_of_each(self) -> list[str]:
+        """Kind of each of them."""
+        return [*self.branch_kinds, *(CONTACT_LINE for _ in self._section_ends())]
+
+    def branch_resistance_ohm(self) -> list[float]:
+        """Resistance of each of them at its own level; NaN for the ends of sections. [ohm]"""
+        lumped = [
+            impedance.real * level**2
+            for (_, _, impedance), level in zip(self.branches, self.branch_level, strict=True)
+        ]
+        return [*lumped, *(math.nan for _ in self._section_ends())]
+
+    def _section_ends(self) -> range:
+        return range(2 * len(self.section_names))
 
 
 def build_supply(scenario: Scenario) -> tuple[Network, SupplyPlan]:
@@ -77,15 +100,14 @@ def plan_supply(scenario: Scenario) -> SupplyPlan:
     transformers = transformer_positions_km(supply)
     converters = {station.position_km: station for station in supply.converter_stations}
     points = sorted({0.0, scenario.line.length_km, *converters, *transformers})
-    line_node = {km: plan.add_node("contact line", km) for km in points}
+    line_node = {km: plan.add_node(CONTACT_LINE, km) for km in points}
     _lay_contact_line(plan, points, line_node, supply)
     feeding = dict(line_node)
     connection = _connection_impedance(supply.catenary)
     if connection:
         for km, station in sorted(converters.items()):
             feeding[km] = plan.add_node("AT feeder", km)
-            name = f"connection {station.name}"
-            plan.add_branch(name, feeding[km], line_node[km], connection)
+            plan.add_branch(CONNECTION, station.name, feeding[km], line_node[km], connection)
     if supply.high_voltage_line is not None:
         stands = sorted({*converters, *transformers})
         _lay_high_voltage_line(plan, stands, set(converters), feeding, supply)
@@ -123,7 +145,7 @@ def _lay_contact_line(
         plan.sections.append(
             (node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
         )
-        plan.section_names.append(f"contact line {start:g}-{end:g} km")
+        plan.section_names.append(f"{CONTACT_LINE} {start:g}-{end:g} km")
 
 
 def _lay_high_voltage_line(
@@ -139,16 +161,17 @@ def _lay_high_voltage_line(
     level = si(high_voltage, "base_kv") / BASE_VOLTAGE_V
     kind = high_voltage.type
     per_m = complex(si(kind, "r_ohm_per_km"), si(kind, "x_ohm_per_km")) / level**2
-    node = {km: plan.add_node("high-voltage line", km, level) for km in stands}
+    node = {km: plan.add_node(HIGH_VOLTAGE_LINE, km, level) for km in stands}
     for km in stands:
         unit = high_voltage.station_transformer if km in stations else high_voltage.line_transformer
         impedance = complex(si(unit, "r_ohm"), si(unit, "x_ohm"))
         if km not in stations:
             impedance += _connection_impedance(supply.catenary)
-        plan.add_branch(f"transformer {km:g} km", feeding[km], node[km], impedance)
+        plan.add_branch(TRANSFORMER, f"{km:g} km", feeding[km], node[km], impedance)
     for start, end in zip(stands, stands[1:], strict=False):
-        name = f"high-voltage line {start:g}-{end:g} km"
-        plan.add_branch(name, node[start], node[end], per_m * (end - start) * 1e3, level)
+        impedance = per_m * (end - start) * 1e3
+        name = f"{start:g}-{end:g} km"
+        plan.add_branch(HIGH_VOLTAGE_LINE, name, node[start], node[end], impedance, level)
 
 
 def _sources(plan: SupplyPlan, stations: tuple[ConverterStation, ...]) -> Any:

@@ -99,4 +99,10 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "station": ("station", list(layout.stations), of("", "converter station")),
         "station_position": ("station", np.array(layout.station_m), of("m", "position")),
         "branch": ("branch", plan.branch_labels(), of("", "branch")),
+        "branch_kind": ("branch", plan.branch_kind_of_each(), of("", "what the branch is")),
+        "branch_resistance": (
+            "branch",
+            np.array(plan.branch_resistance_ohm()),
+            of("ohm", "resistance of a lumped branch, at its own level"),
+        ),
     }
