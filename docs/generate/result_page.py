@@ -41,9 +41,6 @@ value is constant from that instant to the next, so it is NaN at the last one. A
 on the line is NaN; its `train_state` is -1. Each variable carries its unit (`units`) and its
 meaning (`long_name`)."""
 
-ENERGY_UNITS = {"_mwh": "MWh", "_mvarh": "MVArh", "_mw": "MW", "_s": "s"}
-"""Suffixes that no scenario uses."""
-
 STATES = "`train_state` has the values"
 
 TABLES = """## Tables
@@ -174,13 +171,8 @@ def _described(meanings: Mapping[str, str], found: Any, head: str) -> str:
     """Table of names, units and meanings; what is found and what is described must agree."""
     if set(meanings) != set(found):
         raise SystemExit(f"{head}s without meaning or gone: {set(meanings) ^ set(found)}")
-    rows = [(f"`{name}`", _unit(name), meanings[name]) for name in found]
+    rows = [(f"`{name}`", label(name), meanings[name]) for name in found]
     return table((head, "unit", "meaning"), rows)
-
-
-def _unit(name: str) -> str:
-    further = (unit for suffix, unit in ENERGY_UNITS.items() if name.endswith(suffix))
-    return label(name) or next(further, "")
 
 
 def _audit() -> str:

@@ -11,6 +11,7 @@ from tpss.clock import clock_of
 from tpss.model import build_model
 from tpss.model.build import Layout, steps_of
 from tpss.model.traffic import build_services
+from tpss.results import store
 from tpss.results.audit import audit
 from tpss.results.dataset import build_dataset
 from tpss.results.result import Result
@@ -104,11 +105,13 @@ def _result(
 
     dataset = build_dataset(outcome, model, layout)
     checked = audit(outcome, model, np.array(layout.supply.node_level))
-    summary = summarise(scenario, outcome, model, dataset, checked)
+    version = {store.FORMAT_KEY: store.FORMAT}
+    summary = {**version, **summarise(scenario, outcome, model, dataset, checked)}
     summary["simulation_s"] = elapsed_s
     summary["provenance"] = provenance()
     energy = summary["station_energy_mwh"]
     dataset.attrs = {
+        **version,
         "title": scenario.name,
         "status": outcome.status,
         "time_step_s": model.options.step_s,
@@ -120,4 +123,6 @@ def _result(
         "audit": json.dumps(summary["audit"]),
         **summary["provenance"],
     }
-    return Result(scenario, dataset, summary)
+    result = Result(scenario, dataset, summary)
+    summary["standards"] = result.standards.as_dict()
+    return result

@@ -1,6 +1,7 @@
 """The result of a simulation."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results import store, tables
+from tpss.results.standards.evidence import Evidence, gather
 from tpss.scenario.scenario import Scenario
 
 
@@ -50,6 +52,29 @@ class Result:
     def stations(self) -> pd.DataFrame:
         """One row a converter station: energy, peaks, loading, converters."""
         return tables.stations(self.dataset)
+
+    @cached_property
+    def standards(self) -> Evidence:
+        """Key figures by the definitions of the standards: voltages, energies, loads, violations."""
+        return gather(self.dataset, self.scenario)
+
+    def with_standards(self, changes: Mapping[str, Any]) -> "Result":
+        """The same run, judged otherwise.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            Key paths below the scenario's ``standards``, such as ``"peak_from_min"`` or
+            ``"voltage_limits.umin1_kv"``, and their new values; None takes a key out.
+
+        Raises
+        ------
+        ScenarioError
+            The changed scenario has faults.
+        """
+        paths = {f"standards.{path}": value for path, value in changes.items()}
+        judged = replace(self, scenario=self.scenario.with_(paths))
+        return replace(judged, summary={**self.summary, "standards": judged.standards.as_dict()})
 
     def save(self, folder: str | Path | None = None, *, force: bool = False) -> Path:
         """Save into a folder, which is written whole or not at all.

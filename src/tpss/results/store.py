@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import tomli_w
 import xarray as xr
@@ -18,6 +19,12 @@ from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
 
 DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
+
+FORMAT_KEY, FORMAT = "result_format", 1
+"""Name and value of what a result says of the way in which it is written.
+
+It grows when something is renamed, taken away or newly relied upon, not when something is added.
+"""
 
 TRIAL_BYTES = 2**16
 """A disk without room for so much is full."""
@@ -167,11 +174,14 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
             "tpss run has written"
         )
     try:
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        _demand_this_format(folder, summary)
+        with h5py.File(folder / DATASET) as file:
+            dict(file.attrs)  # h5netcdf leaves a traceback where they cannot be read
         with xr.open_dataset(folder / DATASET, engine="h5netcdf") as stored:
             dataset = stored.load()
-        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         scenario = load_scenario(folder / SCENARIO)
-        _demand_a_result(dataset, summary)
+        _demand_a_result(dataset)
         # An attribute of one number comes back as that number.
         dataset.attrs["station_energy_mwh"] = np.atleast_1d(dataset.attrs["station_energy_mwh"])
     except (OSError, ValueError, KeyError, RuntimeError, ScenarioError) as error:
@@ -179,9 +189,24 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     return scenario, dataset, summary
 
 
-def _demand_a_result(dataset: xr.Dataset, summary: Any) -> None:
-    """Raise a `ValueError` if the files are sound, but not those of a result."""
+def _demand_this_format(folder: Path, summary: Any) -> None:
+    """Raise a `ResultError` if another version has written the result."""
     if not isinstance(summary, dict) or not {"status", "audit"} <= set(summary):
         raise ValueError(f"{SUMMARY} is not the summary of a run")
+    written = summary.get(FORMAT_KEY)
+    if written != FORMAT:
+        provenance = summary.get("provenance")
+        maker = provenance.get("tpss_version") if isinstance(provenance, dict) else None
+        raise ResultError(
+            f"{folder} was written by another version of TPSS ({maker or 'unknown'}): its format is "
+            f"{written or 'older than any number'}, this version reads {FORMAT}; run the scenario "
+            f"again (tpss run {folder / SCENARIO}), or read it with that version"
+        )
+
+
+def _demand_a_result(dataset: xr.Dataset) -> None:
+    """Raise a `ValueError` if a dataset is sound, but not that of a result."""
     if not {"position", "pantograph_voltage", "station_active_power"} <= set(dataset.data_vars):
         raise ValueError(f"{DATASET} is not the dataset of a run")
+    if dataset.attrs.get(FORMAT_KEY) != FORMAT:
+        raise ValueError(f"{DATASET} and {SUMMARY} are not of the same version")

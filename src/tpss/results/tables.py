@@ -1,6 +1,7 @@
 """Tables that a traction engineer reads: a row a train, a row a station."""
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
@@ -14,14 +15,13 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     """
     h = step_s(dataset)
     time_min = dataset.time.to_numpy() / 60.0
-    position_km = dataset.position.to_numpy() / 1e3
+    position_km, way_km = dataset.position.to_numpy() / 1e3, distance_km(dataset)
     voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
     lowest = np.argmin(np.where(np.isfinite(voltage_kv), voltage_kv, np.inf), axis=0)
     each = np.arange(dataset.sizes["train"])
     drawn = np.isfinite(voltage_kv).any(axis=0)
     departure_min = dataset.departure_time.to_numpy() / 60.0
     arrival_min = dataset.arrival_time.to_numpy() / 60.0
-    distance_km = np.nan_to_num(np.nanmax(position_km, axis=0) - np.nanmin(position_km, axis=0))
     moving_min = np.isfinite(voltage_kv).sum(axis=0) * h / 60.0
     return pd.DataFrame(
         {
@@ -30,8 +30,8 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
             "departure_min": departure_min,
             "arrival_min": arrival_min,
             "trip_min": arrival_min - departure_min,
-            "distance_km": distance_km,
-            "mean_speed_kmh": distance_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
+            "distance_km": way_km,
+            "mean_speed_kmh": way_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
             "energy_mwh": np.nansum(dataset.active_power.to_numpy(), axis=0) * h / J_PER_MWH,
             "lowest_voltage_kv": np.where(drawn, voltage_kv[lowest, each], np.nan),
             "lowest_voltage_km": np.where(drawn, position_km[lowest, each], np.nan),
@@ -64,6 +64,13 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
             "mean_converters": np.nansum(converters, axis=0) / steps,
         }
     ).replace(-np.inf, np.nan)
+
+
+def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
+    """Way of each train within the run. [km]"""
+    position_m = dataset.position.to_numpy()
+    way_m = np.nanmax(position_m, axis=0) - np.nanmin(position_m, axis=0)
+    return np.asarray(np.nan_to_num(way_m) / 1e3)
 
 
 def step_s(dataset: xr.Dataset) -> float:

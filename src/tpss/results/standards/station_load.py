@@ -1,0 +1,42 @@
+"""What converter stations carry: mean powers, the load duration curve, converters running."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from tpss.results.standards.windows import WINDOWS_MIN, highest_mean_table, step_values
+from tpss.results.tables import step_s
+
+
+def power_table(dataset: xr.Dataset, windows_min: Iterable[float] = WINDOWS_MIN) -> pd.DataFrame:
+    """A row a station and window: highest mean active power, and when. The time step gives the peak."""
+    power_mw = step_values(dataset, "station_active_power") / 1e6
+    names = {"station": dataset.station.to_numpy()}
+    table = highest_mean_table(power_mw, names, step_s(dataset), windows_min)
+    return table.rename(columns={"highest": "highest_mean_mw"})
+
+
+def load_duration_table(dataset: xr.Dataset) -> pd.DataFrame:
+    """The load duration curve of each station: the power that it reaches for a time, or exceeds."""
+    power_mw = step_values(dataset, "station_active_power") / 1e6
+    steps, stations = power_mw.shape
+    return pd.DataFrame(
+        {
+            "station": np.repeat(dataset.station.to_numpy(), steps),
+            "duration_min": np.tile(np.arange(1.0, steps + 1.0), stations) * step_s(dataset) / 60.0,
+            "power_mw": -np.sort(-power_mw, axis=0).T.ravel(),
+        }
+    )
+
+
+def converter_table(dataset: xr.Dataset) -> pd.DataFrame:
+    """A row a station and number of converters: how long so many were running."""
+    running, h = step_values(dataset, "active_converters"), step_s(dataset) / 60.0
+    rows = [
+        (str(station), int(number), int(steps) * h)
+        for station, column in zip(dataset.station.to_numpy(), running.T, strict=True)
+        for number, steps in zip(*np.unique(column, return_counts=True), strict=True)
+    ]
+    return pd.DataFrame(rows, columns=["station", "converters", "duration_min"])

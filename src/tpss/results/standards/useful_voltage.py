@@ -1,0 +1,119 @@
+"""Mean useful voltage of zones and trains, and the dimensioning train.
+
+The mean useful voltage of a zone is the mean of the voltage at the pantograph over all trains and time
+steps in that zone, whatever the trains do.  That of a train is the mean over the steps in which its
+tractive effort is positive.  The train with the lowest one is the dimensioning train.  All of it is
+taken in the peak window.
+
+References
+----------
+[EN50388]_
+"""
+
+import math
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from tpss.results.standards.windows import TOLERANCE, Floats, step_values
+from tpss.results.tables import step_s
+
+LEAST_PRESENCE_S = 60.0
+"""A train that is present for less is not a dimensioning train. [s]"""
+
+FAST_KMH = 200.0
+"""A line with speeds above it is judged by a higher mean useful voltage. [km/h]"""
+
+REACHED, MISSED = "reached", "below the minimum"
+
+
+class Stretch(NamedTuple):
+    """A zone of the line."""
+
+    name: str
+    from_km: float
+    to_km: float
+
+
+def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
+    """Stretches of line between converter stations, and from the outer ones to the line's ends."""
+    ends_km = (0.0, float(dataset.node_position.max()) / 1e3)
+    named = dict.fromkeys(ends_km, "") | dict(
+        zip(dataset.station_position.to_numpy() / 1e3, dataset.station.to_numpy(), strict=True)
+    )
+    points = sorted(named)
+    label = {km: str(named[km]) or f"{km:g} km" for km in points}
+    return [
+        Stretch(f"{label[begin]}-{label[end]}", float(begin), float(end))
+        for begin, end in zip(points, points[1:], strict=False)
+    ]
+
+
+def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) -> slice | None:
+    """Steps that begin within a window; None if the run does not cover it."""
+    steps, h = dataset.sizes["time"] - 1, step_s(dataset) / 60.0
+    begin = math.ceil(from_min / h - TOLERANCE)
+    end = steps if to_min is None else math.ceil(to_min / h - TOLERANCE)
+    return slice(begin, end) if begin < end <= steps else None
+
+
+def zone_table(
+    dataset: xr.Dataset, zones: Iterable[Stretch], window: slice | None, least_kv: float | None
+) -> pd.DataFrame:
+    """A row a zone: its mean useful voltage, from how many trains, against the minimum.
+
+    A zone includes its beginning, and the line's end belongs to the last zone before it.
+    """
+    chosen = slice(0) if window is None else window
+    voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
+    position_km = dataset.position.to_numpy()[:-1][chosen] / 1e3
+    end_km = float(dataset.node_position.max()) / 1e3
+    rows = []
+    for zone in zones:
+        upto = np.inf if zone.to_km >= end_km else zone.to_km
+        inside = np.isfinite(voltage) & (position_km >= zone.from_km) & (position_km < upto)
+        mean = float(voltage[inside].mean()) if inside.any() else math.nan
+        rows.append((*zone, int(inside.any(axis=0).sum()), mean))
+    names, begins, ends, trains, means = zip(*rows, strict=True)
+    columns = {"zone": names, "from_km": begins, "to_km": ends, "trains": trains}
+    return pd.DataFrame({**columns, **_judged(np.array(means), least_kv)})
+
+
+def train_table(dataset: xr.Dataset, window: slice | None, least_kv: float | None) -> pd.DataFrame:
+    """A row a train: how long it is present and pulls, its mean useful voltage, against the minimum."""
+    chosen, h = slice(0) if window is None else window, step_s(dataset) / 60.0
+    voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
+    present = np.isfinite(voltage)
+    pulls = present & (step_values(dataset, "tractive_force")[chosen] > 0.0)
+    steps = pulls.sum(axis=0)
+    total = np.where(pulls, voltage, 0.0).sum(axis=0)
+    mean: Floats = total / np.where(steps > 0, steps, np.nan)
+    present_min = present.sum(axis=0) * h
+    return pd.DataFrame(
+        {
+            "train": dataset.train.to_numpy(),
+            "present_min": present_min,
+            "traction_min": steps * h,
+            "counts": present_min >= LEAST_PRESENCE_S / 60.0 - TOLERANCE,
+            **_judged(mean, least_kv),
+        }
+    )
+
+
+def _judged(means_kv: Floats, least_kv: float | None) -> dict[str, Any]:
+    """Means, minimum and a verdict, which is empty where there is nothing to judge."""
+    least = math.nan if least_kv is None else least_kv
+    verdict = np.where(means_kv >= least, REACHED, np.where(means_kv < least, MISSED, ""))
+    return {"mean_useful_kv": means_kv, "minimum_kv": least, "verdict": verdict.astype(object)}
+
+
+def dimensioning_train(trains: pd.DataFrame) -> tuple[str, float] | None:
+    """The train with the lowest mean useful voltage [kV] of those that count, if any pulls."""
+    means = np.where(trains.counts.to_numpy(), trains.mean_useful_kv.to_numpy(), np.nan)
+    if not np.isfinite(means).any():
+        return None
+    i = int(np.nanargmin(means))
+    return str(trains.train.to_numpy()[i]), float(means[i])

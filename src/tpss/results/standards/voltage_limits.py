@@ -1,0 +1,157 @@
+"""Voltages at the pantograph against the limits of EN 50163.
+
+Below Umin1 a train may be for two minutes at a stretch, above Umax1 for five; below Umin2 and above
+Umax2 never.  Time is counted in time steps, as the voltage is one number a step.
+
+References
+----------
+[EN50163]_
+"""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+import xarray as xr
+
+from tpss.results.standards.windows import TOLERANCE, Floats, step_values
+from tpss.results.tables import step_s
+from tpss.scenario.standards import VoltageLimits
+
+WITHIN = "within the limits"
+
+
+class Bound(NamedTuple):
+    """A limit of the voltage, and for how long a train may be beyond it."""
+
+    name: str
+    limit_kv: float
+    side: str
+    """Where a train is that keeps to it not: "below" or "above"."""
+    allowed_min: float
+
+    def is_beyond(self, voltage_v: Floats) -> npt.NDArray[np.bool_]:
+        """Whether voltages are beyond the limit; those that are not numbers are not."""
+        limit_v = 1e3 * self.limit_kv
+        return voltage_v < limit_v if self.side == "below" else voltage_v > limit_v
+
+    @property
+    def rule(self) -> str:
+        """What a violation is, in words."""
+        longest = f" for more than {self.allowed_min:g} min" if self.allowed_min else ""
+        return f"{self.side} {self.name}{longest}"
+
+
+def bounds(limits: VoltageLimits) -> tuple[Bound, ...]:
+    """The four limits, those that no train may pass first."""
+    return (
+        Bound("Umin2", limits.umin2_kv, "below", 0.0),
+        Bound("Umax2", limits.umax2_kv, "above", 0.0),
+        Bound("Umin1", limits.umin1_kv, "below", limits.longest_low_min),
+        Bound("Umax1", limits.umax1_kv, "above", limits.longest_high_min),
+    )
+
+
+class Excursion(NamedTuple):
+    """A stretch of time that a train was beyond a limit."""
+
+    train: str
+    limit: str
+    limit_kv: float
+    from_min: float
+    to_min: float
+    duration_min: float
+    cut: bool
+    """Whether the run began or ended in it, so that it may have been longer."""
+    from_km: float
+    to_km: float
+    extreme_kv: float
+    extreme_km: float
+    extreme_min: float
+    allowed_min: float
+    violation: bool
+
+    @property
+    def is_low(self) -> bool:
+        """Whether the voltage was too low, not too high."""
+        return self.extreme_kv < self.limit_kv
+
+
+def find_excursions(dataset: xr.Dataset, limits: VoltageLimits) -> list[Excursion]:
+    """Every stretch of time that a train was beyond a limit: how long, where, and how far."""
+    return [each for bound in bounds(limits) for each in _of_bound(dataset, bound)]
+
+
+def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
+    voltage, h = step_values(dataset, "pantograph_voltage"), step_s(dataset) / 60.0
+    position_km, names = dataset.position.to_numpy() / 1e3, dataset.train.to_numpy()
+    for train, begin, end in _spells(bound.is_beyond(voltage)):
+        within = voltage[begin:end, train]
+        worst = begin + int(within.argmin() if bound.side == "below" else within.argmax())
+        yield Excursion(
+            train=str(names[train]),
+            limit=bound.name,
+            limit_kv=bound.limit_kv,
+            from_min=begin * h,
+            to_min=end * h,
+            duration_min=(end - begin) * h,
+            cut=begin == 0 or end == len(voltage),
+            from_km=float(position_km[begin, train]),
+            to_km=float(position_km[end, train]),
+            extreme_kv=float(voltage[worst, train]) / 1e3,
+            extreme_km=float(position_km[worst, train]),
+            extreme_min=worst * h,
+            allowed_min=bound.allowed_min,
+            violation=_is_too_long(end - begin, bound, h),
+        )
+
+
+def _spells(beyond: npt.NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    """Column, first row and row after the last of every unbroken run of true values."""
+    change = np.diff(np.pad(beyond, ((1, 1), (0, 0))).astype(np.int8), axis=0).T
+    begins, ends = np.argwhere(change == 1), np.argwhere(change == -1)
+    return [
+        (train, begin, int(end[1]))
+        for (train, begin), end in zip(begins.tolist(), ends, strict=True)
+    ]
+
+
+def _is_too_long(steps: int, bound: Bound, step_min: float) -> bool:
+    return steps > bound.allowed_min / step_min + TOLERANCE
+
+
+def voltage_table(
+    dataset: xr.Dataset, found: Iterable[Excursion], limits: VoltageLimits
+) -> pd.DataFrame:
+    """A row a train: lowest and highest voltage, time beyond each limit, longest stretch, verdict."""
+    voltage = step_values(dataset, "pantograph_voltage")
+    known = np.isfinite(voltage)
+    names = dataset.train.to_numpy()
+    reasons: list[dict[str, None]] = [{} for _ in names]
+    place = {str(name): i for i, name in enumerate(names)}
+    times: dict[str, Floats] = {}
+    for bound in bounds(limits):
+        key = f"{bound.side}_{bound.name.lower()}_min"
+        total = times[key] = np.zeros(len(names))
+        longest = times[f"longest_{key}"] = np.zeros(len(names))
+        for each in (each for each in found if each.limit == bound.name):
+            i = place[each.train]
+            total[i] += each.duration_min
+            longest[i] = max(longest[i], each.duration_min)
+            if each.violation:
+                reasons[i][bound.rule] = None
+    lowest = np.where(known, voltage, np.inf).min(axis=0, initial=np.inf)
+    highest = np.where(known, voltage, -np.inf).max(axis=0, initial=-np.inf)
+    seen = np.isfinite(lowest)
+    verdict = ["; ".join(why) or WITHIN for why in reasons]
+    return pd.DataFrame(
+        {
+            "train": names,
+            "lowest_kv": np.where(seen, lowest, np.nan) / 1e3,
+            "highest_kv": np.where(seen, highest, np.nan) / 1e3,
+            **times,
+            "verdict": np.where(seen, np.array(verdict, dtype=object), ""),
+        }
+    )

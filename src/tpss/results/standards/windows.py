@@ -1,0 +1,110 @@
+"""Means over windows of time, of values that hold from an instant to the next.
+
+The integral of such values is a straight line between two instants, so every mean here is exact, whether
+or not a window is a whole number of time steps.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+import xarray as xr
+
+Floats = npt.NDArray[np.float64]
+
+WINDOWS_MIN = (1.0, 3.0, 15.0, 60.0)
+"""Windows of the highest mean powers and currents. [min]"""
+
+TOLERANCE = 1e-9
+"""Share of a time step by which a window may miss an instant."""
+
+
+def step_values(dataset: xr.Dataset, name: str) -> Floats:
+    """Values of an interval variable, shape (steps, ...), without the last instant."""
+    return np.asarray(dataset[name].to_numpy()[:-1], dtype=float)
+
+
+def table_of(rows: Sequence[tuple[Any, ...]], kind: type[Any]) -> pd.DataFrame:
+    """Table of rows that are named tuples of a kind, its columns of their types even without a row."""
+    types = {"str": object, "float": float, "bool": bool}
+    return pd.DataFrame(
+        {
+            name: np.array([row[i] for row in rows], dtype=types[annotation.__name__])
+            for i, (name, annotation) in enumerate(kind.__annotations__.items())
+        }
+    )
+
+
+def integrals(values: Floats) -> Floats:
+    """Integral from the start to every instant, in values times steps, shape (steps + 1, columns)."""
+    return np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
+
+
+def between_instants(integral: Floats, steps: Floats) -> Floats:
+    """An integral at times that are given in steps and need not be whole, shape (times, columns)."""
+    before = np.clip(steps.astype(int), 0, max(len(integral) - 2, 0))
+    after = np.minimum(before + 1, len(integral) - 1)
+    part = (steps - before)[:, None]
+    return np.asarray((1.0 - part) * integral[before] + part * integral[after])
+
+
+def highest_means(values: Floats, width: float) -> tuple[Floats, Floats]:
+    """Highest mean of each column over a moving window, and where that window begins.
+
+    The mean over a window is a straight line between the places where an end of the window meets an
+    instant, so it is highest at one of them.
+
+    Parameters
+    ----------
+    values : Floats, shape (steps, columns)
+        Values that hold for a time step.
+    width : float
+        Width of the window, in steps.
+
+    Returns
+    -------
+    highest, begin : Floats, shape (columns,)
+        Begin in steps. NaN where the window is wider than there are steps.
+    """
+    steps, columns = values.shape
+    if steps == 0 or width > steps + TOLERANCE:
+        return np.full(columns, np.nan), np.full(columns, np.nan)
+    width = min(width, float(steps))
+    instants = np.arange(steps + 1.0)
+    begins = np.concatenate([instants, instants - width])
+    begins = np.unique(begins[(begins >= -TOLERANCE) & (begins + width <= steps + TOLERANCE)])
+    begins = np.clip(begins, 0.0, steps - width)
+    integral = integrals(values)
+    areas = between_instants(integral, begins + width) - between_instants(integral, begins)
+    first = areas.argmax(axis=0)
+    return areas[first, np.arange(columns)] / width, begins[first]
+
+
+def highest_mean_table(
+    values: Floats, names: dict[str, Sequence[str]], step_s: float, windows_min: Iterable[float]
+) -> pd.DataFrame:
+    """Highest mean of each column over a step and over windows: a row a column and window.
+
+    Parameters
+    ----------
+    values : Floats, shape (steps, columns)
+    names : dict of str to sequence
+        Columns of the table that say what the columns of the values are.
+    step_s : float
+        Length of a time step. [s]
+    windows_min : iterable of float
+        Windows beside the time step itself. [min]
+    """
+    widths = sorted({step_s / 60.0, *windows_min})
+    found = [highest_means(values, width * 60.0 / step_s) for width in widths]
+    table = {key: np.repeat(list(column), len(widths)) for key, column in names.items()}
+    return pd.DataFrame(
+        {
+            **table,
+            "window_min": np.tile(widths, values.shape[1]),
+            "highest": np.array([means for means, _ in found]).T.ravel(),
+            "from_min": np.array([begins for _, begins in found]).T.ravel() * step_s / 60.0,
+        }
+    )
