@@ -84,6 +84,9 @@ def run(
             show_default=False,
         ),
     ] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Write report.html into the result folder too.")
+    ] = False,
 ) -> None:
     """Simulate a scenario, print what matters, and save the result.
 
@@ -92,7 +95,39 @@ def run(
     """
     from tpss.cli.run import run_scenario
 
-    raise typer.Exit(run_scenario(file, out, set_ or [], force, quiet, show))
+    raise typer.Exit(run_scenario(file, out, set_ or [], force, quiet, show, report))
+
+
+@app.command(
+    epilog="Examples:  tpss report results/thesis-160km-001, tpss report results/a results/b"
+)
+def report(
+    results: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RESULT...",
+            help="Folder that tpss run has written; several are compared side by side.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="HTML file to write; by default report.html in the result folder, or for several "
+            "results comparison.html here.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing report.")] = False,
+) -> None:
+    """Write a report of a result, or a comparison of several, into one HTML file.
+
+    It holds summary, plots, tables, audit and scenario, opens in any browser without a network, and
+    prints.
+    """
+    from tpss.cli.report import report_results
+
+    report_results(results, out, force)
 
 
 @app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")

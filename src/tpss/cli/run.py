@@ -25,7 +25,13 @@ DONE, BAD_INPUT, NO_SOLUTION, AUDIT_FAILED, INTERRUPTED = 0, 2, 3, 4, 130
 
 
 def run_scenario(
-    file: Path, out: Path | None, assignments: list[str], force: bool, quiet: bool, show: str | None
+    file: Path,
+    out: Path | None,
+    assignments: list[str],
+    force: bool,
+    quiet: bool,
+    show: str | None,
+    report: bool,
 ) -> int:
     """Run a scenario file; return the exit code."""
     from tpss.results import store
@@ -41,7 +47,7 @@ def run_scenario(
         print("Interrupted; nothing was saved.", file=sys.stderr)
         return INTERRUPTED
     try:
-        return _report(ended, quiet, show)
+        return _report(ended, quiet, show, report)
     except KeyboardInterrupt:
         if not ended.fault:
             print(f"Interrupted.  The result lies in {ended.folder}", file=sys.stderr)
@@ -137,9 +143,10 @@ def _save_elsewhere(result: "Result") -> Path:
         raise
 
 
-def _report(ended: _Ended, quiet: bool, show: str | None) -> int:
+def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
     """Print what matters; return the exit code."""
     from tpss.cli import tables
+    from tpss.cli.report import write_report_of
 
     result, known = ended.result, ended.result.dataset.train.to_numpy().tolist()
     if not quiet or ended.folder is None:
@@ -152,6 +159,10 @@ def _report(ended: _Ended, quiet: bool, show: str | None) -> int:
             console.print(saved, highlight=False, soft_wrap=True, markup=False)
         if ended.interrupted and result.status != "interrupted":
             console.print("Interrupted when the run had ended: the result is whole.")
+    if report and ended.folder is not None:
+        file = write_report_of(result, ended.folder, force=False)
+        if not quiet:
+            print(f"Wrote {file}")
     if ended.fault:
         return BAD_INPUT
     if show is not None and show not in known:

@@ -12,21 +12,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from tpss.results.explain import warnings
 from tpss.results.result import Result
 
 MOST_TRAINS = 30
-
-_LIMITED = {
-    "effort_extrapolated": "the tractive-effort network was used outside its training range, or a table "
-    "outside its speeds or voltages",
-    "effort_clipped": "the tractive-effort network was negative and cut to 0",
-    "bridge_extrapolated": "the reactive-power network was used outside its training range",
-    "bridge_clipped": "the reactive-power network left 0 to 1 and was cut",
-    "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
-    "curve outside its speeds",
-    "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
-    "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
-}
 
 
 def print_result(result: Result, console: Console) -> None:
@@ -163,15 +152,6 @@ def key_figures(summary: dict[str, Any]) -> list[str]:
     )
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
     return lines
-
-
-def warnings(summary: dict[str, Any]) -> list[str]:
-    """What was limited or left its range, in words."""
-    return [
-        f"{_LIMITED[name]}, in {count} train-steps"
-        for name, count in summary["limited"].items()
-        if count
-    ]
 
 
 def print_train(result: Result, name: str, console: Console) -> None:

@@ -1,1 +1,1 @@
-"""What a reader is shown of results: figures."""
+"""Figures and reports of results."""

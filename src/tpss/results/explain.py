@@ -1,4 +1,6 @@
-"""Why a run ended early, and what would help, in words."""
+"""What a run met, in words: why it ended early, what would help, what was limited."""
+
+from typing import Any
 
 import numpy as np
 
@@ -6,6 +8,18 @@ from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.newton import LOWEST_VOLTAGE
 from tpss.simulation.run import INTERRUPTED, Outcome
 from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
+
+_LIMITED = {
+    "effort_extrapolated": "the tractive-effort network was used outside its training range, or a table "
+    "outside its speeds or voltages",
+    "effort_clipped": "the tractive-effort network was negative and cut to 0",
+    "bridge_extrapolated": "the reactive-power network was used outside its training range",
+    "bridge_clipped": "the reactive-power network left 0 to 1 and was cut",
+    "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
+    "curve outside its speeds",
+    "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
+    "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
+}
 
 
 def explain(outcome: Outcome, model: Model) -> dict[str, str]:
@@ -74,3 +88,12 @@ def _stall(outcome: Outcome, time_min: float) -> dict[str, str]:
         "try a shorter one."
     )
     return {"problem": problem, "advice": advice}
+
+
+def warnings(summary: dict[str, Any]) -> list[str]:
+    """What was limited or left its range, in words."""
+    return [
+        f"{_LIMITED[name]}, in {count} train-steps"
+        for name, count in summary["limited"].items()
+        if count
+    ]

@@ -1,0 +1,90 @@
+"""Voltage all along the contact line, between what was recorded at trains and feeding points.
+
+Between two neighbouring points that draw or feed, the current in the contact line is the same
+everywhere, so the voltage phasor is a straight line; only the line's capacitance bends it, by a few
+volts.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from tpss.report.sampling import Floats
+
+MOST_POSITIONS = 240
+MOST_TIMES = 320
+"""Cells of the map of voltages, along the line and over time."""
+
+ON_THE_LINE = "contact line"
+"""How the names of the nodes on the contact line begin."""
+
+
+@dataclass(frozen=True)
+class LineVoltage:
+    """Voltage along the contact line over a run.
+
+    Attributes
+    ----------
+    position_km : array, shape (positions,)
+    lowest_kv, mean_kv, highest_kv : array, shape (positions,)
+        Over all time steps; the lowest and the highest also over the trains near each position.
+    time_min : array, shape (times,)
+        When each column of the map begins.
+    map_kv : array, shape (positions, times)
+        Lowest voltage of the time steps that a column stands for.
+    steps_a_column : int
+        How many those are.
+    """
+
+    position_km: Floats
+    lowest_kv: Floats
+    mean_kv: Floats
+    highest_kv: Floats
+    time_min: Floats
+    map_kv: Floats
+    steps_a_column: int
+
+
+def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
+    """Voltage along the contact line; None for a run without a time step."""
+    steps = dataset.sizes["time"] - 1
+    if steps < 1:
+        return None
+    on_line = np.char.startswith(dataset.node.to_numpy().astype(str), ON_THE_LINE)
+    node_m = dataset.node_position.to_numpy()[on_line]
+    position_m = np.linspace(node_m.min(), node_m.max(), MOST_POSITIONS)
+    node_v = _phasors(dataset, "node")[:steps, on_line]
+    train_m, train_v = dataset.position.to_numpy()[:steps], _phasors(dataset, "pantograph")[:steps]
+    per_column = -(-steps // MOST_TIMES)
+    lowest, highest = np.full(MOST_POSITIONS, np.inf), np.full(MOST_POSITIONS, -np.inf)
+    total = np.zeros(MOST_POSITIONS)
+    columns = np.full((-(-steps // per_column), MOST_POSITIONS), np.inf)
+    for k in range(steps):
+        there = np.isfinite(train_v[k])
+        at_m = np.concatenate([node_m, train_m[k, there]])
+        at_v = np.concatenate([node_v[k], train_v[k, there]])
+        order = np.argsort(at_m, kind="stable")
+        volts = np.abs(np.interp(position_m, at_m[order], at_v[order]))
+        total += volts
+        row = columns[k // per_column]
+        np.minimum(row, volts, out=row)
+        cell = np.abs(position_m[:, None] - train_m[k, there]).argmin(axis=0)
+        for extreme, worse in ((row, np.minimum), (lowest, np.minimum), (highest, np.maximum)):
+            worse.at(extreme, cell, np.abs(train_v[k, there]))
+        np.maximum(highest, volts, out=highest)
+    np.minimum(lowest, columns.min(axis=0), out=lowest)
+    return LineVoltage(
+        position_km=position_m / 1e3,
+        lowest_kv=lowest / 1e3,
+        mean_kv=total / steps / 1e3,
+        highest_kv=highest / 1e3,
+        time_min=dataset.time.to_numpy()[:steps:per_column] / 60.0,
+        map_kv=columns.T / 1e3,
+        steps_a_column=per_column,
+    )
+
+
+def _phasors(dataset: xr.Dataset, place: str) -> np.ndarray:
+    magnitude, angle = dataset[f"{place}_voltage"], dataset[f"{place}_angle"]
+    return np.asarray(magnitude.to_numpy() * np.exp(1j * angle.to_numpy()))

@@ -1,0 +1,274 @@
+"""A report of results: one HTML file that needs nothing else, to be read, printed and passed on.
+
+Jinja2 fills the page, because it escapes every name and text of a scenario; plotly draws, and its
+program is part of the file.  The page forbids itself all access to the network.
+"""
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import tomli_w
+from plotly.graph_objects import Figure
+from plotly.offline import get_plotlyjs
+
+from tpss.errors import ResultError
+from tpss.report import plots, sampling, tables
+from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.results.audit import LIMITS
+from tpss.results.explain import warnings
+from tpss.results.result import Result
+
+GENERATOR = "TPSS report"
+"""By this the page says what it is, so that nothing else is ever replaced."""
+
+HEAD_BYTES = 2_000
+"""Within these first bytes of the file it says so."""
+
+NAMES = {
+    "finished": "The run finished.",
+    "collapsed": "The line cannot carry its load: the run collapsed.",
+    "stalled": "A train stalled, and ended the run.",
+    "interrupted": "The run was interrupted.",
+}
+
+
+def write_report(
+    results: Result | Mapping[str, Result], file: str | Path, *, force: bool = False
+) -> Path:
+    """Write a report of one result, or a comparison of several, into one HTML file.
+
+    Parameters
+    ----------
+    results : Result or mapping of str to Result
+        A result, or results by the labels under which they are compared.
+    file : path
+        File to write.
+    force : bool
+        Whether a report that is there may be replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ResultError
+        The file exists, or cannot be written.
+    """
+    place = Path(file)
+    check_target(place, force)
+    text = report(results) if isinstance(results, Result) else comparison(results)
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{place.name}-", dir=place.parent) as folder:
+            part = Path(folder) / place.name
+            part.write_text(text, encoding="utf-8")
+            part.replace(place)
+    except OSError as error:
+        message = f"{place} cannot be written: {error.strerror}; give another --out"
+        raise ResultError(message) from error
+    return place
+
+
+def check_target(file: Path, force: bool) -> None:
+    """Raise a `ResultError` if a report may not be written there."""
+    if not os.path.lexists(file):
+        return
+    if not force:
+        raise ResultError(f"{file} exists already; give another --out, or --force to replace it")
+    if not _is_a_report(file):
+        raise ResultError(f"{file} is not a report, so it is not replaced; give another --out")
+
+
+def _is_a_report(file: Path) -> bool:
+    try:
+        with file.open("rb") as opened:
+            return GENERATOR.encode() in opened.read(HEAD_BYTES)
+    except OSError:
+        return False
+
+
+def report(result: Result) -> str:
+    """Page about one result.
+
+    A result whose audit failed is shown without its figures: they cannot be trusted.
+    """
+    trusted = bool(result.audit["passed"])
+    voltage = line_voltage(result.dataset) if trusted else None
+    figures, data = _figures(result, voltage) if voltage else ({}, {})
+    shown = [
+        tables.of_frame("trains", "Trains", result.trips),
+        tables.of_frame("stations", "Converter stations", result.stations),
+    ]
+    return _page(
+        title=result.scenario.name,
+        results={"": result},
+        figures=figures,
+        data=data,
+        tables=shown if trusted else [],
+        key_figures=tables.of_figures({"value": result}) if trusted else None,
+        notes=_notes(result, voltage, bool(data) and data["thinned"]),
+    )
+
+
+def comparison(results: Mapping[str, Result]) -> str:
+    """Page that compares results side by side; curves of results whose audit failed are left out."""
+    trusted = {label: result for label, result in results.items() if result.audit["passed"]}
+    found = {label: (result, line_voltage(result.dataset)) for label, result in trusted.items()}
+    drawn = {label: (result, line) for label, (result, line) in found.items() if line is not None}
+    runs = {label: result for label, (result, _) in drawn.items()}
+    figures = {}
+    if drawn:
+        figures = {
+            "envelopes": plots.envelopes(drawn),
+            "journey": plots.journey(runs),
+            "powers": plots.station_powers(runs),
+            "converters": plots.converters(runs),
+            "losses": plots.losses(runs),
+        }
+    left_out = [f"{label}: nothing to draw" for label in results if label not in drawn]
+    return _page(
+        title=" / ".join(results),
+        results=results,
+        figures=figures,
+        data={},
+        tables=[],
+        key_figures=tables.of_figures(trusted) if trusted else None,
+        notes=[*left_out, *_about_curves(runs)],
+    )
+
+
+def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], dict[str, Any]]:
+    """Figures of a result, and what the page needs to move trains and to show any journey."""
+    runs = {"": result}
+    samples = sampling.sample_trains(result.dataset)
+    names = [train["name"] for train in samples.trains]
+    studied = result.summary["studied_train"]
+    chosen = studied if studied in names else next(iter(names), None)
+    figures = {
+        "moment": plots.line_at_a_moment(result, voltage),
+        "graph": plots.time_distance(result, voltage),
+        "powers": plots.station_powers(runs),
+        "converters": plots.converters(runs),
+        "losses": plots.losses(runs),
+    }
+    if chosen is not None:
+        figures["journey"] = plots.journey(runs, chosen)
+    limits = dict(plots.LIMITS_KV)
+    return figures, {
+        "step_min": result.dataset.attrs["time_step_s"] / 60.0,
+        "steps": result.dataset.sizes["time"] - 1,
+        "trains": samples.trains,
+        "chosen": chosen,
+        "low_kv": limits["Umin1"],
+        "high_kv": limits["Umax1"],
+        "thinned": samples.thinned,
+    }
+
+
+def _notes(result: Result, voltage: LineVoltage | None, trains_thinned: bool) -> list[str]:
+    """What was limited in the run, and what the plots leave out."""
+    notes = warnings(result.summary)
+    if voltage is None:
+        return notes
+    if voltage.steps_a_column > 1:
+        notes.append(
+            f"a column of the time-distance graph shows the lowest voltage of {voltage.steps_a_column} "
+            "time steps"
+        )
+    if trains_thinned:
+        notes.append(
+            "the journeys and the moving trains are drawn from a part of the time steps, which holds "
+            "the lowest and highest speeds and voltages; between them trains move evenly"
+        )
+    return [*notes, *_about_curves({"": result})]
+
+
+def _about_curves(runs: Mapping[str, Result]) -> list[str]:
+    if not plots.is_thinned(runs.values()):
+        return []
+    return [
+        "the curves over time are drawn from a part of the time steps, which holds the lowest and "
+        "highest value of each stretch; the saved result has them all"
+    ]
+
+
+def _page(
+    *,
+    title: str,
+    results: Mapping[str, Result],
+    figures: Mapping[str, Figure],
+    data: Mapping[str, Any],
+    tables: Sequence[tables.Table],
+    key_figures: tables.Table | None,
+    notes: Sequence[str],
+) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("tpss.report", "template"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html").render(
+        generator=GENERATOR,
+        version=version("tpss"),
+        title=title,
+        results=results,
+        single=next(iter(results.values())) if len(results) == 1 else None,
+        troubles=_troubles(results),
+        status_names=NAMES,
+        figures=figures,
+        data=data,
+        tables=tables,
+        key_figures=key_figures,
+        notes=notes,
+        limits=LIMITS,
+        scenarios={label: _as_toml(result) for label, result in results.items()},
+        style=_part("report.css"),
+        script=_part("report.js"),
+        plotly=get_plotlyjs(),
+        report_data=_for_script(figures, data),
+    )
+
+
+def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:
+    """What stands above everything: runs that failed their audit or ended early."""
+    troubles = []
+    for label, result in results.items():
+        failures = result.audit["failures"]
+        if result.status == "finished" and result.audit["passed"]:
+            continue
+        troubles.append(
+            {
+                "label": label,
+                "failures": failures,
+                "audit_failed": not result.audit["passed"],
+                "status": result.status,
+                "problem": result.summary.get("problem", ""),
+                "advice": result.summary.get("advice", ""),
+            }
+        )
+    return troubles
+
+
+def _as_toml(result: Result) -> str:
+    return tomli_w.dumps(result.scenario.as_document())
+
+
+def _part(name: str) -> str:
+    return (files("tpss.report") / "template" / name).read_text(encoding="utf-8")
+
+
+def _for_script(figures: Mapping[str, Figure], data: Mapping[str, Any]) -> str:
+    """The page's data as JSON that cannot end the script element which holds it."""
+    drawn = ",".join(f"{json.dumps(key)}:{figure.to_json()}" for key, figure in figures.items())
+    text = f'{{"plots":{{{drawn}}},"run":{json.dumps(data, separators=(",", ":"))}}}'
+    return text.replace("<", "\\u003c")

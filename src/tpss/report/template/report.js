@@ -1,0 +1,206 @@
+"use strict";
+(() => {
+  const { plots, run } = JSON.parse(document.getElementById("report-data").textContent);
+  const element = (id) => document.getElementById(id);
+  const divs = [...document.querySelectorAll(".plot")];
+  const CONFIG = {
+    responsive: true,
+    displaylogo: false,
+    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+  };
+  const PRINTED_WIDTH = 680;
+  const BLUE = "#0072B2", RED = "#D55E00";
+
+  // ---- plots, and a cursor of time in all that are drawn over time
+
+  const cursors = new Map(); // plot -> number of its cursor among the shapes
+
+  function draw(div) {
+    const { data, layout } = plots[div.id];
+    if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
+    layout.shapes = layout.shapes || [];
+    cursors.set(div, layout.shapes.length);
+    layout.shapes.push({
+      type: "line", xref: "x", yref: "paper", x0: 0, x1: 0, y0: 0, y1: 1,
+      line: { color: "#000000", width: 1.5, dash: "dot" }, visible: false,
+    });
+    return Plotly.newPlot(div, data, layout, CONFIG).then(() => {
+      div.classList.add("drawn");
+      div.on("plotly_hover", (event) => follow(div, event.points[0].x));
+    });
+  }
+
+  function follow(div, x) {
+    const minutes = div.layout.meta === "time" ? x : div.id === "journey" ? timeAt(x) : null;
+    if (minutes !== null) askFor(minutes);
+  }
+
+  function moveCursor(div, x) {
+    const shape = `shapes[${cursors.get(div)}]`;
+    const change = { [`${shape}.visible`]: x !== null };
+    if (x !== null) Object.assign(change, { [`${shape}.x0`]: x, [`${shape}.x1`]: x });
+    Plotly.relayout(div, change);
+  }
+
+  let wanted = null;
+  function askFor(minutes) {
+    if (wanted === null) requestAnimationFrame(() => { const m = wanted; wanted = null; setTime(m); });
+    wanted = minutes;
+  }
+
+  function setTime(minutes) {
+    for (const div of divs) if (div.layout.meta === "time") moveCursor(div, minutes);
+    if (!slider) return;
+    const step = Math.max(0, Math.min(+slider.max, Math.floor(minutes / run.step_min + 1e-6)));
+    slider.value = step;
+    showMoment(step);
+  }
+
+  // ---- the line at a moment
+
+  const slider = element("time");
+
+  // Number of the last sample at or before a step; a train has one for its first and its last step.
+  function sampleAt(train, step) {
+    let low = 0, high = train.step.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (train.step[middle] <= step) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  function trainAt(train, step) {
+    const last = train.step.length - 1;
+    if (step < train.step[0] || step > train.step[last]) return null;
+    const k = sampleAt(train, step), next = Math.min(k + 1, last);
+    const gap = train.step[next] - train.step[k];
+    const part = gap ? (step - train.step[k]) / gap : 0;
+    const between = (values) => values[k] + part * (values[next] - values[k]);
+    return { name: train.name, km: between(train.km), kmh: between(train.kmh), kv: train.kv[k] };
+  }
+
+  function showMoment(step) {
+    const minutes = step * run.step_min;
+    const there = run.trains.map((train) => trainAt(train, step)).filter((t) => t && t.kv !== null);
+    const beyond = there.map((t) => t.kv < run.low_kv || t.kv > run.high_kv);
+    const label = (t) =>
+      `${t.name}<br>${t.km.toFixed(2)} km, ${t.kmh.toFixed(1)} km/h<br>${t.kv.toFixed(2)} kV`;
+    const points = {
+      x: [there.map((t) => t.km)], y: [there.map((t) => t.kv)], text: [there.map(label)],
+      "marker.symbol": [beyond.map((b) => (b ? "triangle-down" : "circle"))],
+      "marker.color": [beyond.map((b) => (b ? RED : BLUE))],
+    };
+    Plotly.restyle("moment", points, [plots.moment.data.length - 1]);
+    const text = `${minutes.toFixed(2)} min`;
+    element("now").textContent = text;
+    slider.setAttribute("aria-valuetext", text);
+    const lowest = there.reduce((a, b) => (a && a.kv <= b.kv ? a : b), null);
+    element("state").textContent = !lowest ? "No train is on the line." :
+      `${there.length} train${there.length > 1 ? "s" : ""} on the line; lowest voltage ` +
+      `${lowest.kv.toFixed(2)} kV, ${lowest.name} at ${lowest.km.toFixed(1)} km.`;
+    const chosen = chosenTrain();
+    if (chosen) {
+      const now = trainAt(chosen, step);
+      const x = element("against").value === "time" ? minutes : now && now.km;
+      moveCursor(element("journey"), now ? x : null);
+    }
+  }
+
+  let playing = 0;
+  function play() {
+    const button = element("play");
+    if (playing) { clearInterval(playing); playing = 0; }
+    else {
+      if (+slider.value >= +slider.max) setTime(0);
+      const stride = Math.max(1, Math.round(run.steps / 400)); // a run takes half a minute at most
+      playing = setInterval(() => {
+        if (+slider.value >= +slider.max) return play();
+        setTime((+slider.value + stride) * run.step_min);
+      }, 80);
+    }
+    button.textContent = playing ? "❚❚ Pause" : "▶ Play";
+    button.setAttribute("aria-pressed", String(Boolean(playing)));
+  }
+
+  // ---- the journey of a train
+
+  function chosenTrain() {
+    const select = element("train");
+    return select && run.trains[select.selectedIndex];
+  }
+
+  function timeAt(km) {
+    const train = slider && chosenTrain();
+    if (!train) return null;
+    const k = train.km.findIndex((there) => there >= km - 1e-3);
+    return k < 0 ? null : train.step[k] * run.step_min;
+  }
+
+  function showJourney() {
+    const train = chosenTrain(), against = element("against").value;
+    const x = against === "time" ? train.step.map((k) => k * run.step_min) : train.km;
+    const div = element("journey");
+    Plotly.restyle(div, { x: [x, x], y: [train.kmh, train.kv], name: train.name }, [0, 1]);
+    Plotly.relayout(div, {
+      meta: against,
+      "xaxis2.title.text": against === "time" ? "time [min]" : "position [km]",
+      "xaxis.autorange": true, "xaxis2.autorange": true,
+    });
+    showMoment(+slider.value);
+  }
+
+  // ---- tables
+
+  function sort(button) {
+    const heading = button.closest("th"), table = heading.closest("table");
+    const column = heading.cellIndex, body = table.tBodies[0];
+    const falling = heading.getAttribute("aria-sort") === "ascending";
+    for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+    heading.setAttribute("aria-sort", falling ? "descending" : "ascending");
+    const value = (row) => row.cells[column].dataset.value;
+    const compare = (a, b) => {
+      if (a === "" || b === "") return (a === "") - (b === ""); // what is missing stands last
+      const order = isNaN(a) || isNaN(b) ? a.localeCompare(b, "en", { numeric: true }) : a - b;
+      return falling ? -order : order;
+    };
+    body.append(...[...body.rows].sort((a, b) => compare(value(a), value(b))));
+  }
+
+  function download(button) {
+    const table = element(button.dataset.table);
+    const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+    const rows = [...table.rows].map((row) =>
+      [...row.cells].map((cell) => quoted(cell.dataset.value ?? cell.textContent.trim())).join(","));
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([rows.join("\n") + "\n"], { type: "text/csv" }));
+    link.download = `${table.id}.csv`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  for (const button of document.querySelectorAll(".sortable thead button"))
+    button.addEventListener("click", () => sort(button));
+  for (const button of document.querySelectorAll(".csv"))
+    button.addEventListener("click", () => download(button));
+
+  // ---- on paper every plot has the width of the page
+
+  addEventListener("beforeprint", () => {
+    for (const div of divs) Plotly.relayout(div, { width: PRINTED_WIDTH });
+  });
+  addEventListener("afterprint", () => {
+    for (const div of divs) Plotly.relayout(div, { width: null, autosize: true });
+  });
+
+  Promise.all(divs.map(draw)).then(() => {
+    if (slider) {
+      slider.addEventListener("input", () => askFor(+slider.value * run.step_min));
+      element("play").addEventListener("click", play);
+      if (element("train")) for (const id of ["train", "against"])
+        element(id).addEventListener("change", showJourney);
+      setTime(0);
+    }
+    document.body.dataset.ready = "true";
+  });
+})();
