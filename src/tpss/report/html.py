@@ -234,7 +234,7 @@ def _page(
         scenarios={label: _as_toml(result) for label, result in results.items()},
         style=_part("report.css"),
         script=_part("report.js"),
-        plotly=get_plotlyjs(),
+        plotly=get_plotlyjs() if figures else "",
         report_data=_for_script(figures, data),
     )
 

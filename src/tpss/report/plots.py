@@ -31,8 +31,11 @@ LIMITS_KV = (
 )
 """Nominal voltage and limits of 15 kV 16.7 Hz systems.  [EN50163]_"""
 
-VOLTAGE_SCALE = ((0.0, "#7A2F00"), (0.25, "#D55E00"), (0.6, "#F0C36D"), (1.0, "#FFFDF5"))
+VOLTAGE_SCALE = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
 """From a low voltage, dark, to a high one: in black and white too."""
+
+LEAST_SPAN_KV = 2.0
+"""Span of that scale at least, so that a voltage that hardly falls does not look like one that does."""
 
 TIME, POSITION = "time [min]", "position [km]"
 
@@ -47,11 +50,14 @@ def time_distance(result: Result, voltage: LineVoltage) -> go.Figure:
         Of this run.
     """
     figure = _figure(["position [km]"], TIME, "time", height=520)
+    lowest, highest = float(voltage.map_kv.min()), float(voltage.map_kv.max())
     figure.add_heatmap(
         x=_single(voltage.time_min + 0.5 * _column_min(result, voltage)),
         y=_single(voltage.position_km),
         z=_single(voltage.map_kv),
         colorscale=VOLTAGE_SCALE,
+        zmin=min(lowest, highest - LEAST_SPAN_KV),
+        zmax=highest,
         colorbar={"title": {"text": "kV"}, "thickness": 12, "len": 0.9},
         hovertemplate="%{x:.1f} min, %{y:.1f} km: %{z:.2f} kV<extra></extra>",
         name="voltage",
@@ -319,7 +325,7 @@ def _mark_limits(figure: go.Figure, shown_kv: Sequence[float]) -> None:
             limit,
             line={"color": "#444444", "width": 1, "dash": "solid" if name == "Un" else "dash"},
             annotation={"text": f"{name} {limit:g} kV", "font": {"size": 11, "color": "#444444"}},
-            annotation_position="top left",
+            annotation_position="top right",
         )
     low = min(LIMITS_KV[-1][1], *map(float, shown_kv)) - 0.5
     figure.update_yaxes(range=[low, LIMITS_KV[0][1] + 0.8])
@@ -339,10 +345,11 @@ def _mark_feeding_points(figure: go.Figure, runs: Sequence[Result]) -> None:
             strict=True,
         )
     }
+    middle_km = 0.5 * (min(nodes) + max(nodes))
     for km, name in places.items():
         figure.add_annotation(
-            x=km, y=0.0, yref="paper", yanchor="bottom", text=name, showarrow=False, textangle=-90,
-            xanchor="left", font={"size": 11, "color": "#444444"},
+            x=km, y=0.0, yref="paper", yanchor="bottom", text=name, showarrow=False,
+            xanchor="left" if km <= middle_km else "right", font={"size": 11, "color": "#444444"},
         )  # fmt: skip
 
 

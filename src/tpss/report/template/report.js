@@ -3,23 +3,28 @@
   const { plots, run } = JSON.parse(document.getElementById("report-data").textContent);
   const element = (id) => document.getElementById(id);
   const divs = [...document.querySelectorAll(".plot")];
+  const touched = matchMedia("(pointer: coarse)").matches;
   const CONFIG = {
     responsive: true,
     displaylogo: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+    displayModeBar: touched ? false : "hover",
+    // Named one by one: among plotly's own there is one that sends the figure to its maker's cloud.
+    modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
   };
-  const PRINTED_WIDTH = 680;
+  const PRINTED = { width: 680, height: 370 }; // two plots a page
   const BLUE = "#0072B2", RED = "#D55E00";
 
   // ---- plots, and a cursor of time in all that are drawn over time
 
   const cursors = new Map(); // plot -> number of its cursor among the shapes
+  const heights = new Map(); // plot -> its height on the screen
 
   function draw(div) {
     const { data, layout } = plots[div.id];
-    if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
+    if (touched) layout.dragmode = false; // a finger scrolls the page
     layout.shapes = layout.shapes || [];
     cursors.set(div, layout.shapes.length);
+    heights.set(div, layout.height);
     layout.shapes.push({
       type: "line", xref: "x", yref: "paper", x0: 0, x1: 0, y0: 0, y1: 1,
       line: { color: "#000000", width: 1.5, dash: "dot" }, visible: false,
@@ -187,10 +192,14 @@
   // ---- on paper every plot has the width of the page
 
   addEventListener("beforeprint", () => {
-    for (const div of divs) Plotly.relayout(div, { width: PRINTED_WIDTH });
+    for (const div of divs) {
+      const height = Math.min(PRINTED.height, heights.get(div));
+      Plotly.relayout(div, { width: PRINTED.width, height });
+    }
   });
   addEventListener("afterprint", () => {
-    for (const div of divs) Plotly.relayout(div, { width: null, autosize: true });
+    for (const div of divs)
+      Plotly.relayout(div, { width: null, autosize: true, height: heights.get(div) });
   });
 
   Promise.all(divs.map(draw)).then(() => {

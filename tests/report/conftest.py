@@ -1,0 +1,48 @@
+"""Results to report on: made once, as a report only reads them."""
+
+import copy
+
+import pytest
+
+import tpss
+from tpss.report.html import comparison, report
+
+from conftest import EXAMPLES
+from scenarios import run
+
+
+@pytest.fixture(scope="session")
+def short() -> tpss.Result:
+    """The short line, a train every ten minutes."""
+    return run({"traffic.0.headway_min": 10.0})
+
+
+@pytest.fixture(scope="session")
+def collapsed() -> tpss.Result:
+    """A line that cannot carry its traffic from the first step on."""
+    return tpss.simulate(tpss.load_scenario(EXAMPLES / "overloaded.toml"))
+
+
+@pytest.fixture(scope="session")
+def mistrusted(short: tpss.Result) -> tpss.Result:
+    """The short line with an audit that failed."""
+    summary = copy.deepcopy(short.summary)
+    summary["audit"] |= {
+        "passed": False,
+        "power_mismatch_va": 3.0,
+        "failures": ["power_mismatch_va is 3, limit 0.01"],
+    }
+    return tpss.Result(short.scenario, short.dataset, summary)
+
+
+@pytest.fixture(scope="session")
+def page(short: tpss.Result) -> str:
+    """Report of the short line."""
+    return report(short)
+
+
+@pytest.fixture(scope="session")
+def compared(short: tpss.Result, collapsed: tpss.Result) -> str:
+    """The short line beside one with more traffic, and beside one that collapsed."""
+    dense = run({"traffic.0.headway_min": 5.0})
+    return comparison({"every 10 min": short, "every 5 min": dense, "collapsed": collapsed})

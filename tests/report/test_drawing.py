@@ -1,0 +1,88 @@
+"""What is drawn: extremes survive, and the voltage between trains is that of the line."""
+
+import numpy as np
+import pytest
+
+from tpss.report.contact_line import line_voltage
+from tpss.report.plots import journey, station_powers
+from tpss.report.sampling import kept, sample_trains
+from tpss.report.tables import heading, unit
+
+from scenarios import run
+
+
+def test_a_short_curve_stays_whole():
+    assert kept((np.arange(5.0),), 5).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_a_thinned_curve_keeps_its_ends_and_every_peak():
+    """A peak up and a dip down, one value each, among 100 000."""
+    values = np.zeros(100_000)
+    values[31_415], values[65_432] = 1.0, -1.0
+    few = kept((values,), 500)
+    assert len(few) <= 500
+    assert {0, 31_415, 65_432, 99_999} <= set(few.tolist())
+
+
+def test_each_column_keeps_its_own_peaks():
+    first, second = np.zeros(10_000), np.zeros(10_000)
+    first[123], second[4_567] = 1.0, 1.0
+    assert {123, 4_567} <= set(kept((first, second), 100).tolist())
+
+
+def test_what_is_not_recorded_is_no_extreme():
+    values = np.full(1_000, np.nan)
+    values[500] = -3.0
+    assert 500 in kept((values,), 50)
+
+
+def test_trains_are_sampled_at_every_step_of_a_short_run(short):
+    samples = sample_trains(short.dataset)
+    assert not samples.thinned
+    first = samples.trains[0]
+    position_m = short.dataset.position.sel(train=first["name"]).to_numpy()
+    there = np.isfinite(position_m)
+    np.testing.assert_allclose(first["km"], position_m[there] / 1e3, atol=5e-4)
+    assert first["step"] == np.flatnonzero(there).tolist()
+
+
+def test_the_envelope_holds_the_lowest_recorded_voltage(short):
+    line = line_voltage(short.dataset)
+    assert line.lowest_kv.min() == pytest.approx(short.summary["lowest_voltage"]["voltage_kv"])
+    assert (line.lowest_kv <= line.mean_kv + 1e-12).all()
+    assert (line.mean_kv <= line.highest_kv + 1e-12).all()
+
+
+def test_between_two_stations_of_equal_voltage_without_trains_the_voltage_is_even():
+    """No current flows, so the phasor is the same everywhere."""
+    result = run({"traffic.0.first_departure_min": 50.0, "simulation.duration_min": 2.0})
+    line = line_voltage(result.dataset)
+    np.testing.assert_allclose(line.map_kv, 16.5, rtol=1e-6)
+
+
+def test_a_run_without_a_step_has_no_voltage_along_the_line(collapsed):
+    assert line_voltage(collapsed.dataset) is None
+
+
+def test_curves_differ_in_colour_and_in_line_style(short):
+    figure = station_powers({"": short})
+    looks = {(trace.line.color, trace.line.dash) for trace in figure.data[::2]}
+    assert len({colour for colour, _ in looks}) == len({dash for _, dash in looks}) == 2
+
+
+def test_a_journey_shows_the_speed_that_was_recorded(short):
+    speed = journey({"": short}).data[0]
+    assert max(speed.y) == pytest.approx(float(short.dataset.speed.max()) * 3.6, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "mark"),
+    [
+        ("trip_min", "trip [min]", "min"),
+        ("reactive_energy_mvarh", "reactive energy [Mvarh]", "Mvarh"),
+        ("mean_speed_kmh", "mean speed [km/h]", "km/h"),
+        ("mean_loading", "mean loading", ""),
+    ],
+)
+def test_headings_carry_the_unit_of_their_name(name, words, mark):
+    assert (heading(name), unit(name)) == (words, mark)

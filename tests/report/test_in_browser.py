@@ -1,0 +1,189 @@
+"""A report in a browser, opened from the disk: it draws, moves, sorts, and asks nobody for anything."""
+
+import csv
+import shutil
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+
+
+@dataclass
+class Opened:
+    """An open page, and what it said and asked for."""
+
+    tab: Any
+    faults: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    def trains(self) -> list[float]:
+        """Positions of the trains that are shown."""
+        return self.tab.evaluate("[...document.getElementById('moment').data.at(-1).x]")
+
+    def wait_for(self, expression: str) -> None:
+        """Wait until an expression is true; asked from outside, as the page forbids `eval`."""
+        ends = time.monotonic() + 30.0
+        while not self.tab.evaluate(expression):
+            assert time.monotonic() < ends, expression
+            self.tab.wait_for_timeout(50)
+
+    def cursor(self, plot: str) -> float:
+        return self.tab.evaluate(f"document.getElementById('{plot}').layout.shapes.at(-1).x0")
+
+    def column(self, table: str, number: int) -> list[str]:
+        return self.tab.locator(f"#{table} tbody tr > :nth-child({number})").all_inner_texts()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with playwright.sync_playwright() as program:
+        arguments = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+        opened = program.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield opened
+        opened.close()
+
+
+def open_page(browser: Any, file: Path, **options: Any) -> Opened:
+    opened = Opened(browser.new_page(**options))
+    opened.tab.on("console", lambda message: opened.faults.append(message.text))
+    opened.tab.on("pageerror", lambda error: opened.faults.append(str(error)))
+    opened.tab.on("request", lambda request: opened.requests.append(request.url))
+    opened.tab.goto(file.as_uri(), timeout=120_000)
+    opened.tab.wait_for_selector("body[data-ready]", timeout=120_000)
+    return opened
+
+
+@pytest.fixture(scope="module")
+def report_file(page: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("report") / "report.html"
+    file.write_text(page, encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def opened(browser: Any, report_file: Path) -> Iterator[Opened]:
+    found = open_page(browser, report_file)
+    yield found
+    found.tab.close()
+    assert found.faults == []
+    assert found.requests == [report_file.as_uri()]
+
+
+def test_every_plot_is_drawn(opened):
+    plots = opened.tab.locator(".plot")
+    assert plots.count() == 6
+    for plot in plots.all():
+        assert plot.locator("svg.main-svg").count() > 0
+        assert plot.locator(".trace, .hm").count() > 0
+
+
+def test_nothing_offers_to_send_a_figure_away(opened):
+    opened.tab.locator("#losses").hover()
+    titles = opened.tab.locator(".modebar-btn").evaluate_all(
+        "buttons => buttons.map(each => each.dataset.title || '')"
+    )
+    assert titles
+    assert not [title for title in titles if "loud" in title]
+
+
+def test_the_slider_moves_trains_and_cursors_by_keyboard(opened):
+    before = opened.trains()
+    opened.tab.locator("#time").focus()
+    for _ in range(3):
+        opened.tab.keyboard.press("ArrowRight")
+    opened.wait_for("document.getElementById('time').value === '3'")
+    opened.tab.wait_for_timeout(300)
+    assert opened.trains() != before
+    step = float(opened.tab.locator("#time").input_value())
+    minutes = float(opened.tab.locator("#now").inner_text().split()[0])
+    assert step == 3
+    for plot in ("graph", "powers", "converters", "losses"):
+        assert opened.cursor(plot) == pytest.approx(minutes)
+    assert "on the line; lowest voltage" in opened.tab.locator("#state").inner_text()
+
+
+def test_pointing_at_one_plot_moves_the_cursor_of_the_others(opened):
+    area = opened.tab.locator("#losses .nsewdrag").first
+    area.scroll_into_view_if_needed()
+    area.hover()
+    opened.wait_for("document.getElementById('powers').layout.shapes.at(-1).x0 > 1")
+    assert opened.cursor("powers") == opened.cursor("losses")
+
+
+def test_it_plays_and_pauses(opened):
+    opened.tab.locator("#play").click()
+    opened.wait_for("+document.getElementById('time').value >= 2")
+    opened.tab.locator("#play").click()
+    assert "Play" in opened.tab.locator("#play").inner_text()
+    stopped = opened.tab.locator("#time").input_value()
+    opened.tab.wait_for_timeout(300)
+    assert opened.tab.locator("#time").input_value() == stopped
+
+
+def test_another_train_can_be_chosen_over_time_too(opened):
+    opened.tab.select_option("#train", index=1)
+    opened.tab.select_option("#against", "time")
+    shown = opened.tab.evaluate(
+        "(({data, layout}) => [data[0].name, data[0].x[0], layout.xaxis2.title.text])"
+        "(document.getElementById('journey'))"
+    )
+    assert shown == ["eastbound 2", pytest.approx(10.0), "time [min]"]
+
+
+def test_a_heading_sorts_up_and_down_as_numbers(opened):
+    heading = opened.tab.locator("#trains thead button").filter(has_text="energy")
+    heading.click()
+    column = opened.tab.evaluate(
+        "[...document.querySelectorAll('#trains thead th')].findIndex(h => h.ariaSort) + 1"
+    )
+    rising = [float(text) for text in opened.column("trains", column)]
+    assert rising == sorted(rising)
+    assert len(set(rising)) > 1
+    heading.click()
+    assert [float(text) for text in opened.column("trains", column)] == rising[::-1]
+
+
+def test_a_table_downloads_as_csv(opened, short, tmp_path):
+    with opened.tab.expect_download() as download:
+        opened.tab.locator("button[data-table=trains]").click()
+    assert download.value.suggested_filename == "trains.csv"
+    download.value.save_as(tmp_path / "trains.csv")
+    with (tmp_path / "trains.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["train"] for row in rows] == short.trips.train.tolist()
+    energy = [float(row["energy [MWh]"]) for row in rows]
+    assert energy == pytest.approx(short.trips.energy_mwh.tolist(), rel=1e-6)
+
+
+def test_it_fits_a_phone(browser, report_file):
+    size = {"width": 390, "height": 844}
+    found = open_page(browser, report_file, viewport=size, is_mobile=True, has_touch=True)
+    assert found.tab.evaluate("document.documentElement.scrollWidth") <= size["width"]
+    assert found.faults == []
+    found.tab.close()
+
+
+def test_it_prints(browser, report_file):
+    found = open_page(browser, report_file)
+    assert found.tab.pdf(format="A4").startswith(b"%PDF")
+    assert found.faults == []
+    found.tab.close()
+
+
+def test_a_comparison_draws_its_plots(browser, compared, tmp_path):
+    file = tmp_path / "comparison.html"
+    file.write_text(compared, encoding="utf-8")
+    found = open_page(browser, file)
+    assert found.tab.locator(".plot svg.main-svg").count() > 0
+    assert found.tab.locator(".plot.drawn").count() == 5
+    assert found.faults == []
+    assert found.requests == [file.as_uri()]
+    found.tab.close()
