@@ -1,12 +1,13 @@
 """What is drawn: extremes survive, and the voltage between trains is that of the line."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from tpss.report.contact_line import line_voltage
 from tpss.report.plots import journey, station_powers
 from tpss.report.sampling import kept, sample_trains
-from tpss.report.tables import heading, unit
+from tpss.report.tables import of_frame
 
 from scenarios import run
 
@@ -75,14 +76,14 @@ def test_a_journey_shows_the_speed_that_was_recorded(short):
     assert max(speed.y) == pytest.approx(float(short.dataset.speed.max()) * 3.6, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("name", "words", "mark"),
-    [
-        ("trip_min", "trip [min]", "min"),
-        ("reactive_energy_mvarh", "reactive energy [Mvarh]", "Mvarh"),
-        ("mean_speed_kmh", "mean speed [km/h]", "km/h"),
-        ("mean_loading", "mean loading", ""),
-    ],
-)
-def test_headings_carry_the_unit_of_their_name(name, words, mark):
-    assert (heading(name), unit(name)) == (words, mark)
+def test_a_table_shows_units_few_digits_and_no_more_rows_than_it_says():
+    table = of_frame("long", "Long", pd.DataFrame({"energy_mwh": np.arange(1_200) / 7.0}))
+    assert table.headings == ["energy [MWh]"]
+    assert len(table.rows) == 1_000
+    assert table.caption == "Long (the first 1000 of 1200; the saved result has all)"
+    assert (table.rows[1][0].text, table.rows[1][0].value) == ("0.143", "0.1428571")
+
+
+def test_what_is_missing_in_a_table_is_a_dash():
+    table = of_frame("gap", "Gap", pd.DataFrame({"arrival_min": [np.nan]}))
+    assert (table.rows[0][0].text, table.rows[0][0].value) == ("–", "")

@@ -106,6 +106,7 @@ def report(result: Result) -> str:
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stations", "Converter stations", result.stations),
+        *tables.of_standards(result),
     ]
     return _page(
         title=result.scenario.name,
@@ -161,21 +162,23 @@ def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], d
     }
     if chosen is not None:
         figures["journey"] = plots.journey(runs, chosen)
-    limits = dict(plots.LIMITS_KV)
+    limits = result.scenario.standards.voltage_limits
     return figures, {
         "step_min": result.dataset.attrs["time_step_s"] / 60.0,
         "steps": result.dataset.sizes["time"] - 1,
         "trains": samples.trains,
         "chosen": chosen,
-        "low_kv": limits["Umin1"],
-        "high_kv": limits["Umax1"],
+        "low_kv": limits.umin1_kv,
+        "high_kv": limits.umax1_kv,
         "thinned": samples.thinned,
     }
 
 
 def _notes(result: Result, voltage: LineVoltage | None, trains_thinned: bool) -> list[str]:
     """What was limited in the run, and what the plots leave out."""
-    notes = warnings(result.summary)
+    notes = [*warnings(result.summary), *result.standards.notes]
+    if result.dataset.sizes["time"] < 2:
+        return [*notes, "no time step was simulated, so there is nothing to draw"]
     if voltage is None:
         return notes
     if voltage.steps_a_column > 1:
@@ -231,6 +234,7 @@ def _page(
         key_figures=key_figures,
         notes=notes,
         limits=LIMITS,
+        violations=_violations(results),
         scenarios={label: _as_toml(result) for label, result in results.items()},
         style=_part("report.css"),
         script=_part("report.js"),
@@ -257,6 +261,15 @@ def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:
             }
         )
     return troubles
+
+
+def _violations(results: Mapping[str, Result]) -> dict[str, list[str]]:
+    """Violations of limits in words, the worst first, of the runs that say anything about them."""
+    return {
+        label: [str(words) for words in result.standards.violations.words]
+        for label, result in results.items()
+        if result.audit["passed"] and result.dataset.sizes["time"] > 1
+    }
 
 
 def _as_toml(result: Result) -> str:

@@ -22,15 +22,6 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
 DASHES = ("solid", "dash", "dashdot", "dot")
 """Line styles, so that curves differ in black and white too."""
 
-LIMITS_KV = (
-    ("Umax2", 18.0),
-    ("Umax1", 17.25),
-    ("Un", 15.0),
-    ("Umin1", 12.0),
-    ("Umin2", 11.0),
-)
-"""Nominal voltage and limits of 15 kV 16.7 Hz systems.  [EN50163]_"""
-
 VOLTAGE_SCALE = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
 """From a low voltage, dark, to a high one: in black and white too."""
 
@@ -111,7 +102,8 @@ def line_at_a_moment(result: Result, voltage: LineVoltage) -> go.Figure:
         name="trains now",
     )
     _mark_feeding_points(figure, [result])
-    _mark_limits(figure, [voltage.lowest_kv.min(), voltage.highest_kv.max()])
+    shown_kv = [float(voltage.lowest_kv.min()), float(voltage.highest_kv.max())]
+    _mark_limits(figure, result, shown_kv)
     figure.update_xaxes(range=_with_margin(voltage.position_km))
     return figure.update_layout(hovermode="closest")
 
@@ -129,7 +121,7 @@ def envelopes(runs: Mapping[str, tuple[Result, LineVoltage]]) -> go.Figure:
         _add_line(figure, 1, voltage.position_km, voltage.lowest_kv, label, k, "kV")
     lowest = [float(voltage.lowest_kv.min()) for _, voltage in runs.values()]
     _mark_feeding_points(figure, [result for result, _ in runs.values()])
-    _mark_limits(figure, lowest)
+    _mark_limits(figure, next(result for result, _ in runs.values()), lowest)
     return figure.update_xaxes(range=_with_margin(*(v.position_km for _, v in runs.values())))
 
 
@@ -319,16 +311,29 @@ def _add_envelope(figure: go.Figure, voltage: LineVoltage, label: str, k: int) -
         )
 
 
-def _mark_limits(figure: go.Figure, shown_kv: Sequence[float]) -> None:
-    for name, limit in LIMITS_KV:
+def _mark_limits(figure: go.Figure, result: Result, shown_kv: Sequence[float]) -> None:
+    """Nominal voltage and limits by which the result is judged."""
+    limits = result.scenario.standards.voltage_limits
+    marks = {
+        "Umin2": limits.umin2_kv,
+        "Umin1": limits.umin1_kv,
+        "Un": limits.un_kv,
+        "Umax1": limits.umax1_kv,
+        "Umax2": limits.umax2_kv,
+    }
+    for name, kilovolts in marks.items():
         figure.add_hline(
-            limit,
+            kilovolts,
             line={"color": "#444444", "width": 1, "dash": "solid" if name == "Un" else "dash"},
-            annotation={"text": f"{name} {limit:g} kV", "font": {"size": 11, "color": "#444444"}},
+            annotation={
+                "text": f"{name} {kilovolts:g} kV",
+                "font": {"size": 11, "color": "#444444"},
+            },
             annotation_position="top right",
         )
-    low = min(LIMITS_KV[-1][1], *map(float, shown_kv)) - 0.5
-    figure.update_yaxes(range=[low, LIMITS_KV[0][1] + 0.8])
+    low, high = min(limits.umin2_kv, *shown_kv), max(limits.umax2_kv, *shown_kv)
+    margin = 0.1 * (high - low)
+    figure.update_yaxes(range=[low - margin, high + margin])
 
 
 def _mark_feeding_points(figure: go.Figure, runs: Sequence[Result]) -> None:

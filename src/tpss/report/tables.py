@@ -10,10 +10,10 @@ import pandas as pd
 from tpss import units
 from tpss.results.result import Result
 
-ENERGY_UNITS = {"_mwh": "MWh", "_mvarh": "Mvarh", "_mw": "MW"}
-"""Suffixes that no scenario uses."""
+MOST_ROWS = 1_000
+"""Rows of a table; the saved result has them all."""
 
-DIGITS = {"MWh": 3, "Mvarh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
+DIGITS = {"MWh": 3, "MVArh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
 """Decimals that are shown, by unit; others have two."""
 
 
@@ -46,72 +46,89 @@ class Table:
 
 
 def of_frame(key: str, caption: str, frame: pd.DataFrame) -> Table:
-    """Table of a pandas table whose names end with their units."""
+    """Table of a pandas table whose names end with their units; of a long one, the first rows."""
     columns = [str(name) for name in frame.columns]
     rows = [
-        [_cell(value, unit(name)) for name, value in zip(columns, row, strict=True)]
-        for row in frame.itertuples(index=False)
+        [_cell(value, units.label(name)) for name, value in zip(columns, row, strict=True)]
+        for row in frame.head(MOST_ROWS).itertuples(index=False)
     ]
-    return Table(key, caption, [heading(name) for name in columns], rows)
+    if len(frame) > MOST_ROWS:
+        caption += f" (the first {MOST_ROWS} of {len(frame)}; the saved result has all)"
+    return Table(key, caption, [units.heading(name) for name in columns], rows)
+
+
+def of_standards(result: Result) -> list[Table]:
+    """Key figures by the definitions of the standards."""
+    evidence = result.standards
+    shown = {
+        "violations": ("Violations of limits", evidence.violations),
+        "voltage": ("EN 50163: voltage at the pantograph", evidence.voltage),
+        "useful-voltage-zones": (
+            "EN 50388: mean useful voltage of zones",
+            evidence.useful_voltage_zones,
+        ),
+        "useful-voltage-trains": (
+            "EN 50388: mean useful voltage of trains",
+            evidence.useful_voltage_trains,
+        ),
+        "station-power": ("Highest mean power of stations", evidence.station_power),
+        "losses-by-kind": ("Losses by kind of branch", evidence.losses),
+    }
+    return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
 
 
 def of_figures(results: Mapping[str, Result]) -> Table:
     """Key figures of runs, a row a figure and a column a run."""
-    columns = [dict(key_figures(result)) for result in results.values()]
+    columns = [
+        {(name, unit): value for name, unit, value in key_figures(r)} for r in results.values()
+    ]
     names = list(dict.fromkeys(name for column in columns for name in column))
     rows = [
-        [_cell(heading(name), ""), *(_cell(column.get(name), unit(name)) for column in columns)]
-        for name in names
+        [
+            _cell(f"{name} [{unit}]" if unit else name, ""),
+            *(_cell(column.get((name, unit)), unit) for column in columns),
+        ]
+        for name, unit in names
     ]
     return Table("key-figures", "Key figures", ["figure", *results], rows)
 
 
-def key_figures(result: Result) -> list[tuple[str, Any]]:
-    """Name, with its unit, and value of what a reader asks for first."""
-    summary, stations = result.summary, result.stations
+def key_figures(result: Result) -> list[tuple[str, str, Any]]:
+    """Name, unit and value of what a reader asks for first."""
+    summary, stations, evidence = result.summary, result.stations, result.standards
     lowest = summary["lowest_voltage"] or {}
-    total = summary["total_energy_mwh"]
+    total, lost = summary["total_energy_mwh"], summary["losses_mwh"]
     peaks = zip(stations.station, stations.peak_power_mw, strict=True)
+    zones = evidence.useful_voltage_zones
     return [
-        ("status", result.status),
-        ("audit", "passed" if result.audit["passed"] else "failed"),
-        ("studied_train", summary["studied_train"]),
-        ("trip_time_min", summary["trip_time_min"]),
-        ("simulated_time_min", summary["duration_min"]),
-        ("total_energy_mwh", total),
-        ("losses_mwh", summary["losses_mwh"]),
-        ("share_of_losses_percent", 100.0 * summary["losses_mwh"] / total if total else None),
-        ("lowest_voltage_kv", lowest.get("voltage_kv")),
-        ("train_with_lowest_voltage", lowest.get("train")),
-        ("place_of_lowest_voltage_km", lowest.get("position_km")),
-        ("time_of_lowest_voltage_min", lowest.get("time_min")),
-        *((f"energy of {name}_mwh", mwh) for name, mwh in summary["station_energy_mwh"].items()),
-        *((f"peak power of {name}_mw", float(peak)) for name, peak in peaks),
+        ("status", "", result.status),
+        ("audit", "", "passed" if result.audit["passed"] else "failed"),
+        ("violations of voltage limits", "", len(evidence.violations)),
+        ("studied train", "", summary["studied_train"]),
+        ("trip time", "min", summary["trip_time_min"]),
+        ("simulated time", "min", summary["duration_min"]),
+        ("total energy", "MWh", total),
+        ("losses", "MWh", lost),
+        ("share of losses", "%", 100.0 * lost / total if total else None),
+        ("lowest voltage", "kV", lowest.get("voltage_kv")),
+        ("train with lowest voltage", "", lowest.get("train")),
+        ("place of lowest voltage", "km", lowest.get("position_km")),
+        ("time of lowest voltage", "min", lowest.get("time_min")),
+        *(
+            (f"mean useful voltage, {zone}", "kV", float(mean_kv))
+            for zone, mean_kv in zip(zones.zone, zones.mean_useful_kv, strict=True)
+        ),
+        *((f"energy of {name}", "MWh", mwh) for name, mwh in summary["station_energy_mwh"].items()),
+        *((f"peak power of {name}", "MW", float(peak)) for name, peak in peaks),
     ]
-
-
-def heading(name: str) -> str:
-    """A name in words, with its unit in brackets."""
-    mark = f" [{unit(name)}]" if unit(name) else ""
-    return name.removesuffix(_suffix(name)).replace("_", " ") + mark
-
-
-def unit(name: str) -> str:
-    """Unit of a name as it is written for people; empty for a pure number."""
-    if name.endswith("_percent"):
-        return "%"
-    return ENERGY_UNITS.get(_suffix(name), "") or units.label(name)
-
-
-def _suffix(name: str) -> str:
-    further = [suffix for suffix in (*ENERGY_UNITS, "_percent") if name.endswith(suffix)]
-    return further[0] if further else units.suffix(name)
 
 
 def _cell(value: Any, unit_of_it: str) -> Cell:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return Cell("–", "", is_number=True)
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool):
+        return Cell("yes" if value else "no", "yes" if value else "no", is_number=False)
+    if not isinstance(value, int | float):
         return Cell(str(value), str(value), is_number=False)
     digits = 0 if isinstance(value, int) else DIGITS.get(unit_of_it, 2)
     return Cell(f"{value:.{digits}f}", f"{value:.7g}", is_number=True)
