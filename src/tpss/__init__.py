@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tpss.api import simulate
     from tpss.errors import Finding, ResultError, ScenarioError, TpssError
+    from tpss.report.html import write_report
     from tpss.results.result import Result, load_result
     from tpss.scenario import Scenario, load_scenario
     from tpss.simulation.run import Progress
@@ -28,6 +29,7 @@ _HOME = {
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
     "simulate": "tpss.api",
+    "write_report": "tpss.report.html",
 }
 
 __all__ = [
@@ -41,6 +43,7 @@ __all__ = [
     "load_result",
     "load_scenario",
     "simulate",
+    "write_report",
 ]
 
 

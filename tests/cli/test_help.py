@@ -8,8 +8,8 @@ import pytest
 
 from conftest import EXAMPLES
 
-COMMANDS = ("run", "check", "new", "library", "schema")
-HEAVY = {"h5netcdf", "h5py", "numba", "numpy", "pandas", "scipy", "xarray"}
+COMMANDS = ("run", "report", "check", "new", "library", "schema")
+HEAVY = {"h5netcdf", "h5py", "jinja2", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
 
 
 def test_the_version_is_told(tpss_command):
@@ -34,11 +34,13 @@ def test_the_help_of_every_command_has_an_example(tpss_command, command):
 
 def test_the_options_of_a_run_are_explained(tpss_command):
     said = tpss_command("run", "--help")
-    for option in ("--out", "--set", "--force", "--quiet", "--show"):
+    for option in ("--out", "--set", "--force", "--quiet", "--show", "--report"):
         assert option in said.out
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["library", "--help"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["run", "--help"], ["report", "--help"], ["library", "--help"]]
+)
 def test_help_imports_nothing_heavy(arguments):
     script = (
         "import sys\n"

@@ -99,7 +99,7 @@ def run(
 
 
 @app.command(
-    epilog="Examples:  tpss report results/thesis-160km-001, tpss report results/a results/b"
+    epilog="Examples:  tpss report results/thesis-160km-001, then tpss report results/a results/b"
 )
 def report(
     results: Annotated[
