@@ -4,12 +4,11 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import tomli_w
 import xarray as xr
@@ -74,6 +73,51 @@ def save(
             _refuse_to_replace(folder, force)
             _move(new, target, old=work.with_name(f"{work.name}-replaced"))
             return folder
+
+
+def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
+    """Find out whether files can be written into a folder, as `save_files` does.
+
+    Raises
+    ------
+    ResultError
+        The folder is none, or files exist and may not be replaced.
+    """
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise ResultError(f"{folder} is not a folder; give another --out")
+    there = [folder / name for name in names if os.path.lexists(folder / name)]
+    if there and not force:
+        more = f" (and {len(there) - 1} more)" if len(there) > 1 else ""
+        raise ResultError(
+            f"{there[0]}{more} exists already; give another --out, or --force to replace it"
+        )
+    for path in there:
+        if not path.is_file():
+            raise ResultError(f"{path} is not a file, so it is not replaced; give another --out")
+
+
+def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list[Path]:
+    """Write files into a folder, all of them or none; the folder is made if it is not there.
+
+    Raises
+    ------
+    ResultError
+        As `check_files`, or the folder cannot be written.
+    """
+    target = _real(folder)
+    with _told(folder), _folder_beside(target / "export") as work:
+        new, old = work / "new", work / "old"
+        new.mkdir()
+        old.mkdir()
+        for name, content in contents.items():
+            _write(new / name, content)
+        check_files(folder, contents, force)
+        if target.exists():
+            _move_files(new, target, old)
+        else:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            new.rename(target)
+    return [folder / name for name in contents]
 
 
 @contextmanager
@@ -146,6 +190,24 @@ def _move(new: Path, target: Path, old: Path) -> None:
     shutil.rmtree(old, ignore_errors=True)
 
 
+def _move_files(new: Path, target: Path, old: Path) -> None:
+    """Put written files into a folder; if one cannot be moved, all is as it was before."""
+    moved: list[str] = []
+    try:
+        for file in sorted(new.iterdir()):
+            place = target / file.name
+            if os.path.lexists(place):
+                place.rename(old / file.name)
+            file.rename(place)
+            moved.append(file.name)
+    except BaseException:
+        for name in moved:
+            (target / name).unlink()
+        for file in old.iterdir():
+            file.rename(target / file.name)
+        raise
+
+
 def _move_to_next(new: Path, name: str) -> Path:
     """Put a written folder into the first free numbered place, which another run may take first."""
     while True:
@@ -176,8 +238,7 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         _demand_this_format(folder, summary)
-        with h5py.File(folder / DATASET) as file:
-            dict(file.attrs)  # h5netcdf leaves a traceback where they cannot be read
+        _read_attributes(folder / DATASET)
         with xr.open_dataset(folder / DATASET, engine="h5netcdf") as stored:
             dataset = stored.load()
         scenario = load_scenario(folder / SCENARIO)
@@ -187,6 +248,14 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     except (OSError, ValueError, KeyError, RuntimeError, ScenarioError) as error:
         raise ResultError(f"{folder} is damaged ({error}); run the scenario again") from error
     return scenario, dataset, summary
+
+
+def _read_attributes(file: Path) -> None:
+    """Raise what HDF5 raises where the attributes are damaged; h5netcdf prints a traceback there."""
+    import h5py  # whoever only writes has no need of it yet
+
+    with h5py.File(file) as opened:
+        dict(opened.attrs)
 
 
 def _demand_this_format(folder: Path, summary: Any) -> None:
