@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from tpss.errors import Finding, ResultError, ScenarioError, TpssError
     from tpss.report.html import write_report
     from tpss.results.result import Result, load_result
+    from tpss.results.standards.evidence import Evidence
     from tpss.scenario import Scenario, load_scenario
     from tpss.simulation.run import Progress
 
 _HOME = {
+    "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
     "Progress": "tpss.simulation.run",
     "Result": "tpss.results.result",
@@ -33,6 +35,7 @@ _HOME = {
 }
 
 __all__ = [
+    "Evidence",
     "Finding",
     "Progress",
     "Result",

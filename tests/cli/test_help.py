@@ -8,7 +8,7 @@ import pytest
 
 from conftest import EXAMPLES
 
-COMMANDS = ("run", "report", "check", "new", "library", "schema")
+COMMANDS = ("run", "report", "check", "export", "new", "library", "schema")
 HEAVY = {"h5netcdf", "h5py", "jinja2", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
 
 

@@ -69,6 +69,41 @@ def test_a_run_prints_what_matters(tpss_command, short_file):
         assert words in said.out
 
 
+LIMITS = "standards.voltage_limits"
+
+
+def judged(**limits):
+    """Options by which a run is judged by other limits."""
+    return [word for key, value in limits.items() for word in ("--set", f"{LIMITS}.{key}={value}")]
+
+
+def test_a_run_within_its_limits_is_told_so_in_one_line(tpss_command):
+    said = tpss_command("run", HEADWAY, *SHORT)
+    assert "Voltage: no train below 12.0 kV or above 17.25 kV" in said.out
+    assert "Limit passed" not in said.out
+
+
+def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_command, tmp_path):
+    said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, umin2_kv=14.5))
+    assert said.code == 0
+    told = re.findall(
+        r"Limit passed: train eastbound initial \d+: at least 3\.0 min below 14\.5 kV near km "
+        r"\d+\.\d \(lowest 14\.\d\d kV at \d\.\d min\)",
+        said.out,
+    )
+    assert len(told) == 5
+    violations = len(load_result(tmp_path / "results/at-headway-3-001").standards.violations)
+    assert f"... and {violations - 5} more; tpss export lists all" in said.out
+    assert "Voltage:" not in said.out
+
+
+def test_a_voltage_that_is_low_for_as_long_as_it_may_be_is_told_as_such(tpss_command):
+    said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, longest_low_min=5))
+    assert "Limit passed" not in said.out
+    pattern = r"Voltage: train .*: at least 3\.0 min below 14\.8 kV near km .*; 5 min are allowed"
+    assert re.search(pattern, said.out)
+
+
 def test_quiet_prints_nothing(tpss_command, tmp_path):
     said = tpss_command("run", HEADWAY, *SHORT, "--quiet")
     assert (said.code, said.out, said.err) == (0, "", "")

@@ -14,6 +14,7 @@ from typing import Annotated
 import typer
 
 from tpss.cli import complete
+from tpss.results.file_kinds import Kind
 
 app = typer.Typer(
     name="tpss",
@@ -140,6 +141,33 @@ def check(file: ScenarioFile, set_: Assignments = None) -> None:
     from tpss.cli.check import check_scenario
 
     check_scenario(file, set_ or [])
+
+
+@app.command(epilog="Example:  tpss export results/thesis-160km-001 --to xlsx")
+def export(
+    result: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RESULT", help="Folder that tpss run has written.", show_default=False
+        ),
+    ],
+    to: Annotated[Kind, typer.Option(metavar="KIND", help="csv, xlsx or parquet.")] = Kind.CSV,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the files; by default RESULT/tables.", show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+) -> None:
+    """Write the tables of a result as files for other programs, all of them or none.
+
+    They hold trains and stations, every step of every train, violations of voltage limits, and the
+    evidence for standards. Headings carry units, such as `energy [MWh]`. xlsx is one workbook.
+
+    Exit codes: 0 done, 2 the folder holds no result, or the files cannot be written.
+    """
+    from tpss.cli.export import export_result
+
+    export_result(result, to, out, force)
 
 
 @app.command(epilog="Example:  tpss new my-line")

@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from rich import box
 from rich.console import Console
@@ -14,8 +13,10 @@ from rich.table import Table
 
 from tpss.results.explain import warnings
 from tpss.results.result import Result
+from tpss.results.tables import train_steps
 
 MOST_TRAINS = 30
+MOST_VIOLATIONS = 5
 
 
 def print_result(result: Result, console: Console) -> None:
@@ -25,8 +26,9 @@ def print_result(result: Result, console: Console) -> None:
     console.print(title, highlight=False, soft_wrap=True)
     console.print(_train_table(result))
     console.print(_station_table(result))
-    for line in key_figures(summary):
+    for line in key_figures(result):
         console.print(line, highlight=False, soft_wrap=True, markup=False)
+    print_violations(result, console)
     for line in warnings(summary):
         console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
     if "problem" in summary:
@@ -76,17 +78,17 @@ _STATION_COLUMNS = (
 )
 
 _STEP_COLUMNS = (
-    _Column("position", "position", "km", 3, 1e-3),
-    _Column("speed", "speed", "km/h", 2, 3.6),
-    _Column("acceleration", "accel.", "m/s²", 4),
-    _Column("pantograph_voltage", "voltage", "kV", 3, 1e-3),
-    _Column("tractive_force", "traction", "kN", 2, 1e-3),
-    _Column("braking_force", "brakes", "kN", 2, 1e-3),
-    _Column("running_resistance", "resist.", "kN", 2, 1e-3),
-    _Column("gradient_force", "gradient", "kN", 2, 1e-3),
-    _Column("motor_current", "motor", "A", 1),
-    _Column("active_power", "P", "MW", 3, 1e-6),
-    _Column("reactive_power", "Q", "Mvar", 3, 1e-6),
+    _Column("position_km", "position", "km", 3),
+    _Column("speed_kmh", "speed", "km/h", 2),
+    _Column("acceleration_m_s2", "accel.", "m/s²", 4),
+    _Column("pantograph_voltage_kv", "voltage", "kV", 3),
+    _Column("tractive_force_kn", "traction", "kN", 2),
+    _Column("braking_force_kn", "brakes", "kN", 2),
+    _Column("running_resistance_kn", "resist.", "kN", 2),
+    _Column("gradient_force_kn", "gradient", "kN", 2),
+    _Column("motor_current_a", "motor", "A", 1),
+    _Column("active_power_mw", "P", "MW", 3),
+    _Column("reactive_power_mvar", "Q", "Mvar", 3),
 )
 
 
@@ -127,9 +129,9 @@ def _station_table(result: Result) -> Table:
     return _table("Converter stations", "station", _STATION_COLUMNS, rows)
 
 
-def key_figures(summary: dict[str, Any]) -> list[str]:
-    """Lines with trip time, energy, losses, lowest voltage and audit."""
-    lines = []
+def key_figures(result: Result) -> list[str]:
+    """Lines with trip time, energy, losses, voltages and audit."""
+    summary, lines = result.summary, []
     if summary["trip_time_min"] is not None:
         lines.append(f"Trip time of {summary['studied_train']}: {summary['trip_time_min']:.2f} min")
     total, losses = summary["total_energy_mwh"], summary["losses_mwh"]
@@ -144,6 +146,8 @@ def key_figures(summary: dict[str, Any]) -> list[str]:
             f"Lowest voltage: {lowest['voltage_kv']:.3f} kV, {lowest['train']} at "
             f"{lowest['position_km']:.2f} km, {lowest['time_min']:.2f} min"
         )
+    if result.standards.voltage_in_words:
+        lines.append(f"Voltage: {result.standards.voltage_in_words}")
     audit = summary["audit"]
     lines.append(
         f"Audit {'passed' if audit['passed'] else 'FAILED'}: power mismatch "
@@ -154,14 +158,21 @@ def key_figures(summary: dict[str, Any]) -> list[str]:
     return lines
 
 
+def print_violations(result: Result, console: Console) -> None:
+    """Print the worst violations of limits in words, and how many more there are."""
+    words = result.standards.violations.words.tolist()
+    for line in words[:MOST_VIOLATIONS]:
+        text = f"[bold yellow]Limit passed:[/bold yellow] {escape(line)}"
+        console.print(text, highlight=False, soft_wrap=True)
+    if len(words) > MOST_VIOLATIONS:
+        more = f"... and {len(words) - MOST_VIOLATIONS} more; tpss export lists all"
+        console.print(more, highlight=False, soft_wrap=True)
+
+
 def print_train(result: Result, name: str, console: Console) -> None:
     """Print a train's journey, a row a step."""
-    train = result.dataset.sel(train=name)
-    values = {column.key: train[column.key].to_numpy() for column in _STEP_COLUMNS}
-    rows = [
-        (f"{float(train.time[k]) / 60.0:.2f}", {key: array[k] for key, array in values.items()})
-        for k in np.flatnonzero(np.isfinite(values["position"]))
-    ]
+    steps = train_steps(result.dataset.sel(train=[name]))
+    rows = _named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
     table = _table(name, "time\n[dim]min[/dim]", _STEP_COLUMNS, rows)
     # A row must stay on one line, however narrow the terminal.
     Console(file=console.file, width=max(console.width, 110)).print(table)

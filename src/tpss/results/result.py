@@ -54,6 +54,11 @@ class Result:
         return tables.stations(self.dataset)
 
     @cached_property
+    def train_steps(self) -> pd.DataFrame:
+        """One row a train and instant: motion, forces, voltage, powers."""
+        return tables.train_steps(self.dataset)
+
+    @cached_property
     def standards(self) -> Evidence:
         """Key figures by the definitions of the standards: voltages, energies, loads, violations."""
         return gather(self.dataset, self.scenario)

@@ -66,6 +66,47 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
     ).replace(-np.inf, np.nan)
 
 
+TRAIN_STEPS = {
+    # column: (variable, factor from SI)
+    "position_km": ("position", 1e-3),
+    "speed_kmh": ("speed", 3.6),
+    "acceleration_m_s2": ("acceleration", 1.0),
+    "pantograph_voltage_kv": ("pantograph_voltage", 1e-3),
+    "pantograph_angle_deg": ("pantograph_angle", 180.0 / np.pi),
+    "tractive_force_kn": ("tractive_force", 1e-3),
+    "braking_force_kn": ("braking_force", 1e-3),
+    "running_resistance_kn": ("running_resistance", 1e-3),
+    "gradient_force_kn": ("gradient_force", 1e-3),
+    "motor_current_a": ("motor_current", 1.0),
+    "active_power_mw": ("active_power", 1e-6),
+    "reactive_power_mvar": ("reactive_power", 1e-6),
+}
+"""Columns of `train_steps` that are numbers."""
+
+
+def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
+    """One row a train and instant at which it is there, train by train.
+
+    Position and speed hold at the instant, all else from there to the next one.
+    """
+    there = np.isfinite(dataset.position.to_numpy().T)
+    train, instant = np.nonzero(there)
+    states = dataset.train_state.attrs["flag_meanings"].split()
+    state = dataset.train_state.to_numpy().T[there]
+    return pd.DataFrame(
+        {
+            "train": dataset.train.to_numpy()[train],
+            "service": dataset.service.to_numpy()[train],
+            "time_min": dataset.time.to_numpy()[instant] / 60.0,
+            "state": np.array([*states, ""], dtype=object)[state],
+            **{
+                column: dataset[name].to_numpy().T[there] * factor
+                for column, (name, factor) in TRAIN_STEPS.items()
+            },
+        }
+    )
+
+
 def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
     """Way of each train within the run. [km]"""
     position_m = dataset.position.to_numpy()

@@ -16,7 +16,7 @@ from tpss.results.standards import (
     useful_voltage,
     voltage_limits,
 )
-from tpss.results.standards.violations import Violation, find_violations
+from tpss.results.standards.violations import Violation, find_violations, voltage_in_words
 from tpss.results.standards.voltage_limits import Excursion, find_excursions
 from tpss.results.standards.windows import WINDOWS_MIN, Floats, table_of
 from tpss.results.tables import step_s
@@ -131,6 +131,17 @@ class Evidence:
     def violations(self) -> pd.DataFrame:
         """A row for each violation of a limit, in figures and in words, the worst first."""
         return table_of(self._violations, Violation)
+
+    @property
+    def voltage_in_words(self) -> str:
+        """That no train passed a permanent limit, or for how long one did that was allowed to.
+
+        Empty if one was not allowed to, which `violations` tells, or if no voltage was recorded.
+        """
+        seen = np.isfinite(self.dataset.pantograph_voltage.to_numpy()).any()
+        if not seen or any(each.violation for each in self._excursions):
+            return ""
+        return voltage_in_words(self._excursions, self.standards.voltage_limits)
 
     @property
     def notes(self) -> list[str]:

@@ -1,7 +1,7 @@
 """What passes a limit, in words, the worst first."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +74,15 @@ def _too_low(what: str, table: pd.DataFrame, counts: npt.NDArray[np.bool_]) -> I
             "EN 50388", "mean useful voltage", subject, least_kv, float(means[i]),
             duration_min=math.nan, from_min=math.nan, position_km=math.nan, words=words,
         )  # fmt: skip
+
+
+def voltage_in_words(found: Sequence[Excursion], limits: VoltageLimits) -> str:
+    """What there is to say of excursions that break no rule: the longest, or that there are none."""
+    if not found:
+        low, high = kilovolts(limits.umin1_kv), kilovolts(limits.umax1_kv)
+        return f"no train below {low} or above {high}"
+    longest = max(found, key=lambda each: each.duration_min)
+    return f"{excursion_in_words(longest)}; {longest.allowed_min:g} min are allowed"
 
 
 def excursion_in_words(excursion: Excursion) -> str:

@@ -1,0 +1,125 @@
+"""Tables of a result as files that other programs read: CSV, Excel, Parquet.
+
+Headings carry the units, as in ``energy [MWh]``.
+"""
+
+import io
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+
+import pandas as pd
+
+from tpss import units
+from tpss.errors import ResultError
+from tpss.results import store
+from tpss.results.file_kinds import Kind
+from tpss.results.result import Result
+
+TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
+    "trips": lambda result: result.trips,
+    "stations": lambda result: result.stations,
+    "violations": lambda result: result.standards.violations,
+    "voltage": lambda result: result.standards.voltage,
+    "excursions": lambda result: result.standards.excursions,
+    "useful_voltage_zones": lambda result: result.standards.useful_voltage_zones,
+    "useful_voltage_trains": lambda result: result.standards.useful_voltage_trains,
+    "energy": lambda result: result.standards.energy,
+    "energy_blocks": lambda result: result.standards.energy_blocks,
+    "station_power": lambda result: result.standards.station_power,
+    "load_duration": lambda result: result.standards.load_duration,
+    "converters": lambda result: result.standards.converters,
+    "losses": lambda result: result.standards.losses,
+    "branch_current": lambda result: result.standards.branch_current,
+    "trains": lambda result: result.train_steps,
+}
+"""Tables by the names of their files, or of their sheets."""
+
+MOST_ROWS = 2**20
+"""Rows of a sheet of Excel, its heading included."""
+
+WIDEST = 40
+"""Widest column of a sheet, in characters."""
+
+
+NEEDS = {Kind.XLSX: ("openpyxl", "openpyxl"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
+"""Package that a kind needs, and what to install for it."""
+
+
+def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write the tables of a result into a folder, all of them or none.
+
+    Parameters
+    ----------
+    result : Result
+    kind : Kind
+        Excel gets one file with a sheet a table, the others a file a table.
+    folder : Path
+        Made if it is not there.
+    force : bool
+        Whether files of these names may be replaced.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    ResultError
+        A file exists, the folder cannot be written, a package is missing, or a table is too long.
+    """
+    _demand_package(kind)
+    names = ["result.xlsx"] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
+    store.check_files(folder, names, force)
+    tables = {name: with_units(table(result)) for name, table in TABLES.items()}
+    contents = (
+        [_workbook(tables)] if kind is Kind.XLSX else [_bytes(t, kind) for t in tables.values()]
+    )
+    return store.save_files(folder, dict(zip(names, contents, strict=True)), force)
+
+
+def with_units(table: pd.DataFrame) -> pd.DataFrame:
+    """A table with headings for people: words, and the unit in brackets."""
+    return table.rename(columns=units.heading)
+
+
+def _demand_package(kind: Kind) -> None:
+    package, to_install = NEEDS.get(kind, ("", ""))
+    if package and find_spec(package) is None:
+        raise ResultError(
+            f'{kind} files need {package}, which is not installed: pip install "{to_install}", or '
+            "choose another kind"
+        )
+
+
+def _bytes(table: pd.DataFrame, kind: Kind) -> bytes:
+    if kind is Kind.PARQUET:
+        return table.to_parquet(index=False, engine="pyarrow")
+    return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
+
+
+def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
+    """A workbook with a sheet a table; headings stay in sight."""
+    import openpyxl  # a tenth of a second to load
+
+    for name, table in tables.items():
+        if len(table) >= MOST_ROWS:
+            raise ResultError(
+                f"the table {name} has {len(table)} rows, a sheet of Excel has room for "
+                f"{MOST_ROWS - 1}: choose csv or parquet"
+            )
+    book = openpyxl.Workbook(write_only=True)
+    for name, table in tables.items():
+        sheet = book.create_sheet(name)
+        sheet.freeze_panes = "A2"
+        for i, heading in enumerate(table.columns):
+            letter = openpyxl.utils.get_column_letter(i + 1)
+            sheet.column_dimensions[letter].width = min(WIDEST, len(heading) + 2)
+        sheet.append(list(table.columns))
+        known = table.astype(object).where(table.notna(), None)
+        for row in known.itertuples(index=False, name=None):
+            sheet.append(row)
+    file = io.BytesIO()
+    book.save(file)
+    return file.getvalue()

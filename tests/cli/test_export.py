@@ -1,0 +1,113 @@
+"""The command ``tpss export``: files of a result, and bad folders that are called what they are."""
+
+import json
+
+import pytest
+import xarray as xr
+
+from tpss.results.export import TABLES
+
+SHORT = ("--set", "simulation.duration_min=3", "--out", "demo", "--quiet")
+
+
+@pytest.fixture
+def demo(tpss_command, short_file, tmp_path):
+    """A saved result."""
+    assert tpss_command("run", short_file, *SHORT).code == 0
+    return tmp_path / "demo"
+
+
+def test_tables_are_written_beside_the_result(tpss_command, demo):
+    said = tpss_command("export", "demo")
+    assert (said.code, said.err) == (0, "")
+    assert said.out.startswith("Wrote into demo/tables: trips.csv, stations.csv, violations.csv")
+    assert {file.name for file in (demo / "tables").iterdir()} == {f"{name}.csv" for name in TABLES}
+
+
+def test_out_names_a_folder_that_may_be_new(tpss_command, demo, tmp_path):
+    said = tpss_command("export", "demo", "--to", "xlsx", "--out", "for/excel")
+    assert (said.code, said.out) == (0, "Wrote into for/excel: result.xlsx")
+    assert (tmp_path / "for" / "excel" / "result.xlsx").is_file()
+    assert {file.name for file in demo.iterdir()} == {"result.nc", "summary.json", "scenario.toml"}
+
+
+def test_existing_files_need_force(tpss_command, demo):
+    tpss_command("export", "demo")
+    said = tpss_command("export", "demo")
+    assert (said.code, said.out) == (2, "")
+    assert "demo/tables/trips.csv (and 14 more) exists already" in said.err
+    assert tpss_command("export", "demo", "--force").code == 0
+
+
+def test_a_result_that_is_replaced_takes_its_tables_along(tpss_command, demo, short_file):
+    """Tables of another run than the one beside them would mislead."""
+    tpss_command("export", "demo")
+    tpss_command("run", short_file, *SHORT, "--force")
+    assert not (demo / "tables").exists()
+
+
+def damage_dataset(folder):
+    whole = (folder / "result.nc").read_bytes()
+    (folder / "result.nc").write_bytes(whole[: len(whole) // 2])
+
+
+def summary_of_another_version(folder):
+    text = json.loads((folder / "summary.json").read_text("utf-8"))
+    text["result_format"] = 2
+    text["provenance"]["tpss_version"] = "0.9.0"
+    (folder / "summary.json").write_text(json.dumps(text))
+
+
+def summary_of_an_old_version(folder):
+    text = json.loads((folder / "summary.json").read_text("utf-8"))
+    del text["result_format"]
+    (folder / "summary.json").write_text(json.dumps(text))
+
+
+def dataset_of_another_version(folder):
+    dataset = xr.load_dataset(folder / "result.nc", engine="h5netcdf")
+    dataset.attrs["result_format"] = 2
+    dataset.to_netcdf(folder / "result.nc", engine="h5netcdf")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda folder: (folder / "result.nc").unlink(),
+         "demo is not a result folder: result.nc missing; name a folder that tpss run has written"),
+        (damage_dataset, "demo is damaged ("),
+        (summary_of_another_version,
+         "demo was written by another version of TPSS (0.9.0): its format is 2, this version reads 1; "
+         "run the scenario again (tpss run demo/scenario.toml), or read it with that version"),
+        (summary_of_an_old_version, "its format is older than any number, this version reads 1"),
+        (dataset_of_another_version, "result.nc and summary.json are not of the same version"),
+    ],
+    ids=["missing", "truncated", "newer", "older", "mixed"],
+)  # fmt: skip
+def test_a_bad_folder_is_called_what_it_is(tpss_command, demo, change, words):
+    change(demo)
+    said = tpss_command("export", "demo")
+    assert (said.code, said.out) == (2, "")
+    assert words in said.err
+    assert not (demo / "tables").exists()
+
+
+@pytest.mark.parametrize("folder", ["nowhere", ".", "short_line.toml"])
+def test_what_is_no_result_is_called_that(tpss_command, short_file, folder):
+    said = tpss_command("export", folder)
+    assert said.code == 2
+    assert "is not a result folder" in said.err
+
+
+def test_an_unknown_kind_is_refused_with_those_there_are(tpss_command, demo):
+    said = tpss_command("export", "demo", "--to", "ods")
+    assert said.code == 2
+    assert "csv" in said.err
+    assert "parquet" in said.err
+
+
+def test_a_folder_that_cannot_be_made_is_told(tpss_command, demo, tmp_path):
+    (tmp_path / "notes.txt").touch()
+    said = tpss_command("export", "demo", "--out", "notes.txt/a")
+    assert said.code == 2
+    assert "notes.txt/a cannot be written: Not a directory; give another --out" in said.err

@@ -1,0 +1,180 @@
+"""Tables of a result as CSV, Excel and Parquet: whole, with units in their headings, all or none."""
+
+import io
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tpss import ResultError
+from tpss.results import export, store
+from tpss.results.export import TABLES, with_units
+from tpss.results.file_kinds import Kind
+
+from scenarios import run
+
+KINDS = [
+    Kind.CSV,
+    Kind.XLSX,
+    pytest.param(
+        Kind.PARQUET,
+        marks=pytest.mark.skipif(
+            export.find_spec("pyarrow") is None, reason="pyarrow comes with tpss[parquet]"
+        ),
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def result():
+    """Two trains, one that arrives, and one that is too heavy for its supply."""
+    station = [{"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 2}]
+    return run(
+        {
+            "supply.converter_stations": station,
+            "traffic.0.headway_min": 15.0,
+            "standards.voltage_limits.umin1_kv": 14.9,
+            "standards.voltage_limits.umin2_kv": 14.5,
+        }
+    )
+
+
+def read(folder, kind, name):
+    if kind is Kind.XLSX:
+        return pd.read_excel(folder / "result.xlsx", sheet_name=name)
+    file = folder / f"{name}.{kind}"
+    return pd.read_csv(file) if kind is Kind.CSV else pd.read_parquet(file)
+
+
+def contents(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_comes_back_as_it_was(result, tmp_path, kind, name):
+    export.export(result, kind, tmp_path)
+    expected, found = with_units(TABLES[name](result)), read(tmp_path, kind, name)
+    assert found.columns.tolist() == expected.columns.tolist()
+    assert len(found) == len(expected)
+    for column in expected:
+        if expected[column].dtype == float:
+            values = found[column].to_numpy(dtype=float)
+            assert values == pytest.approx(expected[column].to_numpy(), rel=1e-9, nan_ok=True)
+        else:
+            assert found[column].fillna("").tolist() == expected[column].tolist()
+
+
+def test_headings_carry_units(result):
+    assert {"energy [MWh]", "distance [km]", "lowest voltage [kV]"} <= set(with_units(result.trips))
+    steps = set(with_units(result.train_steps))
+    assert {"time [min]", "speed [km/h]", "acceleration [m/s²]", "active power [MW]"} <= steps
+
+
+def test_trains_have_a_row_for_each_instant_at_which_they_are_there(result):
+    steps, dataset = result.train_steps, result.dataset
+    assert len(steps) == int(np.isfinite(dataset.position).sum())
+    first = steps[steps.train == "eastbound 1"]
+    assert first.time_min.is_monotonic_increasing
+    assert first.state.iloc[0] == "motoring"
+    assert first.state.iloc[-1] == "arrived"
+    speed = dataset.speed.sel(train="eastbound 1").dropna("time").to_numpy()
+    assert first.speed_kmh.tolist() == pytest.approx((3.6 * speed).tolist())
+
+
+def test_existing_files_are_not_overwritten(result, tmp_path):
+    (tmp_path / "trips.csv").write_text("mine")
+    (tmp_path / "notes.txt").write_text("mine too")
+    before = contents(tmp_path)
+    with pytest.raises(
+        ResultError, match=r"trips.csv exists already; give another --out, or --force"
+    ):
+        export.export(result, Kind.CSV, tmp_path)
+    assert contents(tmp_path) == before
+    export.export(result, Kind.CSV, tmp_path, force=True)
+    assert (tmp_path / "notes.txt").read_text() == "mine too"
+    assert len(read(tmp_path, Kind.CSV, "trips")) == len(result.trips)
+
+
+def test_several_existing_files_are_counted(result, tmp_path):
+    export.export(result, Kind.CSV, tmp_path)
+    with pytest.raises(ResultError, match=f"and {len(TABLES) - 1} more"):
+        export.export(result, Kind.CSV, tmp_path)
+
+
+def test_a_folder_of_that_name_is_never_replaced(result, tmp_path):
+    (tmp_path / "trips.csv").mkdir()
+    with pytest.raises(ResultError, match="is not a file, so it is not replaced"):
+        export.export(result, Kind.CSV, tmp_path, force=True)
+
+
+def test_a_file_is_no_folder(result, tmp_path):
+    (tmp_path / "notes.txt").touch()
+    with pytest.raises(ResultError, match=r"notes\.txt is not a folder"):
+        export.export(result, Kind.CSV, tmp_path / "notes.txt")
+
+
+@pytest.mark.parametrize("made", [True, False], ids=["old folder", "new folder"])
+def test_a_full_disk_leaves_nothing_behind(result, tmp_path, monkeypatch, made):
+    write, folder = store._write, tmp_path / "tables"
+    if made:
+        folder.mkdir()
+
+    def until_full(path, content):
+        if path.name == "losses.csv":
+            raise OSError(28, "No space left on device")
+        write(path, content)
+
+    monkeypatch.setattr(store, "_write", until_full)
+    with pytest.raises(ResultError, match=r"tables cannot be written: No space left.*--out"):
+        export.export(result, Kind.CSV, folder)
+    assert list(tmp_path.rglob("*")) == ([folder] if made else [])
+
+
+def test_files_that_were_replaced_come_back_if_one_cannot_be(result, tmp_path, monkeypatch):
+    (tmp_path / "energy.csv").write_text("old")
+    (tmp_path / "trips.csv").write_text("old too")
+    before, rename = contents(tmp_path), type(tmp_path).rename
+
+    def failing(path, target):
+        if path.name == "trips.csv" and path.parent.name == "new":
+            raise OSError(5, "Input/output error")
+        return rename(path, target)
+
+    monkeypatch.setattr(type(tmp_path), "rename", failing)
+    with pytest.raises(ResultError, match="Input/output error"):
+        export.export(result, Kind.CSV, tmp_path, force=True)
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    ("kind", "package", "remedy"),
+    [(Kind.XLSX, "openpyxl", "openpyxl"), (Kind.PARQUET, "pyarrow", r"tpss\[parquet\]")],
+)
+def test_a_missing_package_is_named_with_the_remedy(
+    result, tmp_path, monkeypatch, kind, package, remedy
+):
+    monkeypatch.setattr(export, "find_spec", lambda name: None if name == package else object())
+    message = rf'{kind} files need {package}, which is not installed: pip install "{remedy}"'
+    with pytest.raises(ResultError, match=message):
+        export.export(result, kind, tmp_path / "tables")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_table_too_long_for_a_sheet_is_refused(result, tmp_path, monkeypatch):
+    monkeypatch.setattr(export, "MOST_ROWS", 100)
+    with pytest.raises(
+        ResultError, match=r"load_duration has \d+ rows.*room for 99: choose csv or parquet"
+    ):
+        export.export(result, Kind.XLSX, tmp_path / "tables")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_csv_is_plain(result, tmp_path):
+    """Decimal points, commas, empty cells for what is not known, ten digits."""
+    export.export(result, Kind.CSV, tmp_path)
+    text = (tmp_path / "trips.csv").read_text("utf-8")
+    assert text.splitlines()[0].startswith("train,service,departure [min],arrival [min]")
+    assert "eastbound 2,eastbound,15,,," in text
+    assert "nan" not in text.lower()
+    assert pd.read_csv(io.StringIO(text)).shape == result.trips.shape
