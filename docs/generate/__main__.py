@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import command_line_page
+import evidence_page
 import library_page
 import result_page
 import scenario_page
@@ -15,6 +16,7 @@ REFERENCE = Path(__file__).parents[1] / "reference"
 NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not this page. -->"
 PAGES = {
     "command_line.md": command_line_page.page,
+    "evidence.md": evidence_page.page,
     "library.md": library_page.page,
     "result.md": result_page.page,
     "scenario.md": scenario_page.page,

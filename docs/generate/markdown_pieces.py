@@ -1,8 +1,10 @@
 """Pieces of Markdown that several pages use."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
+
+from tpss.units import label
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -11,6 +13,15 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     if not lines:
         return ""
     return "\n".join([f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *lines])
+
+
+def described(meanings: Mapping[str, str], found: Iterable[str], head: str) -> str:
+    """Table of names, units and meanings; what is found and what is described must agree."""
+    names = list(found)
+    if set(meanings) != set(names):
+        raise SystemExit(f"{head}s without meaning or gone: {set(meanings) ^ set(names)}")
+    rows = [(f"`{name}`", label(name), meanings[name]) for name in names]
+    return table((head, "unit", "meaning"), rows)
 
 
 def code(value: Any) -> str:

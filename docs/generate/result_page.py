@@ -2,16 +2,14 @@
 
 import inspect
 import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from markdown_pieces import code, prose, table
+from markdown_pieces import code, described, prose, table
 
 import tpss
+from tpss.results import tables
 from tpss.results.audit import LIMITS, Audit
-from tpss.units import label
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
 
@@ -31,7 +29,11 @@ result](../how-to/read-a-result.md) shows how to work with it, the
 | `scenario.toml` | the scenario as run, with all defaults and library values; it can be run again |
 
 A folder is written whole or not at all. `--force` replaces a result folder, and nothing but a
-result folder."""
+result folder. [`tpss export`](command_line.md#tpss-export) adds a folder `tables` with files for
+spreadsheets.
+
+A result says in which version of this format it is written (`result_format`). A version of TPSS
+that does not read it says so; the scenario in the folder can be run again."""
 
 DATASET = """## Dataset
 
@@ -45,8 +47,9 @@ STATES = "`train_state` has the values"
 
 TABLES = """## Tables
 
-`Result.trips` and `Result.stations` are pandas tables. What a train has not done yet, or not within
-the run, is NaN."""
+`Result.trips`, `Result.stations` and `Result.train_steps` are pandas tables; those of
+`Result.standards` stand on [a page of their own](evidence.md). What a train has not done yet, or not
+within the run, is NaN."""
 
 TRIPS = {
     "train": "name",
@@ -71,7 +74,15 @@ STATIONS = {
     "peak_loading": "highest of these loadings",
     "mean_converters": "mean number of converters running",
 }
+TRAIN_STEPS = {
+    "train": "name",
+    "service": "traffic entry that the train belongs to",
+    "time_min": "time from the start",
+    "state": "name of its `train_state`; empty at the last instant of the run",
+    **{column: f"`{name}`" for column, (name, _) in tables.TRAIN_STEPS.items()},
+}
 SUMMARY = {
+    "result_format": "version of the format in which the result is written",
     "name": "of the scenario",
     "description": "of the scenario",
     "status": "`finished`, `collapsed` (the line cannot carry its load), `stalled` or `interrupted`",
@@ -87,6 +98,7 @@ SUMMARY = {
     "limited": "train-steps in which a model was limited or left its range",
     "audit": "figures of the audit, below",
     "simulation_s": "computing time of the simulation",
+    "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
 }
 EARLY_END = {
@@ -94,6 +106,7 @@ EARLY_END = {
     "advice": "only after an early end: what would help",
 }
 ATTRIBUTES = {
+    "result_format": "as in the summary",
     "title": "name of the scenario",
     "status": "as in the summary",
     "time_step_s": "time step",
@@ -124,15 +137,17 @@ def page() -> str:
         "Coordinates:",
         _coordinates(result),
         "Attributes:",
-        _described(attributes, result.dataset.attrs, "attribute"),
+        described(attributes, result.dataset.attrs, "attribute"),
         TABLES,
         "### `trips`, a row a train",
-        _described(TRIPS, result.trips, "column"),
+        described(TRIPS, result.trips, "column"),
         "### `stations`, a row a converter station",
-        _described(STATIONS, result.stations, "column"),
+        described(STATIONS, result.stations, "column"),
+        "### `train_steps`, a row a train and instant",
+        described(TRAIN_STEPS, result.train_steps, "column"),
         "## Summary",
         "`Result.summary` is a dictionary, and the content of `summary.json`.",
-        _described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
+        described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
         AUDIT,
         _audit(),
     ]
@@ -165,14 +180,6 @@ def _coordinates(result: tpss.Result) -> str:
         for name, values in result.dataset.coords.items()
     ]
     return table(("coordinate", "dimension", "unit", "meaning"), rows)
-
-
-def _described(meanings: Mapping[str, str], found: Any, head: str) -> str:
-    """Table of names, units and meanings; what is found and what is described must agree."""
-    if set(meanings) != set(found):
-        raise SystemExit(f"{head}s without meaning or gone: {set(meanings) ^ set(found)}")
-    rows = [(f"`{name}`", label(name), meanings[name]) for name in found]
-    return table((head, "unit", "meaning"), rows)
 
 
 def _audit() -> str:

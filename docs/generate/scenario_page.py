@@ -36,10 +36,12 @@ DEFAULTS = {
     "Simulation.until": "this, unless `duration_min`",
     "Traffic.headway_min": "this or `departures_min`",
     "Traffic.departures_min": "this or `headway_min`",
+    "VoltageLimits.mean_useful_kv": "the system's, if any",
+    "VoltageLimits.mean_useful_fast_kv": "the system's, if any",
     "HighVoltageLine.transformers_km": "this or `transformers`",
     "HighVoltageLine.transformers": "this or `transformers_km`",
 }
-"""Keys of which one is needed, which the schema checks in code."""
+"""Defaults that the schema does not know, such as of keys of which one is needed."""
 
 HEAD = ("key", "value", "unit", "default", "meaning")
 BOUNDS = {Ge: ("ge", "≥"), Gt: ("gt", ">"), Le: ("le", "≤"), Lt: ("lt", "<")}

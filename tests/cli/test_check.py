@@ -119,7 +119,7 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
           "{from_km = 161, speed_kmh = 60}]"],
          "line.speed_limits.1 begins at 161 km, where the line has ended (160.1 km)"),
         (["standards.voltage_limits.system=25kV-50Hz",
-          "supply.converter_stations.1.type={rating_mva = 10, no_load_voltage_kv = 27.5, "
+          "supply.converter_stations.1.type={rating_mva = 10, no_load_voltage_kv = 19.5, "
           "droop_kv_per_mvar = 0.05, generator_reactance_pu = 0.5, generator_base_mva = 10, "
           "motor_reactance_pu = 0.5, motor_base_mva = 10, base_voltage_kv = 16.5}"],
          "supply.converter_stations.0: it feeds 16.5 kV without load, outside of the 19 to 27.5 kV of "

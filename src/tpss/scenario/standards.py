@@ -38,7 +38,7 @@ class VoltageLimits(Part):
     mean_useful_kv: Real | None = Field(
         default=None,
         gt=0,
-        description="Least mean useful voltage of zones and trains; leave it out: not judged.",
+        description="Least mean useful voltage of zones and trains; without one they are not judged.",
     )
     mean_useful_fast_kv: Real | None = Field(
         default=None, gt=0, description="The same on lines with speeds above 200 km/h."
