@@ -10,6 +10,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from string import Template
 
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
 from cases import Case, Drawing, Quantity, load_cases
 from drawings import DRAWINGS, overview
 from outcomes import Outcome, compare_all, result_of
@@ -17,6 +22,7 @@ from outcomes import Outcome, compare_all, result_of
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "validation.md"
 IMAGES = DOCS / "validation"
+LARGEST_IMAGE = 100_000
 TEMPLATE = Path(__file__).parent / "page.md"
 GROUPS = {
     "Table": "Published tables",
@@ -49,6 +55,8 @@ def stale(text: str, cases: Sequence[Case]) -> list[str]:
     there = {file.name for file in IMAGES.glob("*")}
     faults += [f"validation/{name} is missing; {remedy}" for name in sorted(wanted - there)]
     faults += [f"validation/{name} belongs to no case; delete it" for name in there - wanted]
+    large = [file.name for file in IMAGES.glob("*") if file.stat().st_size > LARGEST_IMAGE]
+    faults += [f"validation/{name} is larger than {LARGEST_IMAGE} bytes" for name in large]
     return faults
 
 
@@ -63,7 +71,7 @@ def draw(cases: Sequence[Case], outcomes: dict[str, list[Outcome]]) -> None:
     """Write all figures."""
     IMAGES.mkdir(exist_ok=True)
     tables = [o for case in cases for o in outcomes[case.name] if kind(case) == "Table"]
-    overview(tables).savefig(IMAGES / "overview.png", metadata={"Software": None})
+    save(overview(tables), "overview.png")
     for case in cases:
         for name, drawing in images(case):
             runs = {
@@ -73,8 +81,15 @@ def draw(cases: Sequence[Case], outcomes: dict[str, list[Outcome]]) -> None:
                 for run in drawing.runs
                 for variant in drawing.variants
             }
-            figure = DRAWINGS[drawing.draw](runs, **drawing.arguments)
-            figure.savefig(IMAGES / name, metadata={"Software": None})
+            save(DRAWINGS[drawing.draw](runs, **drawing.arguments), name)
+
+
+def save(figure: Figure, name: str) -> None:
+    """Write a figure in 64 colours, which are enough for lines and halve its file."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+    picture.quantize(64).save(IMAGES / name, optimize=True)
 
 
 def kind(case: Case) -> str:
