@@ -67,7 +67,7 @@ def prepare(scenario: Scenario) -> "Prepared":
     clock = clock_of(scenario)
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
-    compile_kernels(model)
+    compile_kernels(model, clock)
     return Prepared(scenario, model, layout, services, clock)
 
 

@@ -116,7 +116,8 @@ def test_train_above_its_limit_is_not_braked_for_one_that_is_no_lower():
 
 def test_train_may_be_placed_above_the_limit_that_its_driver_does_not_keep():
     placed = [{"position_km": 3.0, "speed_kmh": 64.0}]
-    result = aggressive({"traffic.0.initial_trains": placed})
+    limits = [{"from_km": km, "speed_kmh": 60.0} for km in (0.0, 3.1)]
+    result = aggressive({"traffic.0.initial_trains": placed, "line.speed_limits": limits})
     assert phases(result, "eastbound initial 1")[0] == "coasting"
 
 

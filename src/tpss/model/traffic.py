@@ -77,7 +77,10 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
         slowest = max(0.0, speed - retardation * h)
         for j in range(here + 1, limits.from_m.size):
             distance = limits.from_m[j] - position_m
-            if not can_meet_limit(speed, slowest, distance, limits.value[j], retardation, h):
+            lower = limits.value[j] < limits.value[j - 1]
+            if lower and not can_meet_limit(
+                speed, slowest, distance, limits.value[j], retardation, h
+            ):
                 problem = f"too fast to meet the limit at {limits.from_m[j] / 1e3:g} km"
     if not problem:
         return []

@@ -127,8 +127,8 @@ class Search:
         voltages = slice(self.grid.size, 2 * self.grid.size)
         low[voltages], high[voltages] = LOWEST_VOLTAGE, HIGHEST_VOLTAGE
         minimum = least_squares(
-            problem.residuals, start, problem.jacobian, (low, high), method="dogbox",
-            ftol=None, xtol=SHORTEST_MOVE, gtol=None, max_nfev=MOST_EVALUATIONS,
+            problem.residuals, np.clip(start, low, high), problem.jacobian, (low, high),
+            method="dogbox", ftol=None, xtol=SHORTEST_MOVE, gtol=None, max_nfev=MOST_EVALUATIONS,
         )  # fmt: skip
         self.evaluations += minimum.nfev
         sign = np.linalg.slogdet(minimum.jac)[0]

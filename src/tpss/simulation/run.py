@@ -116,9 +116,14 @@ def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int
         signal.signal(signal.SIGINT, usual)
 
 
-def compile_kernels(model: Model) -> None:
-    """Compile the clock, or load it from the cache, without simulating anything."""
+def compile_kernels(model: Model, clock: Clock = advance) -> None:
+    """Compile the kernels, or load them from the cache, without simulating anything.
+
+    What another clock than `advance` calls one by one is compiled by a step without trains.
+    """
     Run(model, [], 0).advance_to(0)
+    if clock is not advance:
+        Run(model, [], 1, clock).advance_to(1)
 
 
 def demand_room(model: Model, steps: int, trains: int) -> None:
