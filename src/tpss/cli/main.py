@@ -246,7 +246,8 @@ def _imports() -> None:
 )
 def ttobench(
     files: Annotated[
-        list[Path], typer.Argument(help="Tracks and trains (JSON).", show_default=False)
+        list[Path],
+        typer.Argument(metavar="FILE...", help="Tracks and trains (JSON).", show_default=False),
     ],
     out: Annotated[Path, typer.Option(help="Folder for the files.", show_default=False)],
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
