@@ -287,7 +287,8 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     trains, h = outcome.recording.trains, model.options.step_s
     kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
     before, after = trains[:-1], trains[1:]
-    way_m = after["position"] - before["position"]
+    # Not the difference of positions, which would round a short way of a train far along the line.
+    way_m = h * (before["speed"] + after["speed"]) / 2.0
     efficiency = _efficiency(before["speed"], kind, model.points)
     power_w = (before["active_power"] - kind.auxiliary_power_w) * efficiency
     work = power_w * h / kind.slip_factor
