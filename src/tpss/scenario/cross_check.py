@@ -45,7 +45,7 @@ CLOSEST_KM = 0.001 - 1e-9
 """Least distance between two feeding points, with what decimal places may be off. [km]"""
 
 LARGEST = 1e300
-"""Numbers beyond it are no numbers here; a whole number may have any number of digits."""
+"""Larger numbers count as this one; a whole number may have any number of digits."""
 
 
 def _table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -62,9 +62,11 @@ def _items(document: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping
 
 def _number(table: Mapping[str, Any], key: str) -> float | None:
     value = table.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > LARGEST:
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return None
-    return float(value) if math.isfinite(value) else None
+    if not -math.inf < value < math.inf:
+        return None
+    return float(max(-LARGEST, min(value, LARGEST)))
 
 
 def _outside(key: str, position: float | None, length: float | None) -> Iterator[_Fault]:

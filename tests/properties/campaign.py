@@ -1,0 +1,98 @@
+"""Many random scenarios, half of them spoilt, each judged; a tally of outcomes, and the faults.
+
+    python -m tests.properties.campaign --cases 10000 --seed 1
+
+The same seed gives the same cases.  A fault is shrunk to its smallest scenario, which is printed as
+a Python literal: `judge` of it shows the fault again.  The exit code is 1 if there were faults.
+"""
+
+import argparse
+import sys
+import time
+import traceback
+import warnings
+from collections import Counter
+from typing import Any
+
+from hypothesis import HealthCheck, Phase, given, seed, settings
+
+from .judge import judge, warm_up
+from .strategies import sound_scenarios, spoilt_scenarios
+
+Document = dict[str, Any]
+
+BATCH = 250
+"""Cases that share a seed; the first fault of a batch ends it."""
+
+TITLES = ("sound", "spoilt")
+
+
+class Campaign:
+    """What has come of the cases so far."""
+
+    def __init__(self) -> None:
+        self.tally: Counter[tuple[str, str]] = Counter()
+        self.faults: dict[str, Document] = {}
+        self.slowest_s = 0.0
+
+    def run_batch(self, title: str, number: int, cases: int) -> None:
+        """Judge so many cases of one kind; note the fault that ends them, if there is one."""
+        last: list[Document] = []
+
+        @seed(number)
+        @settings(
+            max_examples=cases,
+            database=None,
+            deadline=None,
+            phases=[Phase.generate, Phase.shrink],
+            suppress_health_check=list(HealthCheck),
+            print_blob=False,
+        )
+        @given(sound_scenarios() if title == "sound" else spoilt_scenarios())
+        def look(document: Document) -> None:
+            last[:] = [document]
+            started = time.perf_counter()
+            self.tally[title, judge(document)] += 1
+            self.slowest_s = max(self.slowest_s, time.perf_counter() - started)
+
+        try:
+            look()
+        except Exception as error:
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            fault = f"{type(error).__name__} in {where.name}: {error}".splitlines()[0]
+            self.tally[title, "fault"] += 1
+            self.faults.setdefault(fault, last[0])
+
+    def report(self) -> None:
+        """Print tally and faults."""
+        print(f"\n{sum(self.tally.values())} cases, the slowest took {self.slowest_s:.1f} s")
+        for title in TITLES:
+            print(f"\n{title} scenarios")
+            for (of, outcome), count in sorted(self.tally.items(), key=lambda item: -item[1]):
+                if of == title:
+                    print(f"{count:8d}  {outcome}")
+        print(f"\n{len(self.faults)} faults")
+        for fault, document in self.faults.items():
+            print(f"\n{fault}\n{document!r}")
+
+
+def main() -> int:
+    """Run a campaign; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cases", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    asked = parser.parse_args()
+    warnings.simplefilter("error")
+    warm_up()
+    campaign = Campaign()
+    for begun in range(0, asked.cases, BATCH):
+        number = begun // BATCH
+        title = TITLES[number % 2]
+        campaign.run_batch(title, 100_000 * asked.seed + number, min(BATCH, asked.cases - begun))
+        print(f"\r{begun + BATCH} cases, {len(campaign.faults)} faults", end="", file=sys.stderr)
+    campaign.report()
+    return 1 if campaign.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,152 @@
+"""Any scenario has one of four outcomes: a result, an early end that says why, findings, a refusal."""
+
+import os
+import re
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from tpss import Result, Scenario, ScenarioError, simulate
+from tpss.cli.run import DONE, NO_SOLUTION, exit_code
+from tpss.errors import TooLargeError
+from tpss.model import build_model
+from tpss.model.build import steps_of
+from tpss.model.traffic import build_services
+from tpss.simulation.run import foreseen_steps
+
+from .roots import Replay
+from .rules import keep_the_rules
+
+Document = dict[str, Any]
+
+PATIENCE_S = 300.0
+"""A case that takes longer hangs: it should take some hundredths of one."""
+
+MOST_STEPS, MOST_TRAINS = 5_000, 200
+"""Larger runs, which a spoilt scenario may ask for, are checked but not run."""
+
+
+SMALLEST: Document = {
+    "format": 1,
+    "name": "smallest",
+    "simulation": {"time_step_min": 1.0, "duration_min": 2.0},
+    "line": {
+        "length_km": 5.0,
+        "gradients": [{"from_km": 0.0, "permille": 0.0}],
+        "speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0}],
+        "stations": [{"name": "A", "position_km": 0.0}, {"name": "B", "position_km": 1.0}],
+    },
+    "supply": {
+        "frequency_hz": 16.7,
+        "catenary": "BT",
+        "converter_stations": [
+            {"name": "A", "position_km": 0.0, "type": "Q48/Q49", "converters": 1}
+        ],
+    },
+    "trains": {"freight": {"model": "Rc4-freight-1470t"}},
+    "traffic": [{"name": "a", "train": "freight", "from": "A", "to": "B", "headway_min": 60.0}],
+}
+
+
+@contextmanager
+def patience(document: Document) -> Iterator[None]:
+    """End the process, the scenario printed, if a case hangs; a kernel cannot be interrupted."""
+
+    def give_up() -> None:
+        print(f"hangs: {document!r}", file=sys.stderr, flush=True)
+        os._exit(1)
+
+    watch = threading.Timer(PATIENCE_S, give_up)
+    watch.daemon = True
+    watch.start()
+    try:
+        yield
+    finally:
+        watch.cancel()
+
+
+def warm_up() -> None:
+    """Compile all kernels, which takes longer than any case may."""
+    judge_result(simulate(Scenario.from_document(SMALLEST, "smallest")))
+
+
+def judge(document: Document) -> str:
+    """Check and run a scenario; return the kind of its outcome."""
+    with patience(document):
+        try:
+            scenario = Scenario.from_document(document, "random")
+            if is_long(scenario):
+                return "checked, too long to run"
+            result = simulate(scenario)
+        except ScenarioError as error:
+            return judge_findings(error)
+        except TooLargeError:
+            return "refused: too large"
+        judge_result(result)
+        return result.status
+
+
+def is_long(scenario: Scenario) -> bool:
+    """Whether a run would take more than a moment."""
+    model, _ = build_model(scenario)
+    services = build_services(scenario, model)
+    h = model.options.step_s
+    steps = foreseen_steps(model, services[0])
+    if scenario.simulation.duration_min is not None:
+        steps = steps_of(60.0 * scenario.simulation.duration_min, h)
+    on_line = sum(
+        foreseen_steps(model, service) * h / service.headway_s
+        for service in services
+        if service.already_running
+    )
+    departing = sum(service.departures_before(steps * h) for service in services)
+    return steps > MOST_STEPS or on_line + departing > MOST_TRAINS
+
+
+def judge_findings(error: ScenarioError) -> str:
+    """Each finding says where, what, and what to do; the kind is that of the first."""
+    for finding in error.findings:
+        for part in (finding.file, finding.key, finding.problem, finding.remedy):
+            assert part.strip(), finding
+    return "finding: " + re.sub(r"-?\d+\S*", "…", error.findings[0].problem)
+
+
+def judge_result(result: Result) -> None:
+    """Everything that a run promises."""
+    judge_ending(result)
+    keep_the_rules(result)
+    judge_roots(result)
+
+
+def judge_ending(result: Result) -> None:
+    """A run that ends early says why, what helps, and has its exit code."""
+    if result.status == "finished":
+        assert exit_code(result) == DONE
+        return
+    assert result.status in ("collapsed", "stalled")
+    assert exit_code(result) == NO_SOLUTION
+    assert result.summary["problem"]
+    assert result.summary["advice"]
+
+
+def judge_roots(result: Result) -> None:
+    """Some steps again, by raising all loads from zero: the same root, or none where it collapsed."""
+    data = result.dataset
+    steps, volts = data.sizes["time"] - 1, data.pantograph_voltage.to_numpy()
+    picks = {0, steps // 2, steps - 1}
+    if np.isfinite(volts).any():
+        picks.add(int(np.nanargmin(volts) // volts.shape[1]))
+    replay = Replay(result.scenario, steps + 1)
+    for step in sorted(picks & set(range(steps))):
+        share, again = replay.root_of_step(step)
+        assert share == 1.0, f"step {step} is solved, but by raising the loads only {share} of them"
+        drawn = np.isfinite(volts[step])
+        error = np.abs(again[: drawn.size][drawn] / volts[step][drawn] - 1.0).max(initial=0.0)
+        assert error < 1e-6, f"a false root in step {step}: off by {error}"
+    if result.status == "collapsed":
+        share, _ = replay.root_of_step(steps)
+        assert share < 1.0, "the load of the collapse can be carried"

@@ -1,0 +1,88 @@
+"""The root that loads raised from zero in small steps lead to: a second opinion on a run."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss import Scenario
+from tpss.model import build_model
+from tpss.model.traffic import build_services
+from tpss.powerflow.chain import FLAT, WARM
+from tpss.powerflow.network import Loads
+from tpss.powerflow.newton import SOLVED, newton
+from tpss.powerflow.solve import start_flat
+from tpss.simulation.advance import begin_step
+from tpss.simulation.coupling import settle
+from tpss.simulation.driver import aim
+from tpss.simulation.run import Run, trains_on_line
+from tpss.simulation.state import Model, State
+from tpss.simulation.timetable import departing_trains
+from tpss.simulation.traffic import begin_plan, must_plan
+
+RISE = 0.04
+"""Share of the load by which it is raised at a time. [1]"""
+
+FINEST = 2e-4
+"""Where not even this much more can be carried, the branch has ended. [1]"""
+
+
+class Replay:
+    """A scenario's run, done again, to look into single steps of it in ascending order."""
+
+    def __init__(self, scenario: Scenario, steps: int) -> None:
+        model, _ = build_model(scenario)
+        services = build_services(scenario, model)
+        trains = trains_on_line(model, services)
+        trains += departing_trains(services, model.options.step_s, 0, steps)
+        self.run = Run(model, trains, steps)
+
+    def root_of_step(self, step: int) -> tuple[float, npt.NDArray[np.float64]]:
+        """Share of a step's load that is carried, and each train's pantograph voltage (NaN: none)."""
+        run = self.run
+        run.advance_to(step)
+        untouched = copy.deepcopy(run.state)
+        count = begin_step(step, run.model, run.state, run.recording)
+        share = solve_step_slowly(count, run.model, run.state)
+        places = run.state.flow.standing[:count]
+        voltages = np.full(len(run.trains), np.nan)
+        voltages[places.train] = np.abs(places.voltage_v)
+        run.state = untouched
+        return share, voltages
+
+
+def solve_step_slowly(count: int, model: Model, state: State) -> float:
+    """As the clock does it, but every load flow begins without load; return the share carried."""
+    planned = True
+    share = 1.0
+    while planned and share == 1.0:
+        share = raise_loads(model, state)
+        planned = False
+        for place in state.flow.standing[:count]:
+            train = state.trains[place.train]
+            train.voltage_v = abs(place.voltage_v)
+            settle(train, model)
+            if must_plan(train, model):
+                begin_plan(train, model)
+                aim(train, model)
+                planned = True
+    return share
+
+
+def raise_loads(model: Model, state: State) -> float:
+    """Raise all loads from zero, little by little; return the share that is carried."""
+    flow = state.flow
+    loads = Loads(state.trains, model.types, model.machine)
+    start_flat(flow)
+    share, rise, start = 0.0, RISE, FLAT
+    while share < 1.0 and rise > FINEST:
+        before: list[Any] = [flow.nodes.voltage_v.copy(), flow.sections.current_a.copy()]
+        target = min(1.0, share + rise)
+        status, _ = newton(target, start, model.network, flow, loads)
+        if status == SOLVED:
+            share, start = target, WARM
+        else:
+            flow.nodes.voltage_v, flow.sections.current_a = before
+            rise /= 2.0
+    return share

@@ -1,0 +1,59 @@
+"""Random scenarios end in one of four ways: a result, an early end that says why, findings, a refusal.
+
+Never in another exception, in values that are not numbers, in a hang, or in a root of the load flow
+other than the one that loads raised from zero lead to.  The same cases are drawn every time;
+`campaign` draws others, as many as one likes.
+"""
+
+from collections import Counter
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from properties.judge import judge, warm_up
+from properties.strategies import sound_scenarios, spoilt_scenarios
+
+CASES = settings(
+    max_examples=200,
+    derandomize=True,
+    database=None,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _compiled() -> None:
+    warm_up()
+
+
+def test_sound_scenarios_run_by_the_rules_or_say_why_not():
+    """Trains may be placed too fast, lines overloaded, hills too steep; nothing else goes wrong."""
+    outcomes: Counter[str] = Counter()
+
+    @CASES
+    @given(sound_scenarios())
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document)] += 1
+
+    look()
+    cases = sum(outcomes.values())
+    assert cases >= 200
+    assert outcomes["finished"] > cases / 3
+    assert outcomes["stalled"] > cases / 50
+    assert outcomes["collapsed"] > cases / 50
+
+
+def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():
+    outcomes: Counter[str] = Counter()
+
+    @CASES
+    @given(spoilt_scenarios())
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document).split(":")[0]] += 1
+
+    look()
+    cases = sum(outcomes.values())
+    assert cases >= 200
+    assert outcomes["finding"] > cases / 2
