@@ -1,0 +1,109 @@
+"""TPSS: a loop in compiled code, as a simulation runs it, and one in Python."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tpss.kernel import blank_records, kernel
+from tpss.model.trains import build_machine
+from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.physics.locomotive import TRAIN_TYPE
+from tpss.powerflow.chain import WARM, place_trains
+from tpss.powerflow.network import Flow, Loads, Network, new_flow
+from tpss.powerflow.newton import SOLVED, newton
+from tpss.powerflow.solve import start_flat
+from tpss.simulation.state import TRAIN
+
+from load_flow.case import Case, Complexes, Floats, Run, build_network
+
+
+@kernel
+def take_step(step: int, position_m: Floats, power_va: Complexes, loads: Loads) -> None:
+    """Put all trains to their places in a step, with their loads of that step."""
+    for k in range(loads.trains.size):
+        kind = loads.types[k]
+        kind.auxiliary_power_w = power_va[step, k].real
+        kind.auxiliary_reactive_power_var = power_va[step, k].imag
+        loads.trains[k].position_m = position_m[step, k]
+
+
+@kernel
+def note_voltages(flow: Flow, voltage: Complexes) -> None:
+    nodes = flow.nodes.size
+    for n in range(nodes):
+        voltage[n] = flow.nodes[n].voltage_v / BASE_VOLTAGE_V
+    for k in range(flow.standing.size):
+        voltage[nodes + k] = flow.standing[k].voltage_v / BASE_VOLTAGE_V
+
+
+@kernel
+def solve_steps(
+    position_m: Floats, power_va: Complexes, network: Network, flow: Flow, loads: Loads,
+    voltage: Complexes,
+) -> int:  # fmt: skip
+    """Solve all steps; return the number of passes over the network, or -1 after a failure."""
+    total = 0
+    for step in range(position_m.shape[0]):
+        take_step(step, position_m, power_va, loads)
+        place_trains(loads.trains.size, loads.trains, network, flow)
+        status, passes = newton(1.0, WARM, network, flow, loads)
+        if status != SOLVED:
+            return -1
+        total += passes
+        note_voltages(flow, voltage[step])
+    return total
+
+
+def constant_loads(trains: int) -> Loads:
+    """Trains of which each draws a power of its own, at any voltage the same."""
+    types, rows = blank_records(trains, TRAIN_TYPE), blank_records(trains, TRAIN)
+    types.efficiency, types.inertia_kg, types.slip_factor = 1.0, 1.0, 1.0
+    types.filter_reactance_ohm = math.inf
+    rows.train_type = np.arange(trains)
+    return Loads(rows, types, build_machine())
+
+
+def start(case: Case) -> tuple[Network, Flow, Loads]:
+    """The state without load, which the first run of a loop begins from."""
+    flow, loads = new_flow(case.network, case.trains), constant_loads(case.trains)
+    start_flat(flow)
+    return case.network, flow, loads
+
+
+def prepare_compiled(case: Case) -> Run:
+    """All steps in one call."""
+    state, voltage = start(case), np.zeros((case.steps, case.buses), dtype=complex)
+
+    def run() -> Complexes:
+        passes = solve_steps(case.position_m, case.power_va, *state, voltage)
+        assert passes > 0
+        return voltage
+
+    return run
+
+
+def prepare_called(case: Case) -> Run:
+    """A call from Python for each step."""
+    state, voltage = start(case), np.zeros((case.steps, case.buses), dtype=complex)
+
+    def run() -> Complexes:
+        for step in range(case.steps):
+            one = slice(step, step + 1)
+            passes = solve_steps(case.position_m[one], case.power_va[one], *state, voltage[one])
+            assert passes > 0
+        return voltage
+
+    return run
+
+
+def prepare_with_converters(case: Case) -> Run:
+    """All steps in one call, with the converter law in place of the ideal sources."""
+    return prepare_compiled(replace(case, network=build_network()))
+
+
+def passes_a_step(case: Case) -> float:
+    """Mean number of passes over the network, from the solution of the step before."""
+    state, voltage = start(case), np.zeros((case.steps, case.buses), dtype=complex)
+    solve_steps(case.position_m, case.power_va, *state, voltage)
+    return solve_steps(case.position_m, case.power_va, *state, voltage) / case.steps
