@@ -38,7 +38,7 @@ from typing import Any
 
 from tpss.kernel import inlined, kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.physics.converter import terminal_voltage
+from tpss.physics.converter import converter_voltage, terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
 from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
@@ -286,11 +286,27 @@ def voltages_are_plausible(flow: Flow) -> bool:
     return True
 
 
+@inlined
+def sources_are_plausible(network: Network, flow: Flow) -> bool:
+    """Whether the droop leaves every station a positive voltage.
+
+    The law goes on through zero.  Stations out of phase can meet it with a voltage of turned sign, at
+    some hundred times the reactive power of their machines.
+    """
+    for s in range(network.sources.size):
+        law = network.sources[s]
+        node = flow.nodes[law.node]
+        reactive_var = (node.voltage_v * node.leaving_current_a.conjugate()).imag
+        if converter_voltage(reactive_var, flow.sources[s].converters, law) <= 0.0:
+            return False
+    return True
+
+
 @kernel
-def _conclude(sign: float, flow: Flow) -> int:
+def _conclude(sign: float, network: Network, flow: Flow) -> int:
     """Status of a state without mismatch."""
     _close_gaps(flow)
-    if not voltages_are_plausible(flow):
+    if not (voltages_are_plausible(flow) and sources_are_plausible(network, flow)):
         return IMPLAUSIBLE_VOLTAGE
     return SOLVED if sign > 0.0 else WRONG_BRANCH
 
@@ -311,7 +327,7 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     while passes < MOST_PASSES and math.isfinite(merit):
         sign = chains * _find_direction(network, flow)
         if mismatch < network.tolerance and start == WARM:
-            return _conclude(sign, flow), passes
+            return _conclude(sign, network, flow), passes
         _mark_base(flow)
         if mismatch < CLOSE and start == WARM:
             # One step from here is likely the solution: look, without derivatives, before going on.
@@ -319,7 +335,7 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
             mismatch, _, _ = evaluate(scale, CHECK, network, flow, loads)
             passes += 1
             if mismatch < network.tolerance:
-                return _conclude(sign, flow), passes
+                return _conclude(sign, network, flow), passes
         size = 1.0
         for _ in range(MOST_HALVINGS):
             _take_step(size, flow)
