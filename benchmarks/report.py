@@ -12,6 +12,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"
+FIGURES = ROOT / "docs" / "figures"
 RESULTS = Path(__file__).parent / "results"
 
 
@@ -31,7 +32,7 @@ def machine(*packages: str) -> dict[str, str]:
     return {
         "processor": _processor(),
         "cores": str(os.cpu_count()),
-        "system": f"{platform.system()} {platform.machine()}",
+        platform.system(): platform.release(),
         "Python": platform.python_version(),
         **{name: version(name) for name in ("tpss", "numba", "numpy", *packages)},
     }
@@ -59,7 +60,10 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def caption(described: dict[str, str]) -> str:
     """The machine as a sentence."""
-    return ", ".join(f"{name} {value}" for name, value in described.items()) + "."
+    processor, cores, *others = described.values()
+    names = list(described)[2:]
+    versions = ", ".join(f"{name} {value}" for name, value in zip(names, others, strict=True))
+    return f"{processor}, {cores} cores; {versions}."
 
 
 def deliver(name: str, result: dict[str, Any], text: str, publish: bool) -> None:
