@@ -1,17 +1,15 @@
 """Time whole simulations after compilation: medians of several runs.
 
-Usage: python benchmarks/simulation.py [--runs N]
+Usage: python benchmarks/simulation.py [--runs N] [--publish]
 """
 
-import argparse
-import platform
 import statistics
 import time
 from pathlib import Path
 
-import numba
-
 import tpss
+
+from report import arguments, caption, deliver, machine, stay_on_one_core, table
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = {
@@ -38,14 +36,22 @@ def measure(file: str, changes: dict, runs: int) -> tuple[int, float, float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=11)
-    runs = parser.parse_args().runs
-    print(f"Python {platform.python_version()}, numba {numba.__version__}, median of {runs} runs\n")
-    print("| case | steps | simulation [ms] | with audit and dataset [ms] |\n|---|---|---|---|")
-    for name, (file, changes) in CASES.items():
-        steps, inner, whole = measure(file, changes, runs)
-        print(f"| {name} | {steps} | {inner:.1f} | {whole:.1f} |")
+    options = arguments(__doc__, runs=11)
+    stay_on_one_core()
+    found = {name: measure(file, changes, options.runs) for name, (file, changes) in CASES.items()}
+    where = machine()
+    result = {
+        "machine": where,
+        "runs": options.runs,
+        "cases": {
+            name: {"steps": steps, "simulation_ms": inner, "whole_ms": whole}
+            for name, (steps, inner, whole) in found.items()
+        },
+    }
+    rows = [(name, f"{n:,}", f"{a:.1f}", f"{b:.1f}") for name, (n, a, b) in found.items()]
+    head = ("case", "steps", "simulation [ms]", "with audit and dataset [ms]")
+    text = f"{table(head, rows)}\n\nMedian of {options.runs} runs. {caption(where)}"
+    deliver("simulation", result, text, options.publish)
 
 
 if __name__ == "__main__":

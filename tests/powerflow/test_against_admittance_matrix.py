@@ -12,6 +12,7 @@ from tpss.powerflow.block_lu import find_pattern, solve_blocks
 from tpss.powerflow.network import BLOCK, NODE_FLOW, assemble
 from tpss.powerflow.solve import solve
 
+from continuation import admittance_matrix
 from networks import BT, ROTARY, constant_loads, place, sources
 
 
@@ -33,34 +34,9 @@ def random_ladder(rng, n_points, n_trains):
     return place(network, constant_loads(list(positions), list(powers)))
 
 
-def admittance_matrix(case):
-    """Fixed nodes first, then the trains along the line; π-sections between neighbours."""
-    n = case.flow.nodes.size
-    y = np.zeros((n + case.flow.standing.size,) * 2, dtype=complex)
-
-    def stamp(i, j, series, shunt):
-        y[i, i] += series + shunt / 2
-        y[j, j] += series + shunt / 2
-        y[i, j] -= series
-        y[j, i] -= series
-
-    for branch in case.network.branches:
-        stamp(branch.start_node, branch.end_node, 1 / branch.impedance_ohm, 0)
-    for section, found in zip(case.network.sections, case.flow.sections, strict=True):
-        before = section.start_node
-        for k in range(found.first, found.end + 1):
-            last = k == found.end
-            length = found.closing_m if last else case.flow.standing[k].piece_m
-            after = section.end_node if last else n + k
-            z, b = section.impedance_ohm_per_m * length, section.susceptance_s_per_m * length
-            stamp(before, after, 1 / z, 1j * b)
-            before = after
-    return y
-
-
 def solve_slowly(case):
     """Voltages of nodes and trains by scipy's fsolve on the polar mismatches (F.35)-(F.41)."""
-    y = admittance_matrix(case)
+    y = admittance_matrix(case.network, case.flow)
     n = case.flow.nodes.size
     types = case.loads.types[case.flow.standing.train]
     drawn = types.auxiliary_power_w + 1j * types.auxiliary_reactive_power_var

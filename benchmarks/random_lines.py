@@ -1,0 +1,188 @@
+"""Random supply networks with random trains, from light loads to far beyond collapse."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tpss.kernel import blank_records, kernel
+from tpss.model.trains import build_machine, build_train_types
+from tpss.physics.adhesion import DRY, adhesion_limit
+from tpss.physics.locomotive import TRAIN_TYPE, note_cap, prove_free_band, take_speed
+from tpss.powerflow.chain import place_trains, sort_by_position
+from tpss.powerflow.network import SOURCE, Flow, Loads, Network, assemble, new_flow
+from tpss.scenario.rolling_stock import Train
+from tpss.simulation.state import TRAIN
+
+Random = np.random.Generator
+
+MODEL = "Rc4-freight-1470t"
+LOCOMOTIVES = build_train_types(
+    [
+        Train(model=MODEL),
+        Train(model=MODEL, reactive_power="double-bridge", motor_voltage="former"),
+        Train(model=MODEL, reactive_power="double-bridge", filter_reactance_ohm=-0.45),
+    ]
+)
+MACHINE = build_machine()
+CATENARIES = {
+    # Impedance [ohm/m], susceptance [S/m], and connection impedance [ohm].
+    "BT": (complex(0.21, 0.20) * 1e-3, 0.0, 0j),
+    "AT": (complex(0.0335, 0.031) * 1e-3, 2 * math.pi * 16.7 * 13.5e-12, 0.189 + 0.293j),
+}
+HIGH_VOLTAGE_OHM_PER_M = complex(0.051, 0.062) * 1e-3 / (132.0 / 16.5) ** 2
+TRANSFORMERS_OHM = {"station": 0.037 + 0.54j, "line": 0.065 + 0.85j}
+MOST_STATIONS, MOST_TRANSFORMERS, MOST_TRAINS = 5, 4, 24
+OTHER_LOAD = 0.1
+"""Share of trains that start or stop to pull from one step to the next."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A network with trains on it, ready to be solved."""
+
+    network: Network
+    loads: Loads
+    flow: Flow
+
+    def standing_anew(self) -> "Line":
+        """The same line in its first state, without a solution."""
+        return put_on_line(self.network, self.loads)
+
+
+def random_line(rng: Random) -> Line:
+    """A line of 20 to 200 km with 1 to 5 stations and 1 to 24 trains."""
+    network = random_network(rng, rng.uniform(20e3, 200e3))
+    return put_on_line(network, random_loads(rng, network))
+
+
+def moved(rng: Random, line: Line) -> Line:
+    """The line a step later: all trains a little further, a few with quite another load."""
+    trains, types = line.loads.trains.copy(), line.loads.types.copy()
+    end_m = line.network.sections.end_m[-1]
+    trains.position_m = np.clip(trains.position_m + rng.uniform(0.0, 60.0, trains.size), 0.0, end_m)
+    trains.speed_m_s = np.clip(trains.speed_m_s + rng.uniform(-1.0, 1.0, trains.size), 0.0, None)
+    factor = rng.uniform(0.9, 1.1, trains.size)
+    others = rng.random(trains.size) < OTHER_LOAD
+    factor[others] = rng.uniform(0.0, 2.0, others.sum())
+    trains.force_cap_n *= factor
+    types.auxiliary_power_w *= factor
+    types.auxiliary_reactive_power_var *= factor
+    prepare(trains, types, line.loads.machine)
+    return put_on_line(line.network, line.loads._replace(trains=trains, types=types))
+
+
+def put_on_line(network: Network, loads: Loads) -> Line:
+    count = loads.trains.size
+    flow = new_flow(network, count)
+    sort_by_position(flow.standing, count, loads.trains)
+    place_trains(count, loads.trains, network, flow)
+    return Line(network, loads, flow)
+
+
+def random_network(rng: Random, length_m: float) -> Network:
+    """Stations anywhere, BT or AT catenary, with a high-voltage line or without."""
+    per_m, susceptance, connection = CATENARIES[rng.choice(list(CATENARIES))]
+    stations = list(rng.uniform(0.0, length_m, rng.integers(1, MOST_STATIONS + 1)))
+    high_voltage = rng.random() < 0.5
+    transformers = list(rng.uniform(0.0, length_m, rng.integers(0, MOST_TRANSFORMERS + 1)))
+    transformers = transformers if high_voltage else []
+    points = sorted({0.0, length_m, *stations, *transformers})
+    node = {m: n for n, m in enumerate(points)}
+    n_nodes, branches = len(points), []
+    feeding = dict(node)
+    if connection:
+        for m in stations:
+            feeding[m], n_nodes = n_nodes, n_nodes + 1
+            branches.append((feeding[m], node[m], connection))
+    before: tuple[float, int] | None = None
+    for m in sorted([*stations, *transformers]) if high_voltage else []:
+        upper, n_nodes = n_nodes, n_nodes + 1
+        ohm = (
+            TRANSFORMERS_OHM["station"] if m in stations else TRANSFORMERS_OHM["line"] + connection
+        )
+        branches.append((feeding[m], upper, ohm))
+        if before is not None:
+            branches.append((before[1], upper, HIGH_VOLTAGE_OHM_PER_M * (m - before[0])))
+        before = (m, upper)
+    sections = [
+        (node[a], node[b], a, b, per_m, susceptance)
+        for a, b in zip(points, points[1:], strict=False)
+    ]
+    return assemble(
+        n_nodes, sections, branches, random_sources(rng, [feeding[m] for m in stations])
+    )
+
+
+def random_sources(rng: Random, nodes: list[int]) -> Any:
+    """All stations with the converter law, or all of them ideal."""
+    rows = blank_records(len(nodes), SOURCE)
+    rows.node = nodes
+    rows.no_load_voltage_v = rng.uniform(15_500.0, 17_000.0)
+    rows.motor_voltage_v = 16_500.0
+    rows.installed = rng.integers(1, 7, len(nodes))
+    if rng.random() < 0.7:
+        rows.droop_v_per_var = 50e-6
+        rows.generator_reactance_ohm = 0.53 * 16.5**2 / 10.0
+        rows.motor_reactance_ohm = 0.49 * 16.5**2 / 10.7
+    return rows
+
+
+def random_loads(rng: Random, network: Network) -> Loads:
+    """Trains that draw a constant P and Q, locomotives, or some of both."""
+    count = int(rng.integers(1, MOST_TRAINS + 1))
+    share = rng.choice([0.0, 0.5, 1.0])
+    types, trains = blank_records(count, TRAIN_TYPE), blank_records(count, TRAIN)
+    trains.train_type = np.arange(count)
+    trains.position_m = random_places(rng, network, count)
+    trains.mean_speed_weight_s = rng.choice([0.0, 1.5])
+    trains.voltage_v = 15_000.0
+    largest_w = 10.0 ** rng.uniform(5.8, 7.8)
+    for k in range(count):
+        if rng.random() < share:
+            types[k] = LOCOMOTIVES[rng.integers(LOCOMOTIVES.size)]
+            drive(rng, trains[k], types[k])
+        else:
+            types[k] = constant_load(rng.uniform(0.0, largest_w), rng.uniform(-0.3, 0.8))
+    prepare(trains, types, MACHINE)
+    return Loads(trains, types, MACHINE)
+
+
+def random_places(rng: Random, network: Network, count: int) -> Any:
+    """Anywhere; some at a node, some at the same place as another."""
+    end_m = network.sections.end_m[-1]
+    places = rng.uniform(0.0, end_m, count)
+    nodes_m = [*network.sections.start_m, end_m]
+    for k in np.flatnonzero(rng.random(count) < 0.1):
+        places[k] = rng.choice(nodes_m) if rng.random() < 0.5 else rng.choice(places)
+    return places
+
+
+def constant_load(active_w: float, reactive_share: float) -> Any:
+    """A type that draws the same power at any voltage."""
+    (row,) = blank_records(1, TRAIN_TYPE)
+    row.efficiency, row.inertia_kg, row.slip_factor = 1.0, 1.0, 1.0
+    row.filter_reactance_ohm = math.inf
+    row.auxiliary_power_w = active_w
+    row.auxiliary_reactive_power_var = reactive_share * active_w
+    return row
+
+
+def drive(rng: Random, train: Any, kind: Any) -> None:
+    """Speed, gradient and wanted force of a locomotive; half of them want all that they can get."""
+    train.speed_m_s = rng.uniform(0.0, kind.highest_speed_m_s)
+    train.resistance_n = rng.uniform(0.0, 250e3)
+    adhesion = adhesion_limit(kind.adhesive_mass_kg, train.speed_m_s, DRY)
+    train.force_cap_n = adhesion * min(1.0, rng.uniform(0.0, 2.0))
+
+
+@kernel
+def prepare(trains: Any, types: Any, machine: Any) -> None:
+    """What stays fixed of all trains while they are solved, as the clock prepares it."""
+    for k in range(trains.size):
+        train, kind = trains[k], types[trains[k].train_type]
+        train.bias_speed_m_s = -1.0
+        take_speed(train.voltage_v, kind, train, machine[0])
+        prove_free_band(kind, train, machine[0])
+        note_cap(kind, train)

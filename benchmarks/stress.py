@@ -1,0 +1,182 @@
+"""Robustness of the load flow: random lines up to and past collapse, judged by a slow one.
+
+Usage: python benchmarks/stress.py [--cases N] [--seed N] [--publish]
+
+Every line is solved three times, as in a simulation: from a flat start, a step later from the solution
+before, and from voltages and currents drawn at random, as bad as a start can be.  Each result is judged
+by `continuation`.  The exit code is 1 if one is wrong; its seed is printed.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only cost
+
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.solve import solve
+
+from continuation import Complexes, Equations, carry
+from random_lines import Line, Random, moved, random_line
+from report import arguments, caption, deliver, machine, table
+
+STARTS = {
+    "flat": "from a flat start",
+    "step": "a step later, from the solution before",
+    "random": "from random voltages and currents",
+}
+SAME_SHARE = 3e-4
+"""TPSS gives up where the load can grow by less than 1e-4."""
+SAME_VOLTAGE, SAME_VOLTAGE_AT_THE_END = 1e-7, 1e-4
+"""In p.u.; where the path ends, a rounding moves the voltages most."""
+LARGEST_RESIDUAL = 1e-8
+"""Of base power; pieces of line of a metre make a rounding of the voltages as large as 1e-9."""
+
+SOLVED, COLLAPSED = "solved", "collapsed"
+FAULTS = {
+    "not finite": "a voltage is not a number",
+    "false root": "the equations do not hold",
+    "other branch": "a solution that is not on the path from zero load",
+    "missed": "no solution found though there is one",
+    "wrong share": "another share of the load than the line can carry",
+}
+
+
+@dataclass
+class Tally:
+    """Outcomes and passes of all results of a kind of start."""
+
+    outcomes: Counter[str] = field(default_factory=Counter)
+    passes: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
+
+    def add(self, outcome: str, passes: int) -> None:
+        self.outcomes[outcome] += 1
+        self.passes[outcome].append(passes)
+
+    @property
+    def faults(self) -> int:
+        return sum(self.outcomes[fault] for fault in FAULTS)
+
+    def figures(self) -> dict[str, Any]:
+        """Counts, and mean and largest number of passes."""
+        return {
+            "outcomes": dict(self.outcomes),
+            "passes": {
+                outcome: {"mean": float(np.mean(passes)), "worst": max(passes)}
+                for outcome, passes in self.passes.items()
+            },
+        }
+
+
+def voltages(line: Line) -> Complexes:
+    """Of the fixed nodes, then of the trains along the line. [p.u.]"""
+    found = np.concatenate([line.flow.nodes.voltage_v, line.flow.standing.voltage_v])
+    return found / BASE_VOLTAGE_V
+
+
+def judge(line: Line, share: float, carried: float, expected: Complexes) -> str:
+    """Outcome of a solution by what the path from zero load says."""
+    found, equations = voltages(line), equations_of(line)
+    if not np.isfinite(found).all():
+        return "not finite"
+    if np.abs(equations.residual(found, share)).max() > LARGEST_RESIDUAL:
+        return "false root"
+    if share < 1.0:
+        if carried == 1.0:
+            return "missed"
+        if abs(share - carried) > SAME_SHARE:
+            return "wrong share"
+        _, there = carry(equations, most=share)
+        near = np.abs(found - there).max() < SAME_VOLTAGE_AT_THE_END
+        return COLLAPSED if near else "other branch"
+    if carried < 1.0 - SAME_SHARE or np.abs(found - expected).max() > SAME_VOLTAGE:
+        return "other branch"
+    return SOLVED
+
+
+def equations_of(line: Line) -> Equations:
+    return Equations.of(line.network, line.flow, line.loads)
+
+
+def scatter(rng: Random, line: Line) -> None:
+    """Put a line's state anywhere: 0.1 to 1.2 p.u., any current up to 2 kA."""
+    nodes, sections = line.flow.nodes, line.flow.sections
+
+    def any_phasor(low: float, high: float, count: int, widest: float) -> Complexes:
+        angle = rng.uniform(-widest, widest, count)
+        return rng.uniform(low, high, count) * np.exp(1j * angle)
+
+    nodes.voltage_v = BASE_VOLTAGE_V * any_phasor(0.1, 1.2, nodes.size, 1.0)
+    sections.current_a = any_phasor(0.0, 2000.0, sections.size, np.pi)
+
+
+def results(seed: int) -> Iterable[tuple[str, str, int]]:
+    """Kind of start, outcome and passes of the solutions of one random line."""
+    rng = np.random.default_rng(seed)
+    line = random_line(rng)
+    carried, expected = carry(equations_of(line))
+    share, passes = solve(False, line.network, line.flow, line.loads)
+    yield "flat", judge(line, share, carried, expected), passes
+    again = line.standing_anew()
+    scatter(rng, again)
+    share_again, passes = solve(True, again.network, again.flow, again.loads)
+    yield "random", judge(again, share_again, carried, expected), passes
+    if share == 1.0:
+        later = moved(rng, line)
+        later.flow.nodes.voltage_v = line.flow.nodes.voltage_v
+        later.flow.sections.current_a = line.flow.sections.current_a
+        share, passes = solve(True, later.network, later.flow, later.loads)
+        yield "step", judge(later, share, *carry(equations_of(later))), passes
+
+
+def run(seeds: Iterable[int]) -> tuple[dict[str, Tally], list[tuple[int, str, str]]]:
+    """Tallies of all kinds of start, and the faults with their seeds."""
+    tallies, faults = {start: Tally() for start in STARTS}, []
+    for seed in seeds:
+        for start, outcome, passes in results(seed):
+            tallies[start].add(outcome, passes)
+            if outcome in FAULTS:
+                faults.append((seed, start, outcome))
+    return tallies, faults
+
+
+def describe(tallies: dict[str, Tally]) -> str:
+    """Outcomes by kind of start."""
+    heads = ["start", SOLVED, "passes: mean, worst", COLLAPSED, "passes: mean, worst", *FAULTS]
+    rows = []
+    for start, tally in tallies.items():
+        row = [STARTS[start]]
+        for outcome in (SOLVED, COLLAPSED):
+            passes = tally.passes[outcome] or [0]
+            row += [f"{tally.outcomes[outcome]:,}", f"{np.mean(passes):.1f}, {max(passes)}"]
+        rows.append([*row, *(str(tally.outcomes[fault]) for fault in FAULTS)])
+    return table(heads, rows)
+
+
+def main() -> int:
+    options = arguments(__doc__, cases=10_000, seed=0)
+    seeds = range(options.seed, options.seed + options.cases)
+    tallies, faults = run(seeds)
+    where = machine()
+    result = {
+        "machine": where,
+        "lines": options.cases,
+        "first_seed": options.seed,
+        "starts": {start: tally.figures() for start, tally in tallies.items()},
+        "faults": faults,
+    }
+    note = f"{options.cases:,} lines, seeds from {options.seed}. {caption(where)}"
+    deliver("stress", result, f"{describe(tallies)}\n\n{note}", options.publish)
+    for seed, start, outcome in faults:
+        print(f"seed {seed}, {STARTS[start]}: {outcome}, {FAULTS[outcome]}")
+    return int(bool(faults))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
