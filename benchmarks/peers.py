@@ -160,8 +160,8 @@ def times_table(group: Group, measured: Measured) -> str:
     for row in group.rows:
         times = measured.time_us[row.name]
         cells = [f"{times[n]:,.1f} ({times[n] / own[n]:,.1f})" for n in TRAINS]
-        difference = f"{measured.difference_pu[row.name]:.0e}" if row.same_network else "other law"
-        rows.append([row.name, *cells, difference if row is not group.rows[0] else ""])
+        difference = f"{measured.difference_pu[row.name]:.0e}".replace("0e+00", "0")
+        rows.append([row.name, *cells, difference if row.same_network else "other law"])
     head = ["µs a step (multiple)", *(f"{n:,} trains" for n in TRAINS), "voltages differ [p.u.]"]
     return f"{group.title}:\n\n{table(head, rows)}"
 

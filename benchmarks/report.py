@@ -32,7 +32,7 @@ def machine(*packages: str) -> dict[str, str]:
     return {
         "processor": _processor(),
         "cores": str(os.cpu_count()),
-        platform.system(): platform.release(),
+        "system": f"{platform.system()} {platform.machine()}",
         "Python": platform.python_version(),
         **{name: version(name) for name in ("tpss", "numba", "numpy", *packages)},
     }
@@ -60,10 +60,9 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def caption(described: dict[str, str]) -> str:
     """The machine as a sentence."""
-    processor, cores, *others = described.values()
-    names = list(described)[2:]
-    versions = ", ".join(f"{name} {value}" for name, value in zip(names, others, strict=True))
-    return f"{processor}, {cores} cores; {versions}."
+    hardware = "{processor}, {cores} cores, {system}".format(**described)
+    versions = [f"{name} {value}" for name, value in list(described.items())[3:]]
+    return f"{hardware}; {', '.join(versions)}."
 
 
 def deliver(name: str, result: dict[str, Any], text: str, publish: bool) -> None:

@@ -2,9 +2,10 @@
 
 Usage: python benchmarks/stress.py [--cases N] [--seed N] [--publish]
 
-Every line is solved three times, as in a simulation: from a flat start, a step later from the solution
-before, and from voltages and currents drawn at random, as bad as a start can be.  Each result is judged
-by `continuation`.  The exit code is 1 if one is wrong; its seed is printed.
+Every line is solved from a flat start, a step later from the solution before, as in a simulation, and
+from voltages and currents drawn at random, as bad as a start can be.  Where a line cannot carry its
+load, Newton's method also starts at the other solution beside the turning point, on the lower branch.
+Each result is judged by `continuation`.  The exit code is 1 if one is wrong; its seed is printed.
 """
 
 import os
@@ -20,6 +21,9 @@ from typing import Any
 import numpy as np
 
 from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.powerflow.chain import WARM
+from tpss.powerflow.newton import SOLVED as NEWTON_SOLVED
+from tpss.powerflow.newton import newton
 from tpss.powerflow.solve import solve
 
 from continuation import Complexes, Equations, carry
@@ -30,6 +34,7 @@ STARTS = {
     "flat": "from a flat start",
     "step": "a step later, from the solution before",
     "random": "from random voltages and currents",
+    "low": "at a root on the lower branch",
 }
 SAME_SHARE = 3e-4
 """TPSS gives up where the load can grow by less than 1e-4."""
@@ -38,7 +43,12 @@ SAME_VOLTAGE, SAME_VOLTAGE_AT_THE_END = 1e-7, 1e-4
 LARGEST_RESIDUAL = 1e-8
 """Of base power; pieces of line of a metre make a rounding of the voltages as large as 1e-9."""
 
-SOLVED, COLLAPSED = "solved", "collapsed"
+BESIDE_THE_TURN = (-4.0, -1.0)
+"""Powers of ten of the shares by which the load stays below that of the turning point."""
+DISTINCT = 1e-4
+"""Roots closer than this are the same one. [p.u.]"""
+
+SOLVED, COLLAPSED, REFUSED = "solved", "collapsed", "refused"
 FAULTS = {
     "not finite": "a voltage is not a number",
     "false root": "the equations do not hold",
@@ -116,6 +126,40 @@ def scatter(rng: Random, line: Line) -> None:
     sections.current_a = any_phasor(0.0, 2000.0, sections.size, np.pi)
 
 
+def set_state(line: Line, voltage: Complexes) -> None:
+    """Put a line's state to a solution, given by all of its voltages."""
+    flow, volts = line.flow, BASE_VOLTAGE_V * voltage
+    flow.nodes.voltage_v = volts[: flow.nodes.size]
+    for section, found in zip(line.network.sections, flow.sections, strict=True):
+        beside, length_m = section.end_node, found.closing_m
+        if found.first < found.end:
+            beside = flow.nodes.size + found.first
+            length_m = flow.standing[found.first].piece_m
+        start_v = volts[section.start_node]
+        through = (start_v - volts[beside]) / (section.impedance_ohm_per_m * length_m)
+        found.current_a = through + 0.5j * section.susceptance_s_per_m * length_m * start_v
+
+
+def from_the_lower_branch(rng: Random, line: Line, carried: float) -> tuple[str, int] | None:
+    """Outcome and passes from the root on the lower branch; None if there is none nearby.
+
+    Beside the turning point the voltages go with the root of the distance from it, so the lower
+    solution is as far behind the turn as twice the tangent reaches from the upper one.
+    """
+    equations = equations_of(line)
+    share, upper = carry(equations, most=carried * (1.0 - 10.0 ** rng.uniform(*BESIDE_THE_TURN)))
+    tangent = equations.tangent(upper, share)
+    lower = equations.correct(upper + 4.0 * (carried - share) * tangent, share)
+    if lower is None or np.abs(lower - upper).max() < DISTINCT:
+        return None
+    set_state(line, lower)
+    status, passes = newton(share, WARM, line.network, line.flow, line.loads)
+    if status != NEWTON_SOLVED:
+        return REFUSED, passes
+    back = np.abs(voltages(line) - upper).max() < SAME_VOLTAGE_AT_THE_END
+    return SOLVED if back else "other branch", passes
+
+
 def results(seed: int) -> Iterable[tuple[str, str, int]]:
     """Kind of start, outcome and passes of the solutions of one random line."""
     rng = np.random.default_rng(seed)
@@ -127,6 +171,10 @@ def results(seed: int) -> Iterable[tuple[str, str, int]]:
     scatter(rng, again)
     share_again, passes = solve(True, again.network, again.flow, again.loads)
     yield "random", judge(again, share_again, carried, expected), passes
+    if carried < 1.0:
+        lower = from_the_lower_branch(rng, line.standing_anew(), carried)
+        if lower is not None:
+            yield "low", *lower
     if share == 1.0:
         later = moved(rng, line)
         later.flow.nodes.voltage_v = line.flow.nodes.voltage_v
@@ -147,16 +195,25 @@ def run(seeds: Iterable[int]) -> tuple[dict[str, Tally], list[tuple[int, str, st
 
 
 def describe(tallies: dict[str, Tally]) -> str:
-    """Outcomes by kind of start."""
-    heads = ["start", SOLVED, "passes: mean, worst", COLLAPSED, "passes: mean, worst", *FAULTS]
-    rows = []
-    for start, tally in tallies.items():
-        row = [STARTS[start]]
-        for outcome in (SOLVED, COLLAPSED):
-            passes = tally.passes[outcome] or [0]
-            row += [f"{tally.outcomes[outcome]:,}", f"{np.mean(passes):.1f}, {max(passes)}"]
-        rows.append([*row, *(str(tally.outcomes[fault]) for fault in FAULTS)])
-    return table(heads, rows)
+    """Outcomes by kind of start, and passes of those with a solution and of those without."""
+
+    def passes(tally: Tally, *outcomes: str) -> str:
+        found = [count for outcome in outcomes for count in tally.passes[outcome]]
+        return f"{np.mean(found):.1f}, {max(found)}" if found else ""
+
+    rows = [
+        (
+            STARTS[start],
+            *(f"{tally.outcomes[outcome]:,}" for outcome in (SOLVED, COLLAPSED, REFUSED)),
+            f"{tally.faults}",
+            passes(tally, SOLVED),
+            passes(tally, COLLAPSED, REFUSED),
+        )
+        for start, tally in tallies.items()
+    ]
+    ends = "passes to a solution: mean, worst", "to the end without"
+    text = table(("start", SOLVED, COLLAPSED, REFUSED, "**wrong**", *ends), rows)
+    return f"{text}\n\nWrong would be: {'; '.join(FAULTS.values())}."
 
 
 def main() -> int:
