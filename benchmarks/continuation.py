@@ -19,10 +19,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.physics.converter import terminal_voltage
-from tpss.physics.locomotive import electrical_demand
+from tpss.powerflow.external import find_demands, find_terminals
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 
@@ -62,35 +60,17 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
     return y
 
 
-@kernel
-def _find_demands(magnitude: Floats, order: Any, loads: Loads, demand: Floats) -> None:
-    """P, Q and their slopes of all trains along the line. [W], [var], [1/V]"""
-    for k in range(magnitude.size):
-        train = loads.trains[order[k]]
-        kind = loads.types[train.train_type]
-        found = electrical_demand(magnitude[k], kind, train, loads.machine[0])
-        demand[k, 0], demand[k, 1], demand[k, 2], demand[k, 3] = found
-
-
-@kernel
-def _find_laws(power_va: Complexes, converters: Floats, sources: Any, voltage: Complexes) -> None:
-    """Voltages that the converter law asks for. [V]"""
-    for s in range(power_va.size):
-        power = power_va[s]
-        size, angle, _, _, _ = terminal_voltage(power.real, power.imag, converters[s], sources[s])
-        voltage[s] = size * np.exp(1j * angle)
-
-
 @dataclass(frozen=True)
 class Equations:
     """The equations of a line, in per unit."""
 
     admittance: Complexes
     network: Network
-    converters: Floats
     loads: Loads
-    order: npt.NDArray[np.int64]
-    """Trains along the line."""
+    standing: Any
+    """Trains along the line, as in `Flow`."""
+    running: Any
+    """Converters, as in `Flow.sources`."""
 
     @classmethod
     def of(cls, network: Network, flow: Flow, loads: Loads) -> "Equations":
@@ -98,9 +78,9 @@ class Equations:
         return cls(
             admittance=admittance_matrix(network, flow) / BASE_ADMITTANCE_S,
             network=network,
-            converters=flow.sources.converters.copy(),
             loads=loads,
-            order=flow.standing.train.copy(),
+            standing=flow.standing.copy(),
+            running=flow.sources.copy(),
         )
 
     @property
@@ -113,17 +93,18 @@ class Equations:
 
     def demand(self, voltage: Complexes) -> tuple[Complexes, Complexes]:
         """Powers of the trains, and their slopes over the magnitude."""
-        found = np.zeros((self.order.size, 4))
-        magnitude = BASE_VOLTAGE_V * np.abs(voltage[self.nodes :])
-        _find_demands(magnitude, self.order, self.loads, found)
+        found = np.zeros((self.standing.size, 4))
+        magnitude_v = BASE_VOLTAGE_V * np.abs(voltage[self.nodes :])
+        find_demands(magnitude_v, self.standing, self.loads, found)
         power, slope = found[:, 0] + 1j * found[:, 1], found[:, 2] + 1j * found[:, 3]
         return power / BASE_POWER_VA, slope * BASE_VOLTAGE_V / BASE_POWER_VA
 
     def law(self, power: Complexes) -> Complexes:
         """Voltages of the sources by their powers."""
-        found = np.zeros(power.size, dtype=complex)
-        _find_laws(power * BASE_POWER_VA, self.converters, self.network.sources, found)
-        return found / BASE_VOLTAGE_V
+        found = np.zeros((power.size, 5))
+        powers = BASE_POWER_VA * np.column_stack([power.real, power.imag])
+        find_terminals(powers, self.network.sources, self.running, found)
+        return found[:, 0] * np.exp(1j * found[:, 1]) / BASE_VOLTAGE_V
 
     def residual(self, voltage: Complexes, share: float) -> Complexes:
         """What is left of the equations."""

@@ -18,11 +18,13 @@ from tpss.simulation.state import TRAIN
 Random = np.random.Generator
 
 MODEL = "Rc4-freight-1470t"
-LOCOMOTIVES = build_train_types(
+LIMITS = {"max_force_kn": 300, "max_power_kw": 6000, "full_voltage_kv": 15, "zero_voltage_kv": 10}
+LOCOMOTIVES, POINTS = build_train_types(
     [
         Train(model=MODEL),
         Train(model=MODEL, reactive_power="double-bridge", motor_voltage="former"),
         Train(model=MODEL, reactive_power="double-bridge", filter_reactance_ohm=-0.45),
+        Train(model=MODEL, tractive_effort=LIMITS, power_factor=0.95),
     ]
 )
 MACHINE = build_machine()
@@ -69,7 +71,7 @@ def moved(rng: Random, line: Line) -> Line:
     trains.force_cap_n *= factor
     types.auxiliary_power_w *= factor
     types.auxiliary_reactive_power_var *= factor
-    prepare(trains, types, line.loads.machine)
+    prepare(trains, types, MACHINE, POINTS)
     return put_on_line(line.network, line.loads._replace(trains=trains, types=types))
 
 
@@ -145,7 +147,7 @@ def random_loads(rng: Random, network: Network) -> Loads:
             drive(rng, trains[k], types[k])
         else:
             types[k] = constant_load(rng.uniform(0.0, largest_w), rng.uniform(-0.3, 0.8))
-    prepare(trains, types, MACHINE)
+    prepare(trains, types, MACHINE, POINTS)
     return Loads(trains, types, MACHINE)
 
 
@@ -160,10 +162,8 @@ def random_places(rng: Random, network: Network, count: int) -> Any:
 
 
 def constant_load(active_w: float, reactive_share: float) -> Any:
-    """A type that draws the same power at any voltage."""
-    (row,) = blank_records(1, TRAIN_TYPE)
-    row.efficiency, row.inertia_kg, row.slip_factor = 1.0, 1.0, 1.0
-    row.filter_reactance_ohm = math.inf
+    """A type whose auxiliaries draw all of its power, at any voltage the same."""
+    row = LOCOMOTIVES[0].copy()
     row.auxiliary_power_w = active_w
     row.auxiliary_reactive_power_var = reactive_share * active_w
     return row
@@ -174,15 +174,16 @@ def drive(rng: Random, train: Any, kind: Any) -> None:
     train.speed_m_s = rng.uniform(0.0, kind.highest_speed_m_s)
     train.resistance_n = rng.uniform(0.0, 250e3)
     adhesion = adhesion_limit(kind.adhesive_mass_kg, train.speed_m_s, DRY)
+    train.adhesion_n = adhesion
     train.force_cap_n = adhesion * min(1.0, rng.uniform(0.0, 2.0))
 
 
 @kernel
-def prepare(trains: Any, types: Any, machine: Any) -> None:
+def prepare(trains: Any, types: Any, machine: Any, points: Any) -> None:
     """What stays fixed of all trains while they are solved, as the clock prepares it."""
     for k in range(trains.size):
         train, kind = trains[k], types[trains[k].train_type]
-        train.bias_speed_m_s = -1.0
-        take_speed(train.voltage_v, kind, train, machine[0])
-        prove_free_band(kind, train, machine[0])
+        train.taken_speed_m_s = -1.0
+        take_speed(train.voltage_v, kind, train, machine[0], points)
+        prove_free_band(kind, train)
         note_cap(kind, train)

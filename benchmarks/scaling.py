@@ -32,7 +32,9 @@ SERIES = {
     # what grows; stations, transformers between neighbouring ones, and trains
     "trains": [(LONGEST, 1, n) for n in (10, 20, 50, 100, 200, 500, 1000, 2000, 5000)],
     "fixed nodes": [(*case, 20) for case in NODE_CASES],
-    "trains and fixed nodes": [(n, 1, 10 * (n - 1)) for n in (2, 3, 6, 13, 26, 51, 126)],
+    "trains and fixed nodes": [
+        (*case, n) for case, n in zip(NODE_CASES, (10, 20, 50, 120, 250, 625, 1250), strict=True)
+    ],
 }
 UPPER = 4
 """The slope is that of the last cases, where what a step costs anyhow weighs little."""

@@ -58,9 +58,8 @@ def solve_steps(
 def constant_loads(trains: int) -> Loads:
     """Trains of which each draws a power of its own, at any voltage the same."""
     types, rows = blank_records(trains, TRAIN_TYPE), blank_records(trains, TRAIN)
-    types.efficiency, types.inertia_kg, types.slip_factor = 1.0, 1.0, 1.0
-    types.filter_reactance_ohm = math.inf
-    rows.train_type = np.arange(trains)
+    types.inertia_kg, types.slip_factor, types.filter_reactance_ohm = 1.0, 1.0, math.inf
+    rows.train_type, rows.efficiency = np.arange(trains), 1.0
     return Loads(rows, types, build_machine())
 
 
