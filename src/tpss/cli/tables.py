@@ -160,12 +160,13 @@ def key_figures(result: Result) -> list[str]:
 
 def print_violations(result: Result, console: Console) -> None:
     """Print the worst violations of limits in words, and how many more there are."""
-    words = result.standards.violations.words.tolist()
-    for line in words[:MOST_VIOLATIONS]:
+    figures = result.summary["standards"]
+    words = figures["worst_violations"][:MOST_VIOLATIONS]
+    for line in words:
         text = f"[bold yellow]Limit passed:[/bold yellow] {escape(line)}"
         console.print(text, highlight=False, soft_wrap=True)
-    if len(words) > MOST_VIOLATIONS:
-        more = f"... and {len(words) - MOST_VIOLATIONS} more; tpss export lists all"
+    if figures["violations"] > len(words):
+        more = f"... and {figures['violations'] - len(words)} more; tpss export lists all"
         console.print(more, highlight=False, soft_wrap=True)
 
 

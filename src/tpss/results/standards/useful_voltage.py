@@ -40,7 +40,7 @@ class Stretch(NamedTuple):
 
 def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
     """Stretches of line between converter stations, and from the outer ones to the line's ends."""
-    ends_km = (0.0, float(dataset.node_position.max()) / 1e3)
+    ends_km = (0.0, _length_km(dataset))
     named = dict.fromkeys(ends_km, "") | dict(
         zip(dataset.station_position.to_numpy() / 1e3, dataset.station.to_numpy(), strict=True)
     )
@@ -50,6 +50,10 @@ def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
         Stretch(f"{label[begin]}-{label[end]}", float(begin), float(end))
         for begin, end in zip(points, points[1:], strict=False)
     ]
+
+
+def _length_km(dataset: xr.Dataset) -> float:
+    return float(dataset.node_position.to_numpy().max()) / 1e3
 
 
 def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) -> slice | None:
@@ -70,7 +74,7 @@ def zone_table(
     chosen = slice(0) if window is None else window
     voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
     position_km = dataset.position.to_numpy()[:-1][chosen] / 1e3
-    end_km = float(dataset.node_position.max()) / 1e3
+    end_km = _length_km(dataset)
     rows = []
     for zone in zones:
         upto = np.inf if zone.to_km >= end_km else zone.to_km
