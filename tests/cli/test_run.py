@@ -9,6 +9,7 @@ import os
 import re
 import resource
 import tomllib
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -222,20 +223,24 @@ def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkey
     assert folders_in(tmp_path / "results") == []
 
 
-@pytest.fixture
-def file_size_limit():
-    """Refuse to let any file grow beyond a size: the system's own way, as on a full disk."""
+@contextmanager
+def file_size_limit(size):
+    """Refuse to let any file grow beyond a size: the system's own way, as on a full disk.
+
+    Around the command alone: what the tests themselves print may go to a file that is larger.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_full_disk_is_found_out_before_the_run(
-    tpss_command, tmp_path, monkeypatch, file_size_limit
-):
+def test_a_full_disk_is_found_out_before_the_run(tpss_command, tmp_path, monkeypatch):
     monkeypatch.setattr(tpss.api, "prepare", lambda *_: pytest.fail("it has run"))
-    file_size_limit(10_000)
-    said = tpss_command("run", HEADWAY)
+    with file_size_limit(10_000):
+        said = tpss_command("run", HEADWAY)
     assert said.code == 2
     assert "results cannot be written: File too large; give another --out" in said.err
     assert list(tmp_path.iterdir()) == []
@@ -243,12 +248,12 @@ def test_a_full_disk_is_found_out_before_the_run(
 
 @pytest.mark.parametrize("options", [(), ("--quiet",)], ids=["", "quiet"])
 def test_a_result_that_no_disk_can_hold_is_printed_at_least(
-    tpss_command, tmp_path, monkeypatch, file_size_limit, options
+    tpss_command, tmp_path, monkeypatch, options
 ):
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    file_size_limit(store.TRIAL_BYTES)
-    said = tpss_command("run", HEADWAY, *SHORT, *options)
+    with file_size_limit(store.TRIAL_BYTES):
+        said = tpss_command("run", HEADWAY, *SHORT, *options)
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out
     assert "results cannot be written: File too large" in said.err
