@@ -164,7 +164,7 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
     return (force_n - resistance_n) / inertia_kg
 
 
-@inlined
+@kernel
 def take_speed(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine, points: Points
 ) -> None:
@@ -359,7 +359,7 @@ def train_bridge_sine(
     return sine, slope
 
 
-@inlined
+@kernel
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
     kind: TrainType, train: Demand, machine: Machine,

@@ -68,7 +68,7 @@ def _restore(flow: Flow) -> None:
         flow.sections[s].current_a = flow.sections[s].good_a
 
 
-@inlined
+@kernel
 def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Raise all loads from zero; return the share of the load that is carried, and the passes.
 
