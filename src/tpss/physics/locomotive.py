@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.physics.curve import CURVE, Points, curve_at
 from tpss.physics.effort_table import MOST_VOLTAGES
 from tpss.physics.machine import highest_force, take_effort
@@ -153,7 +153,7 @@ def machine_force(
     return (motor_force_n + ratio * resistance_n) / (1.0 + ratio)
 
 
-@kernel
+@fused
 def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> float:
     """Acceleration of a driving train. [m/s²]
 
@@ -208,7 +208,7 @@ def prove_free_band(kind: TrainType, train: Demand) -> None:
     train.machine_force_n = train.free_force_n
 
 
-@kernel
+@fused
 def wheel_force(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
@@ -235,7 +235,7 @@ def wheel_force(
     return limit, slope / (1.0 + kind.rotor_mass_kg / kind.inertia_kg)
 
 
-@kernel
+@fused
 def billed_speed(force_n: float, kind: TrainType, train: Demand) -> tuple[float, float]:
     """Speed with which motor power is billed, and its slope over the force. [m/s], [m/s/N]
 
@@ -258,7 +258,7 @@ def billed_speed(force_n: float, kind: TrainType, train: Demand) -> tuple[float,
     return max(0.0, train.speed_m_s + weight * a), slope
 
 
-@kernel
+@fused
 def motor_state(
     force_n: float, kind: TrainType, train: Demand
 ) -> tuple[float, float, float, float]:
@@ -383,7 +383,7 @@ def bridge_demand(
     return unit * sine, slope
 
 
-@kernel
+@fused
 def electrical_demand(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float, float, float]:
@@ -404,14 +404,15 @@ def electrical_demand(
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)
-    active = power / train.efficiency + kind.auxiliary_power_w
+    per_motor_power = 1.0 / train.efficiency
+    active = power * per_motor_power + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
         reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)
     else:
         reactive = power * train.reactive_ratio
         reactive_slope = power_slope * train.reactive_ratio
-    filtered = filter_reactive_power(voltage_v * TRANSFORMER_RATIO, kind.filter_reactance_ohm)
+    filtered, filtered_slope = filter_reactive_power(voltage_v, kind.filter_reactance_ohm)
     reactive += kind.auxiliary_reactive_power_var + filtered
-    reactive_slope += 2.0 * filtered / voltage_v
+    reactive_slope += filtered_slope
     train.active_power_w, train.reactive_power_var = active, reactive
-    return active, reactive, power_slope / train.efficiency, reactive_slope
+    return active, reactive, power_slope * per_motor_power, reactive_slope
