@@ -20,6 +20,7 @@ WEST = "supply.converter_stations.0"
 EAST = "supply.converter_stations.1"
 ENTRY = "traffic.0"
 FREIGHT = "trains.freight"
+LIMITATION = f"{FREIGHT}.current_limitation"
 
 INLINE = "line.gradients_file"
 NOT_RUNNING = {f"{ENTRY}.already_running": None}
@@ -362,6 +363,18 @@ CONFLICTS = [
                                       "connection_r_ohm": 1e-9}},
                  "supply.catenary", "", "or 0: no connection impedance",
                  id="connection-of-a-nanoohm"),
+    pytest.param({f"{LIMITATION}.knee_factor": 0.9}, f"{LIMITATION}.max_current_a", "", "add it",
+                 id="no-line-current"),
+    pytest.param({LIMITATION: {"max_current_a": 0}}, f"{LIMITATION}.max_current_a", "0",
+                 "greater than 0 A", id="zero-line-current"),
+    pytest.param({LIMITATION: {"max_current_a": 400.0, "knee_factor": 95}},
+                 f"{LIMITATION}.knee_factor", "95", "less than or equal to 1", id="knee-in-percent"),
+    pytest.param({LIMITATION: {"max_current_a": 400.0, "umin2_kv": 14.5}}, LIMITATION, "",
+                 "lower umin2_kv", id="no-traction-above-the-knee"),
+    pytest.param({LIMITATION: {"max_current_a": 10.0}}, FREIGHT, "", "raise max_current_a",
+                 id="auxiliaries-above-the-line-current"),
+    pytest.param({LIMITATION: 400.0}, LIMITATION, "400.0", "write a table",
+                 id="line-current-alone"),
     pytest.param({f"{FREIGHT}.adhesive_mass_t": 2000.0}, FREIGHT, "", "lower adhesive_mass_t",
                  id="more-adhesive-mass-than-mass"),
     pytest.param({f"{ENTRY}.headway_min": None, f"{ENTRY}.departures_min": [0.0]}, ENTRY, "",

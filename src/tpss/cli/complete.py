@@ -30,3 +30,10 @@ def library_names(context: typer.Context, incomplete: str) -> list[str]:
     kind = context.params.get("kind")
     names = library.entries(kind) if kind in library.KINDS else {}
     return [name for name in names if name.startswith(incomplete)]
+
+
+def figures(incomplete: str) -> list[str]:
+    """Names of figures that begin like this."""
+    from tpss.report.figures import FIGURES  # matplotlib takes its time to load
+
+    return [name for name in (*FIGURES, "all") if name.startswith(incomplete)]

@@ -23,24 +23,17 @@ from typing import Any
 import numpy as np
 
 from tpss.kernel import fused, inlined, kernel
+from tpss.physics.bridge import bridge_ratio
+from tpss.physics.current_limit import within_line_current
 from tpss.physics.curve import CURVE, Points, curve_at
 from tpss.physics.effort_table import MOST_VOLTAGES
 from tpss.physics.machine import highest_force, take_effort
-from tpss.physics.motor import (
-    NEW,
-    armature_current,
-    line_voltage_factor,
-    motor_force,
-    motor_voltage,
-)
+from tpss.physics.motor import armature_current, motor_force
 from tpss.physics.neural_network import NETWORK, NEURONS
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     POWER_FACTOR,
     POWER_FACTOR_CURVE,
-    TRANSFORMER_RATIO,
-    bridge_reactive_power,
-    bridge_sine,
     filter_reactive_power,
     power_factor,
     reactive_ratio,
@@ -82,6 +75,13 @@ TRAIN_TYPE = np.dtype(
         ("limit_speed_m_s", float),  # infinite without a pull-out limit
         ("zero_voltage_v", float),
         ("full_voltage_v", float),
+        (
+            "highest_line_current_a",
+            float,
+        ),  # infinite without a limit, which the next three belong to
+        ("auxiliary_current_a", float),
+        ("no_traction_voltage_v", float),
+        ("full_current_voltage_v", float),
         ("highest_acceleration_m_s2", float),  # infinite without such a limit
         ("highest_retardation_m_s2", float),
         ("highest_speed_m_s", float),
@@ -196,7 +196,8 @@ def prove_free_band(kind: TrainType, train: Demand) -> None:
     """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
     The slope of the force is bounded (`take_effort`), so a margin in force is a margin in voltage;
-    within it the machine need not be evaluated again, and nothing is approximated.
+    within it the machine need not be evaluated again, and nothing is approximated.  Of a limit of the
+    line current nothing is proven.
     """
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
@@ -205,6 +206,8 @@ def prove_free_band(kind: TrainType, train: Demand) -> None:
         train.free_band_v = margin / train.steepest_n_per_v
     else:  # no voltage changes the force
         train.free_band_v = math.inf if margin >= 0.0 else -1.0
+    if kind.highest_line_current_a < math.inf:
+        train.free_band_v = -1.0
     train.machine_force_n = train.free_force_n
 
 
@@ -225,6 +228,8 @@ def wheel_force(
         return cap, 0.0
     force, slope = highest_force(voltage_v, kind, train, machine)
     train.machine_force_n = force
+    if kind.highest_line_current_a < math.inf:
+        force, slope = within_line_current(voltage_v, force, slope, kind, train, machine)
     if force < 0.0:
         force, slope = 0.0, 0.0
     limit = machine_force(force, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
@@ -333,32 +338,6 @@ def armature_demand(
     return current, current * relative * slope_n_per_v
 
 
-@inlined
-def train_bridge_sine(
-    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
-) -> tuple[float, float]:
-    """β, clipped to 0 ≤ β ≤ 1, and its slope over the line voltage. [1], [1/V]"""
-    motor_v = motor_voltage(
-        train.speed_m_s,
-        voltage_v,
-        kind.base_speed_m_s,
-        kind.highest_motor_voltage_v,
-        kind.voltage_model,
-    )
-    sine, by_motor, by_locomotive = bridge_sine(
-        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine, train.neurons
-    )
-    train.bridge_sine = sine
-    if sine <= 0.0:
-        return 0.0, 0.0
-    if sine >= 1.0:
-        return 1.0, 0.0
-    slope = by_locomotive * TRANSFORMER_RATIO
-    if kind.voltage_model != NEW and line_voltage_factor(voltage_v, kind.voltage_model) < 1.0:
-        slope += by_motor * motor_v / voltage_v
-    return sine, slope
-
-
 @kernel
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
@@ -373,14 +352,8 @@ def bridge_demand(
     current, current_slope = armature_demand(force_n, slope_n_per_v, kind, train)
     if current <= 0.0:
         return 0.0, 0.0
-    factor = line_voltage_factor(voltage_v, kind.voltage_model)
-    sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
-    inner_v = voltage_v * TRANSFORMER_RATIO
-    unit = bridge_reactive_power(inner_v, current / factor, 1.0)
-    slope = unit * sine_slope + bridge_reactive_power(inner_v, current_slope / factor, sine)
-    if factor == 1.0:  # below the knee of the former voltage, current times voltage is constant
-        slope += unit * sine / voltage_v
-    return unit * sine, slope
+    ratio, ratio_slope = bridge_ratio(voltage_v, kind, train, machine)
+    return ratio * current, ratio_slope * current + ratio * current_slope
 
 
 @fused

@@ -13,20 +13,12 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from tpss.report.contact_line import LineVoltage
+from tpss.report.palette import COLOURS, LEAST_SPAN_KV, VOLTAGE_SCALE
 from tpss.report.sampling import MOST_OF_CURVES, Floats, kept, share
 from tpss.results.result import Result
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
-
 DASHES = ("solid", "dash", "dashdot", "dot")
 """Line styles, so that curves differ in black and white too."""
-
-VOLTAGE_SCALE = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
-"""From a low voltage, dark, to a high one: in black and white too."""
-
-LEAST_SPAN_KV = 2.0
-"""Span of that scale at least, so that a voltage that hardly falls does not look like one that does."""
 
 TIME, POSITION = "time [min]", "position [km]"
 

@@ -18,6 +18,7 @@ _LIMITED = {
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
+    "current_limited": "the current limitation at low voltage kept a train below the force it wanted",
     "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 

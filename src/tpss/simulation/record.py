@@ -7,6 +7,7 @@ from typing import Any
 from tpss.kernel import inlined, kernel
 from tpss.physics.curve import outside_curve
 from tpss.physics.locomotive import (
+    machine_force,
     motor_state,
     train_armature_current,
 )
@@ -85,6 +86,14 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
 
 
 @inlined
+def current_limits(train: Any, kind: Any) -> bool:
+    """Whether a limit of the line current is what keeps a train below wish and machine."""
+    machine_n = max(0.0, train.machine_force_n)
+    rim_n = machine_force(machine_n, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
+    return bool(train.wheel_force_n < min(train.force_cap_n, max(0.0, rim_n)))
+
+
+@inlined
 def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None:
     """Count where what describes a train is extrapolated or clipped, if its driver wants force."""
     machine, speed, voltage = model.machine[0], train.speed_m_s, train.voltage_v
@@ -92,6 +101,8 @@ def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
     if train.machine_force_n < 0.0:
         counters[Counter.EFFORT_CLIPPED] += 1
+    if kind.highest_line_current_a < math.inf and current_limits(train, kind):
+        counters[Counter.CURRENT_LIMITED] += 1
     if train.force_n <= 0.0:
         return
     if outside_curve(speed, kind.efficiency, model.points):

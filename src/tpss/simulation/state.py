@@ -107,6 +107,7 @@ class Counter(IntEnum):
     POWER_FACTOR_EXTRAPOLATED = 4
     SHORT_PIECE = 5
     EFFICIENCY_EXTRAPOLATED = 6
+    CURRENT_LIMITED = 7
 
 
 class Profile(NamedTuple):

@@ -34,6 +34,7 @@ from tpss.kernel import blank_records, records
 from tpss.model.curves import CurveBook
 from tpss.model.trains import build_machine
 from tpss.physics.adhesion import WET, adhesion_limit
+from tpss.physics.bridge import train_bridge_sine
 from tpss.physics.locomotive import (
     DEMAND,
     FULL_EFFORT_N,
@@ -48,7 +49,6 @@ from tpss.physics.locomotive import (
     prove_free_band,
     take_speed,
     train_armature_current,
-    train_bridge_sine,
     wheel_force,
 )
 from tpss.physics.machine import NETWORK
@@ -72,6 +72,7 @@ FREIGHT = {
     "rotor_mass_kg": 10_750.0,
     "slip_factor": 1.0,
     "highest_current_a": 1250.0,
+    "highest_line_current_a": math.inf,
     "effort_model": NETWORK,
     "efficiency": EFFICIENCY,
     "auxiliary_power_w": 151_500.0,
