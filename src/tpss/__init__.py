@@ -11,9 +11,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tpss.api import simulate
+    from tpss.api import Prepared, prepare, simulate
     from tpss.errors import Finding, ResultError, ScenarioError, TpssError
+    from tpss.many import simulate_many
     from tpss.report.html import write_report
+    from tpss.results.key_figures import KeyFigures
     from tpss.results.result import Result, load_result
     from tpss.results.standards.evidence import Evidence
     from tpss.scenario import Scenario, load_scenario
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 _HOME = {
     "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
+    "KeyFigures": "tpss.results.key_figures",
+    "Prepared": "tpss.api",
     "Progress": "tpss.simulation.run",
     "Result": "tpss.results.result",
     "ResultError": "tpss.errors",
@@ -30,13 +34,17 @@ _HOME = {
     "TpssError": "tpss.errors",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
+    "prepare": "tpss.api",
     "simulate": "tpss.api",
+    "simulate_many": "tpss.many",
     "write_report": "tpss.report.html",
 }
 
 __all__ = [
     "Evidence",
     "Finding",
+    "KeyFigures",
+    "Prepared",
     "Progress",
     "Result",
     "ResultError",
@@ -45,7 +53,9 @@ __all__ = [
     "TpssError",
     "load_result",
     "load_scenario",
+    "prepare",
     "simulate",
+    "simulate_many",
     "write_report",
 ]
 

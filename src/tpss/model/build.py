@@ -1,6 +1,7 @@
 """Assemble the model of a scenario from its parts."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         limits=_limits(scenario.line),
         stops=_stops(scenario),
         types=types,
-        machine=build_machine(),
+        machine=_machine(),
         points=points,
         network=network,
     )
@@ -45,6 +46,10 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         stations=tuple(station.name for station in scenario.supply.converter_stations),
         station_m=tuple(si(s, "position_km") for s in scenario.supply.converter_stations),
     )
+
+
+_machine = cache(build_machine)
+"""The networks of the library, which every model reads and none changes."""
 
 
 def steps_of(duration_s: float, step_s: float) -> int:
