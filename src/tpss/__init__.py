@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tpss.api import Prepared, prepare, simulate
-    from tpss.errors import Finding, ResultError, ScenarioError, TpssError
+    from tpss.errors import Finding, ResultError, ScenarioError, StudyError, TpssError
     from tpss.many import simulate_many
     from tpss.report.html import write_report
     from tpss.results.key_figures import KeyFigures
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from tpss.results.standards.evidence import Evidence
     from tpss.scenario import Scenario, load_scenario
     from tpss.simulation.run import Progress
+    from tpss.sweep.campaign import run_study
+    from tpss.sweep.folder import load_table
+    from tpss.sweep.study import Study, load_study
 
 _HOME = {
     "Evidence": "tpss.results.standards.evidence",
@@ -31,10 +34,15 @@ _HOME = {
     "ResultError": "tpss.errors",
     "Scenario": "tpss.scenario",
     "ScenarioError": "tpss.errors",
+    "Study": "tpss.sweep.study",
+    "StudyError": "tpss.errors",
     "TpssError": "tpss.errors",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
+    "load_study": "tpss.sweep.study",
+    "load_table": "tpss.sweep.folder",
     "prepare": "tpss.api",
+    "run_study": "tpss.sweep.campaign",
     "simulate": "tpss.api",
     "simulate_many": "tpss.many",
     "write_report": "tpss.report.html",
@@ -50,10 +58,15 @@ __all__ = [
     "ResultError",
     "Scenario",
     "ScenarioError",
+    "Study",
+    "StudyError",
     "TpssError",
     "load_result",
     "load_scenario",
+    "load_study",
+    "load_table",
     "prepare",
+    "run_study",
     "simulate",
     "simulate_many",
     "write_report",

@@ -6,6 +6,7 @@ Files, the scenario's fields and the columns of tables carry engineering units i
 """
 
 import math
+from collections.abc import Iterable
 from functools import cache
 
 SUFFIXES: dict[str, tuple[str, float]] = {
@@ -73,6 +74,12 @@ def si(source: object, name: str) -> float:
         The name has no unit suffix.
     """
     return float(getattr(source, name)) * SUFFIXES[suffix(name)][1]
+
+
+def si_of_each(items: Iterable[object], name: str) -> list[float]:
+    """Values of the field `name` of each item in SI units."""
+    factor = SUFFIXES[suffix(name)][1]
+    return [float(getattr(item, name)) * factor for item in items]
 
 
 def si_list(source: object, name: str) -> list[float]:

@@ -12,7 +12,7 @@ from tpss.physics.adhesion import DRY, WET
 from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
 from tpss.simulation.state import AGGRESSIVE, REGULATED, STOP, Model, Options, Profile
-from tpss.units import si
+from tpss.units import si, si_of_each
 
 STEP_ROUNDING = 1e-9
 """A dwell or a duration that exceeds whole steps by less than this share of a step ends with them."""
@@ -73,15 +73,15 @@ def _options(scenario: Scenario) -> Options:
 
 def _gradients(line: Line) -> Profile:
     return Profile(
-        from_m=np.array([si(item, "from_km") for item in line.gradients]),
-        value=np.array([item.permille * 1e-3 for item in line.gradients]),
+        from_m=np.array(si_of_each(line.gradients, "from_km")),
+        value=np.array([item.permille for item in line.gradients]) * 1e-3,
     )
 
 
 def _limits(line: Line) -> Profile:
     return Profile(
-        from_m=np.array([si(item, "from_km") for item in line.speed_limits]),
-        value=np.array([si(item, "speed_kmh") for item in line.speed_limits]),
+        from_m=np.array(si_of_each(line.speed_limits, "from_km")),
+        value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
     )
 
 
