@@ -11,41 +11,64 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tpss.api import simulate
-    from tpss.errors import Finding, ResultError, ScenarioError, TpssError
+    from tpss.api import Prepared, prepare, simulate
+    from tpss.errors import Finding, ResultError, ScenarioError, StudyError, TpssError
+    from tpss.many import simulate_many
     from tpss.report.html import write_report
+    from tpss.results.key_figures import KeyFigures
     from tpss.results.result import Result, load_result
     from tpss.results.standards.evidence import Evidence
     from tpss.scenario import Scenario, load_scenario
     from tpss.simulation.run import Progress
+    from tpss.sweep.campaign import run_study
+    from tpss.sweep.folder import load_table
+    from tpss.sweep.study import Study, load_study
 
 _HOME = {
     "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
+    "KeyFigures": "tpss.results.key_figures",
+    "Prepared": "tpss.api",
     "Progress": "tpss.simulation.run",
     "Result": "tpss.results.result",
     "ResultError": "tpss.errors",
     "Scenario": "tpss.scenario",
     "ScenarioError": "tpss.errors",
+    "Study": "tpss.sweep.study",
+    "StudyError": "tpss.errors",
     "TpssError": "tpss.errors",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
+    "load_study": "tpss.sweep.study",
+    "load_table": "tpss.sweep.folder",
+    "prepare": "tpss.api",
+    "run_study": "tpss.sweep.campaign",
     "simulate": "tpss.api",
+    "simulate_many": "tpss.many",
     "write_report": "tpss.report.html",
 }
 
 __all__ = [
     "Evidence",
     "Finding",
+    "KeyFigures",
+    "Prepared",
     "Progress",
     "Result",
     "ResultError",
     "Scenario",
     "ScenarioError",
+    "Study",
+    "StudyError",
     "TpssError",
     "load_result",
     "load_scenario",
+    "load_study",
+    "load_table",
+    "prepare",
+    "run_study",
     "simulate",
+    "simulate_many",
     "write_report",
 ]
 

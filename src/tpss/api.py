@@ -4,6 +4,7 @@ import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from tpss.model.traffic import build_services
 from tpss.results import store
 from tpss.results.audit import audit
 from tpss.results.dataset import build_dataset
+from tpss.results.key_figures import Frame, frame_of
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
@@ -21,12 +23,13 @@ from tpss.simulation.run import (
     Clock,
     Outcome,
     Progress,
+    Start,
+    begin,
     compile_kernels,
     interruptible,
-    run_services,
+    run_on,
 )
 from tpss.simulation.state import Model
-from tpss.simulation.timetable import Service
 from tpss.units import si
 
 
@@ -61,42 +64,50 @@ def prepare(scenario: Scenario) -> "Prepared":
 
     Raises
     ------
-    ScenarioError
+    ScenarioError, TooLargeError
         As `simulate`.
     """
+    prepared = build(scenario)
+    compile_kernels(prepared.start.model, prepared.clock)
+    return prepared
+
+
+def build(scenario: Scenario) -> "Prepared":
+    """`prepare` that leaves kernels to be compiled by the run."""
     clock = clock_of(scenario)
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
-    compile_kernels(model, clock)
-    return Prepared(scenario, model, layout, services, clock)
+    duration = scenario.simulation.duration_min
+    steps = None
+    if duration is not None:
+        steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
+    return Prepared(scenario, layout, begin(model, services, steps), clock)
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A scenario whose run can begin."""
+    """A scenario whose run can begin, as often as one likes."""
 
     scenario: Scenario
-    model: Model
     layout: Layout
-    services: list[Service]
+    start: Start
     clock: Clock
+
+    @cached_property
+    def frame(self) -> Frame:
+        """What the key figures are measured by."""
+        return frame_of(self.scenario, self.layout, self.start.model)
 
     def run(
         self,
         progress: Callable[[Progress], None] | None = None,
-        interrupted: Sequence[int] = (),
+        interrupted: Sequence[int] | None = None,
     ) -> Result:
         """Result of the run; it ends early once `interrupted` is filled."""
-        duration = self.scenario.simulation.duration_min
-        steps = (
-            None
-            if duration is None
-            else steps_of(si(self.scenario.simulation, "duration_min"), self.model.options.step_s)
-        )
         started = time.perf_counter()
-        outcome = run_services(self.model, self.services, steps, progress, interrupted, self.clock)
+        outcome = run_on(self.start, progress, interrupted, self.clock)
         elapsed_s = time.perf_counter() - started
-        return _result(self.scenario, outcome, self.model, self.layout, elapsed_s)
+        return _result(self.scenario, outcome, self.start.model, self.layout, elapsed_s)
 
 
 def _result(

@@ -53,3 +53,7 @@ class TooLargeError(TpssError):
 
 class ResultError(TpssError):
     """A result folder cannot be written or read."""
+
+
+class StudyError(TpssError):
+    """A study cannot be run, or its folder cannot be written or read."""

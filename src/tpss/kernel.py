@@ -122,9 +122,15 @@ def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
     To compiled code such an array is one argument, and one of its records a pointer, however many
     fields they have.
     """
-    return np.array(list(rows), dtype=dtype).view(np.recarray)
+    return np.array(list(rows), dtype=record_type(dtype)).view(np.recarray)
 
 
 def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
     """Array of records, all zero."""
-    return np.zeros(count, dtype=dtype).view(np.recarray)
+    return np.zeros(count, dtype=record_type(dtype)).view(np.recarray)
+
+
+@cache
+def record_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
+    """The type of `dtype`'s records, which numpy would find out anew for each array that it views."""
+    return np.dtype((np.record, dtype))

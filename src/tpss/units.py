@@ -6,6 +6,8 @@ Files, the scenario's fields and the columns of tables carry engineering units i
 """
 
 import math
+from collections.abc import Iterable
+from functools import cache
 
 SUFFIXES: dict[str, tuple[str, float]] = {
     # suffix: (label, factor to SI)
@@ -42,6 +44,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
 }
 
 
+@cache
 def suffix(name: str) -> str:
     """Longest unit suffix of a name, which may be nothing but a unit, or an empty string."""
     return max((s for s in SUFFIXES if f"_{name}".endswith(s)), key=len, default="")
@@ -71,6 +74,12 @@ def si(source: object, name: str) -> float:
         The name has no unit suffix.
     """
     return float(getattr(source, name)) * SUFFIXES[suffix(name)][1]
+
+
+def si_of_each(items: Iterable[object], name: str) -> list[float]:
+    """Values of the field `name` of each item in SI units."""
+    factor = SUFFIXES[suffix(name)][1]
+    return [float(getattr(item, name)) * factor for item in items]
 
 
 def si_list(source: object, name: str) -> list[float]:

@@ -229,6 +229,67 @@ def export(
     export_result(result, to, out, force)
 
 
+@app.command(
+    epilog="Examples:  tpss sweep examples/study_converters.toml --out converters, then "
+    "tpss sweep --summary converters"
+)
+def sweep(
+    study: Annotated[
+        Path | None,
+        typer.Argument(help="Study file (TOML).", show_default=False),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for the table; one that holds a part of the study is gone on with.",
+            show_default=False,
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Dask scheduler, such as tcp://10.0.0.1:8786; by default a local cluster.",
+            show_default=False,
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="Processes of the local cluster; by default one a core.", show_default=False
+        ),
+    ] = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Check the study, and say how many cases and how long."),
+    ] = False,
+    summary: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Print key figures of a study's folder.", show_default=False
+        ),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
+) -> None:
+    """Run the cases of a study, and keep a row of each in a table (Parquet).
+
+    A line that collapses or a train that stalls is a result. The same command goes on with what was
+    interrupted, however it was, and runs nothing twice.
+
+    Exit codes: 0 done, 2 bad input, or some cases could not be run (the table says why), 4 the audit
+    of a case failed, 130 interrupted (what is done is kept).
+    """
+    from tpss.cli.sweep import run_study_file, summarise_folder
+
+    if summary is not None and study is None:
+        raise typer.Exit(summarise_folder(summary))
+    if study is None or summary is not None:
+        raise typer.BadParameter("give either a study, or --summary with its folder")
+    if out is None and not dry_run:
+        raise typer.BadParameter("give --out with a folder for the table, or --dry-run")
+    raise typer.Exit(run_study_file(study, out, scheduler, workers, dry_run, quiet))
+
+
 @app.command(epilog="Example:  tpss new my-line")
 def new(
     folder: Annotated[

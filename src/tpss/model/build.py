@@ -1,6 +1,7 @@
 """Assemble the model of a scenario from its parts."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from tpss.physics.adhesion import DRY, WET
 from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
 from tpss.simulation.state import AGGRESSIVE, REGULATED, STOP, Model, Options, Profile
-from tpss.units import si
+from tpss.units import si, si_of_each
 
 STEP_ROUNDING = 1e-9
 """A dwell or a duration that exceeds whole steps by less than this share of a step ends with them."""
@@ -36,7 +37,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         limits=_limits(scenario.line),
         stops=_stops(scenario),
         types=types,
-        machine=build_machine(),
+        machine=_machine(),
         points=points,
         network=network,
     )
@@ -45,6 +46,10 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         stations=tuple(station.name for station in scenario.supply.converter_stations),
         station_m=tuple(si(s, "position_km") for s in scenario.supply.converter_stations),
     )
+
+
+_machine = cache(build_machine)
+"""The networks of the library, which every model reads and none changes."""
 
 
 def steps_of(duration_s: float, step_s: float) -> int:
@@ -68,15 +73,15 @@ def _options(scenario: Scenario) -> Options:
 
 def _gradients(line: Line) -> Profile:
     return Profile(
-        from_m=np.array([si(item, "from_km") for item in line.gradients]),
-        value=np.array([item.permille * 1e-3 for item in line.gradients]),
+        from_m=np.array(si_of_each(line.gradients, "from_km")),
+        value=np.array([item.permille for item in line.gradients]) * 1e-3,
     )
 
 
 def _limits(line: Line) -> Profile:
     return Profile(
-        from_m=np.array([si(item, "from_km") for item in line.speed_limits]),
-        value=np.array([si(item, "speed_kmh") for item in line.speed_limits]),
+        from_m=np.array(si_of_each(line.speed_limits, "from_km")),
+        value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
     )
 
 

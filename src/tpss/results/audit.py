@@ -116,7 +116,17 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     }
     lowest = float(voltages.min()) if voltages.size else None
     highest = float(voltages.max()) if voltages.size else None
-    failures = (*_beyond_limits(figures, model), *_out_of_range(lowest, highest))
+    return judge(figures, lowest, highest, limits_of(model))
+
+
+def judge(
+    figures: dict[str, float],
+    lowest: float | None,
+    highest: float | None,
+    limits: dict[str, float],
+) -> Audit:
+    """An audit from its figures, the range of voltages if there are any, and the limits."""
+    failures = (*_beyond_limits(figures, limits), *_out_of_range(lowest, highest))
     return Audit(**figures, lowest_voltage_v=lowest, highest_voltage_v=highest, failures=failures)
 
 
@@ -138,10 +148,10 @@ def limits_of(model: Model) -> dict[str, float]:
     return limits
 
 
-def _beyond_limits(figures: dict[str, float], model: Model) -> list[str]:
+def _beyond_limits(figures: dict[str, float], limits: dict[str, float]) -> list[str]:
     return [
         f"{name} is {figures[name]:.3g}, limit {limit:g}"
-        for name, limit in limits_of(model).items()
+        for name, limit in limits.items()
         if not figures[name] <= limit
     ]
 

@@ -1,6 +1,6 @@
 """A whole scenario: the line, its supply, its trains, its traffic, and how to simulate them."""
 
-import copy
+import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +10,7 @@ from pydantic import Field, PrivateAttr
 
 from tpss.scenario.fields import Name, Part, unique
 from tpss.scenario.line import Line
-from tpss.scenario.override import override
+from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
@@ -63,7 +63,7 @@ class Scenario(Part):
         ScenarioError
             The document has faults; the error lists all of them.
         """
-        own = copy.deepcopy(dict(document))
+        own: dict[str, Any] = copy_of(document)
         scenario = validate(cls, own, Path(source))
         scenario._document = own
         # A change of the working folder must not lead to other files.
@@ -98,6 +98,13 @@ class Scenario(Part):
 
     def __hash__(self) -> int:
         return hash(json.dumps(self.as_document(), sort_keys=True))
+
+    def digest(self) -> str:
+        """Digest of all that the scenario says, wherever it was read from, its name left out."""
+        text = self.model_dump_json(
+            by_alias=True, exclude_none=True, exclude={"name", "description"}
+        )
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def as_document(self) -> dict[str, Any]:
         """The scenario as run, with everything it took from files, library and defaults."""

@@ -1,6 +1,5 @@
 """Validation that reports every fault at once: each field by pydantic, then the parts together."""
 
-import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -11,6 +10,7 @@ from tpss import units
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
+from tpss.scenario.override import copy_of
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -61,7 +61,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     ScenarioError
         The document has faults; the error lists all of them.
     """
-    inlined = inline_files(copy.deepcopy(document), source)
+    inlined = inline_files(copy_of(document), source)
     findings = inlined.findings
     scenario = None
     try:

@@ -49,6 +49,8 @@ def record_instant(step: int, trains: Any, recording: Recording) -> None:
             recording.trains[step, i].speed = train.speed_m_s
             if train.phase == ARRIVED:
                 recording.train_state[step, i] = STATE_ARRIVED
+            if recording.states.size > 0:
+                recording.states[step, i] = train
 
 
 @inlined

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from tpss.simulation.state import (
     DRIVING,
     DWELLING,
     PLANNED,
+    Memory,
     Model,
     Recording,
     State,
@@ -34,8 +36,8 @@ from tpss.simulation.timetable import (
     Train,
     departing_trains,
     placed_trains,
-    train_now,
     train_records,
+    trains_at,
 )
 
 STRETCH_S = 0.05
@@ -146,7 +148,14 @@ class Run:
     """A run in progress: the state at `step`, and the recording up to it."""
 
     def __init__(
-        self, model: Model, trains: list[Train], capacity: int, clock: Clock = advance
+        self,
+        model: Model,
+        trains: list[Train],
+        capacity: int,
+        clock: Clock = advance,
+        records: Any = None,
+        memory: Memory = np.empty,
+        with_states: bool = False,
     ) -> None:
         self.model = model
         self.clock = clock
@@ -155,13 +164,25 @@ class Run:
         self.step = 0
         demand_room(model, capacity, len(trains))
         self.status = Status.RUNNING
-        self.state = new_state(model, train_records(trains, NOMINAL_VOLTAGE_V))
-        self.recording = new_recording(model, capacity, len(trains))
+        if records is None:
+            records = train_records(trains, NOMINAL_VOLTAGE_V)
+        self.state = new_state(model, records.copy())
+        self.with_states = with_states
+        self.recording = new_recording(model, capacity, len(trains), memory, with_states)
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""
         status, self.step = self.clock(self.step, step, self.model, self.state, self.recording)
         self.status = Status(status)
+
+    @property
+    def departed(self) -> int:
+        """Number of trains that have been on the line; they come first.
+
+        A train that is due at the last instant has not departed.
+        """
+        begun = self.step + (self.status in (Status.COLLAPSED, Status.STALLED))
+        return sum(train.departure_step < max(begun, 1) for train in self.trains)
 
     def way_m(self, route: int) -> tuple[float, float]:
         """Where the trains of a route begin and end. [m]"""
@@ -184,7 +205,9 @@ class Run:
             (state.clock, self.state.clock),
         ):
             new[:] = old
-        self.recording = new_recording(self.model, capacity, len(self.trains))
+        self.recording = new_recording(
+            self.model, capacity, len(self.trains), with_states=self.with_states
+        )
         for row, kept in zip(self.recording, before, strict=True):
             row[tuple(slice(n) for n in kept.shape)] = kept
         self.capacity = capacity
@@ -200,21 +223,16 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
     options = model.options._replace(fixed_voltage_v=NOMINAL_VOLTAGE_V, studied_train=0)
     lone = departing_trains([replace(service, first_s=0.0)], h, 0, 1)
     capacity = foreseen_steps(model, service)
-    run = Run(model._replace(options=options), lone, capacity)
-    trains: list[Train] = []
-    for n in range(1, math.ceil(LONGEST_RUN_S / service.headway_s)):
-        step = round((n * service.headway_s - service.first_s) / h)
-        if step < 1:
-            continue
-        while run.capacity < step:
-            run.grow(2 * run.capacity, [])
-        if step > run.step:
-            run.advance_to(step)
-        if run.status != Status.RUNNING:
-            break
-        name = f"{service.name} initial {len(trains) + 1}"
-        trains.append(replace(train_now(lone[0], run.state.trains[0]), name=name))
-    return trains
+    run = Run(model._replace(options=options), lone, capacity, with_states=True)
+    run.advance_to(capacity)
+    while run.status == Status.RUNNING and run.step * h < LONGEST_RUN_S:
+        run.grow(2 * run.capacity, [])
+        run.advance_to(run.capacity)
+    last = run.step - 1 if run.status == Status.FINISHED else run.step
+    most = math.ceil((last * h + service.first_s) / service.headway_s) + 1
+    times_s = np.arange(1, most + 1) * service.headway_s - service.first_s
+    steps = np.rint(times_s / h).astype(int)
+    return trains_at(run.recording.states[steps[(steps >= 1) & (steps <= last)], 0], lone[0])
 
 
 def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
@@ -242,15 +260,27 @@ def foreseen_steps(model: Model, service: Service) -> int:
     )
 
 
-def run_services(
-    model: Model,
-    services: list[Service],
-    steps: int | None,
-    report: Callable[[Progress], None] | None = None,
-    interrupted: Sequence[int] = (),
-    clock: Clock = advance,
-) -> Outcome:
-    """Run a model with its services.
+@dataclass(frozen=True)
+class Start:
+    """All that a run begins with; the same start may be run again and again."""
+
+    model: Model
+    """With its studied train, if the run ends with the arrival of one."""
+    services: list[Service]
+    steps: int | None
+    """Number of steps; None: until the studied train arrives."""
+    capacity: int
+    """Steps that are foreseen."""
+    trains: list[Train]
+    """Those on the line, then those that depart within the capacity."""
+    records: Any
+    """Their state at the start, records of `TRAIN`."""
+    studied: int
+    """Place of the studied train among them, or -1."""
+
+
+def begin(model: Model, services: list[Service], steps: int | None) -> Start:
+    """Find out which trains stand on the line at the start, and which depart.
 
     Parameters
     ----------
@@ -259,9 +289,54 @@ def run_services(
         The first departure of the first one is the studied train.
     steps : int or None
         Number of steps; None: until the studied train arrives.
+
+    Raises
+    ------
+    TooLargeError
+        The recording would not fit into memory.
+    """
+    h = model.options.step_s
+    on_line = trains_on_line(model, services)
+    first_s = next(services[0].departure_times_s(math.inf))
+    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
+    departures = sum(service.departures_before(capacity * h) for service in services)
+    demand_room(model, capacity, len(on_line) + departures)
+    trains = [*on_line, *departing_trains(services, h, 0, capacity)]
+    names = [train.name for train in trains]
+    studied_name = f"{services[0].name} 1"
+    studied = names.index(studied_name) if studied_name in names else -1
+    ends_with = studied if steps is None else -1
+    model = model._replace(options=model.options._replace(studied_train=ends_with))
+    records = train_records(trains, NOMINAL_VOLTAGE_V)
+    return Start(model, services, steps, capacity, trains, records, studied)
+
+
+def run_services(
+    model: Model,
+    services: list[Service],
+    steps: int | None,
+    report: Callable[[Progress], None] | None = None,
+    interrupted: Sequence[int] | None = None,
+    clock: Clock = advance,
+) -> Outcome:
+    """Run a model with its services: `begin`, then `run_on`."""
+    return run_on(begin(model, services, steps), report, interrupted, clock)
+
+
+def run_on(
+    start: Start,
+    report: Callable[[Progress], None] | None = None,
+    interrupted: Sequence[int] | None = None,
+    clock: Clock = advance,
+) -> Outcome:
+    """Run from a start to the end.
+
+    Parameters
+    ----------
+    start : Start
     report : callable, optional
         Called with the `Progress` after every stretch of steps.
-    interrupted : sequence
+    interrupted : sequence, optional
         Ends the run, once it is filled, with the status "interrupted"; see `interruptible`.
     clock : callable, optional
         Runs the steps.
@@ -276,39 +351,26 @@ def run_services(
     Outcome
         Also of a run that ended early: what it has until then.
     """
-    h = model.options.step_s
-    on_line = trains_on_line(model, services)
-    first_s = next(services[0].departure_times_s(math.inf))
-    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
-    departures = sum(service.departures_before(capacity * h) for service in services)
-    demand_room(model, capacity, len(on_line) + departures)
-    departing = departing_trains(services, h, 0, capacity)
-    names = [train.name for train in (*on_line, *departing)]
-    studied_name = f"{services[0].name} 1"
-    studied = names.index(studied_name) if studied_name in names else -1
-    ends_with = studied if steps is None else -1
-    model = model._replace(options=model.options._replace(studied_train=ends_with))
-    trains = [*on_line, *departing]
-    run = Run(model, trains, capacity, clock)
-    status = _advance_to_end(run, services, steps, report, interrupted)
-    return _outcome(run, status, studied)
+    run = Run(start.model, start.trains, start.capacity, clock, start.records)
+    status = advance_to_end(run, start, report, interrupted)
+    return _outcome(run, status, start.studied)
 
 
-def _advance_to_end(
+def advance_to_end(
     run: Run,
-    services: list[Service],
-    steps: int | None,
-    report: Callable[[Progress], None] | None,
-    interrupted: Sequence[int],
+    start: Start,
+    report: Callable[[Progress], None] | None = None,
+    interrupted: Sequence[int] | None = None,
 ) -> str:
-    """Advance by stretches until the run ends; return the name of its status."""
-    h = run.model.options.step_s
+    """Advance until the run ends, by stretches if anybody looks; return the name of its status."""
+    h, steps = run.model.options.step_s, start.steps
     last = steps if steps is not None else int(LONGEST_RUN_S / h)
-    stretch = 32
+    watched = report is not None or interrupted is not None
+    stretch = 32 if watched else last
     while run.step < last:
         if run.step == run.capacity:
             more = min(last, run.capacity + run.capacity // 2 + 1)
-            departing = departing_trains(services, h, run.capacity, more)
+            departing = departing_trains(start.services, h, run.capacity, more)
             trains = len(run.trains) + len(departing)
             if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
                 break
@@ -316,7 +378,8 @@ def _advance_to_end(
         started = time.perf_counter()
         run.advance_to(min(run.step + stretch, run.capacity, last))
         elapsed = time.perf_counter() - started
-        stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
+        if watched:
+            stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
         if report is not None:
             report(_progress(run, steps))
         if run.status != Status.RUNNING:
@@ -340,10 +403,7 @@ def _progress(run: Run, steps: int | None) -> Progress:
 
 def _outcome(run: Run, status: str, studied: int) -> Outcome:
     """The run as it ended, its recording cut to the steps carried out."""
-    rows = run.step + 1
-    # A train that is due at the last instant has not departed.
-    begun = run.step + (status in (STATUS_NAME[Status.COLLAPSED], STATUS_NAME[Status.STALLED]))
-    count = sum(train.departure_step < max(begun, 1) for train in run.trains)
+    rows, count = run.step + 1, run.departed
     kept = run.recording
     recording = Recording(
         trains=kept.trains[:rows, :count],
@@ -354,6 +414,7 @@ def _outcome(run: Run, status: str, studied: int) -> Outcome:
         network_losses=kept.network_losses[:rows],
         passes=kept.passes[:rows],
         counters=kept.counters,
+        states=kept.states,
     )
     return Outcome(
         status=status,

@@ -1,12 +1,13 @@
 """What the clock reads and writes: the model in SI units, the state of the trains, the recording."""
 
+from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import blank_records
+from tpss.kernel import blank_records, record_type
 from tpss.physics.locomotive import DEMAND
 from tpss.powerflow.network import Flow, Network, new_flow
 
@@ -205,6 +206,8 @@ class Recording(NamedTuple):
     """Evaluations of the network."""
     counters: Indices
     """By `Counter`."""
+    states: Any
+    """Records of `TRAIN`, shape (instants, trains); empty unless they are asked for."""
 
 
 def new_state(model: Model, trains: Any) -> State:
@@ -230,21 +233,44 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     return (steps + 1) * row
 
 
-def new_recording(model: Model, steps: int, trains: int) -> Recording:
-    """Recording with room for `steps` steps and one instant more."""
+Memory = Callable[[int], Floats]
+"""What gives an array of so many numbers, whatever they are."""
+
+
+def new_recording(
+    model: Model, steps: int, trains: int, memory: Memory = np.empty, with_states: bool = False
+) -> Recording:
+    """Recording with room for `steps` steps and one instant more.
+
+    Parameters
+    ----------
+    memory : callable
+        What gives the room.
+    with_states : bool
+        Whether the whole state of every train is kept too.
+    """
     network, rows = model.network, steps + 1
+
+    def unknown(size: int) -> Floats:
+        room = memory(size)
+        room.fill(np.nan)
+        return room
 
     def blank(columns: int, dtype: np.dtype[Any]) -> Any:
         size = rows * columns * len(dtype.names or ())
-        return np.full(size, np.nan).view(dtype).reshape(rows, columns).view(np.recarray)
+        return unknown(size).view(record_type(dtype)).reshape(rows, columns).view(np.recarray)
+
+    ends = network.branches.size + 2 * network.sections.size
+    kept = rows if with_states else 0
 
     return Recording(
         trains=blank(trains, TRAIN_ROW),
         train_state=np.full((rows, trains), ABSENT, dtype=np.int8),
         nodes=blank(network.source_of_node.size, NODE_ROW),
         stations=blank(network.sources.size, STATION_ROW),
-        branch_current=np.full((rows, network.branches.size + 2 * network.sections.size), np.nan),
-        network_losses=np.full(rows, np.nan),
+        branch_current=unknown(rows * ends).reshape(rows, ends),
+        network_losses=unknown(rows),
         passes=np.zeros(rows, dtype=np.int64),
         counters=np.zeros(len(Counter), dtype=np.int64),
+        states=blank_records(kept * trains, TRAIN).reshape(kept, trains),
     )

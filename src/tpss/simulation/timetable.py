@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 from tpss.kernel import blank_records
@@ -121,7 +121,13 @@ def train_records(trains: list[Train], voltage_v: float) -> Any:
     return rows
 
 
-def train_now(train: Train, record: Any) -> Train:
-    """The train in its present state, ready to enter another simulation at its start."""
-    state = {name: record[name].item() for name in _STATE_FIELDS}
-    return replace(train, **{**state, "departure_step": 0})
+def trains_at(states: Any, train: Train) -> list[Train]:
+    """A train in each of its states, records of `TRAIN`, ready to enter another run at its start."""
+    return [
+        Train(
+            name=f"{train.service} initial {number}",
+            service=train.service,
+            **{**dict(zip(_STATE_FIELDS, state, strict=True)), "departure_step": 0},
+        )
+        for number, state in enumerate(states[_STATE_FIELDS].tolist(), 1)
+    ]

@@ -58,7 +58,12 @@ def _length_km(dataset: xr.Dataset) -> float:
 
 def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) -> slice | None:
     """Steps that begin within a window; None if the run does not cover it."""
-    steps, h = dataset.sizes["time"] - 1, step_s(dataset) / 60.0
+    return window_steps(dataset.sizes["time"] - 1, step_s(dataset), from_min, to_min)
+
+
+def window_steps(steps: int, step_s: float, from_min: float, to_min: float | None) -> slice | None:
+    """Steps of a run of so many that begin within a window; None if the run does not cover it."""
+    h = step_s / 60.0
     begin = math.ceil(from_min / h - TOLERANCE)
     end = steps if to_min is None else math.ceil(to_min / h - TOLERANCE)
     return slice(begin, end) if begin < end <= steps else None

@@ -1,0 +1,296 @@
+"""The key figures of a run, for whoever makes thousands: no dataset, no tables, a few hundred bytes."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.model.build import Layout
+from tpss.results.audit import LIMITS, Audit, judge, limits_of
+from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
+from tpss.results.standards.windows import TOLERANCE
+from tpss.results.tables import J_PER_MWH
+from tpss.scenario.scenario import Scenario
+from tpss.simulation.aggregate import RUN_FIGURES, Figures, gather, new_figures
+from tpss.simulation.balances import BALANCES
+from tpss.simulation.run import Clock, Run, Start, advance_to_end
+from tpss.simulation.state import PENDING, Counter, Memory, Model
+
+
+@dataclass(frozen=True)
+class ServiceFigures:
+    """Key figures of a service, of its trains that departed and arrived within the run."""
+
+    name: str
+    arrived: int
+    mean_trip_min: float
+    longest_trip_min: float
+    """Both NaN if no train has arrived."""
+
+
+@dataclass(frozen=True)
+class StationFigures:
+    """Key figures of a converter station; peaks and means are NaN of a run without a step."""
+
+    name: str
+    energy_mwh: float
+    reactive_energy_mvarh: float
+    peak_power_mw: float
+    mean_loading: float
+    peak_loading: float
+
+
+@dataclass(frozen=True)
+class LowestVoltage:
+    """Lowest voltage at a pantograph: how low, which train, where and when."""
+
+    voltage_kv: float
+    train: str
+    position_km: float
+    time_min: float
+
+
+@dataclass(frozen=True)
+class KeyFigures:
+    """Key figures of a run.  What there is not is NaN or None.
+
+    Attributes
+    ----------
+    name : str
+        Name of the scenario.
+    status : str
+        ``finished``, ``collapsed`` or ``stalled``.
+    steps : int
+        Steps carried out.
+    duration_min : float
+        Simulated time; of a run that collapsed or stalled, when it did.
+    carried_share : float
+        Share of its load that the line could carry when it collapsed, otherwise 1.
+    trip_time_min, mean_speed_kmh : float
+        Of the studied train, from its departure to its arrival.
+    services, stations : tuple
+        In the order of the scenario.
+    losses_mwh : float
+    lowest_voltage : LowestVoltage or None
+    mean_useful_voltage_kv : float
+        Lowest one of the zones, by EN 50388, in the peak window.
+    dimensioning_train_kv : float
+        Mean useful voltage of the dimensioning train.
+    mean_passes, most_passes : float, int
+        Evaluations of the network in a step.
+    limited : dict of str to int
+        What was limited or left its range, counted in train-steps.
+    audit : Audit
+    """
+
+    name: str
+    status: str
+    steps: int
+    duration_min: float
+    carried_share: float
+    trip_time_min: float
+    mean_speed_kmh: float
+    services: tuple[ServiceFigures, ...]
+    stations: tuple[StationFigures, ...]
+    losses_mwh: float
+    lowest_voltage: LowestVoltage | None
+    mean_useful_voltage_kv: float
+    dimensioning_train_kv: float
+    mean_passes: float
+    most_passes: int
+    limited: dict[str, int]
+    audit: Audit
+
+    @cached_property
+    def total_energy_mwh(self) -> float:
+        """Energy of all converter stations."""
+        return math.fsum(station.energy_mwh for station in self.stations)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the key figures of a scenario's runs are measured by."""
+
+    name: str
+    peak_from_min: float
+    peak_to_min: float | None
+    zones_km: list[tuple[float, float]]
+    """Ends of the zones of useful voltage; that of the last one is infinite."""
+    stations: tuple[str, ...]
+    at_line_level: npt.NDArray[np.bool_]
+    """Whether a node is at the contact line's level."""
+    limits: dict[str, float]
+    """Of the audit."""
+
+
+def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
+    """What the key figures of a scenario's runs are measured by."""
+    return Frame(
+        name=scenario.name,
+        peak_from_min=scenario.standards.peak_from_min,
+        peak_to_min=scenario.standards.peak_to_min,
+        zones_km=_zones_km(scenario, layout),
+        stations=layout.stations,
+        at_line_level=np.array(layout.supply.node_level) == 1.0,
+        limits=limits_of(model),
+    )
+
+
+def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) -> KeyFigures:
+    """Run from a start, and keep nothing but its key figures.
+
+    Parameters
+    ----------
+    start : Start
+    frame : Frame
+    clock : callable
+        Runs the steps.
+    memory : callable
+        What gives room for the recording.
+
+    Raises
+    ------
+    TooLargeError
+        The recording would not fit into memory.
+    """
+    run = Run(start.model, start.trains, start.capacity, clock, start.records, memory)
+    status = advance_to_end(run, start)
+    figures = _gather(run, frame)
+    whole = dict(zip(RUN_FIGURES.names or (), figures.run.tolist()[0], strict=True))
+    trip_min, speed_kmh = _studied_trip(run, start.studied, figures)
+    return KeyFigures(
+        name=frame.name,
+        status=status,
+        steps=run.step,
+        duration_min=run.step * run.model.options.step_s / 60.0,
+        carried_share=float(run.state.clock[0]["carried_share"]),
+        trip_time_min=trip_min,
+        mean_speed_kmh=speed_kmh,
+        services=_services(run, start),
+        stations=_stations(run, frame, figures),
+        losses_mwh=whole["losses_j"] / J_PER_MWH,
+        lowest_voltage=_lowest_voltage(run, whole),
+        mean_useful_voltage_kv=_lowest_zone_kv(figures),
+        dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),
+        mean_passes=whole["passes"] / max(run.step, 1),
+        most_passes=whole["most_passes"],
+        limited=dict(zip(LIMITED, run.recording.counters.tolist(), strict=True)),
+        audit=_audit(run, figures, whole, frame),
+    )
+
+
+LIMITED = tuple(counter.name.lower() for counter in Counter)
+
+
+def _gather(run: Run, frame: Frame) -> Figures:
+    h, model = run.model.options.step_s, run.model
+    window = window_steps(run.step, h, frame.peak_from_min, frame.peak_to_min)
+    begin, end = (0, 0) if window is None else (window.start, window.stop)
+    figures = new_figures(model, run.departed, frame.zones_km)
+    trains = run.state.trains
+    gather(run.step, begin, end, frame.at_line_level, trains, model, run.recording, figures)
+    return figures
+
+
+def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
+    """Ends of the zones of useful voltage; the line's end belongs to the last zone before it."""
+    length_km = scenario.line.length_km
+    zones = [(zone.from_km, zone.to_km) for zone in scenario.standards.zones]
+    if not zones:
+        points = sorted({0.0, length_km, *(m / 1e3 for m in layout.station_m)})
+        zones = list(zip(points, points[1:], strict=False))
+    return [(begin, math.inf if end >= length_km else end) for begin, end in zones]
+
+
+def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
+    h, trips_min = start.model.options.step_s, [list[float]() for _ in start.services]
+    arrivals = run.state.trains["arrival_step"].tolist()
+    for train, arrival in zip(run.trains, arrivals, strict=True):
+        if arrival >= 0 and train.phase == PENDING:
+            trips_min[train.route].append(arrival * h / 60.0 - train.departure_step * h / 60.0)
+    return tuple(
+        ServiceFigures(
+            name=service.name,
+            arrived=len(trips),
+            mean_trip_min=math.fsum(trips) / len(trips) if trips else math.nan,
+            longest_trip_min=max(trips, default=math.nan),
+        )
+        for service, trips in zip(start.services, trips_min, strict=True)
+    )
+
+
+def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, float]:
+    """Trip time [min] and mean speed [km/h] of the studied train, NaN if it has not arrived."""
+    arrival = int(run.state.trains["arrival_step"][studied]) if studied >= 0 else -1
+    if arrival < 0:
+        return math.nan, math.nan
+    trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
+    way_m = figures.trains["last_m"][studied] - figures.trains["first_m"][studied]
+    return trip_s / 60.0, float(way_m) / trip_s * 3.6
+
+
+def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures, ...]:
+    steps = max(run.step, 1)
+    return tuple(
+        StationFigures(
+            name=name,
+            energy_mwh=energy / J_PER_MWH,
+            reactive_energy_mvarh=reactive / J_PER_MWH,
+            peak_power_mw=_number(peak) / 1e6,
+            mean_loading=loading / steps,
+            peak_loading=_number(highest),
+        )
+        for name, (energy, reactive, peak, loading, highest) in zip(
+            frame.stations, figures.stations.tolist(), strict=True
+        )
+    )
+
+
+def _number(value: float) -> float:
+    """NaN in place of an extreme of nothing."""
+    return value if math.isfinite(value) else math.nan
+
+
+def _lowest_voltage(run: Run, whole: dict[str, Any]) -> LowestVoltage | None:
+    if not math.isfinite(whole["lowest_voltage_v"]):
+        return None
+    return LowestVoltage(
+        voltage_kv=whole["lowest_voltage_v"] / 1e3,
+        train=run.trains[whole["lowest_voltage_train"]].name,
+        position_km=whole["lowest_voltage_m"] / 1e3,
+        time_min=whole["lowest_voltage_step"] * run.model.options.step_s / 60.0,
+    )
+
+
+def _lowest_zone_kv(figures: Figures) -> float:
+    means = [total / steps for *_, steps, total in figures.zones.tolist() if steps]
+    return min(means, default=math.nan) / 1e3
+
+
+def _dimensioning_train_kv(figures: Figures, step_s: float) -> float:
+    """The lowest mean useful voltage of the trains that are present long enough."""
+    h, trains = step_s / 60.0, figures.trains
+    means = [
+        total / pulling
+        for present, pulling, total in zip(
+            trains["useful_steps"].tolist(),
+            trains["pulling_steps"].tolist(),
+            trains["pulling_voltage_v"].tolist(),
+            strict=True,
+        )
+        if present * h >= LEAST_PRESENCE_S / 60.0 - TOLERANCE and pulling
+    ]
+    return min(means, default=math.nan) / 1e3
+
+
+def _audit(run: Run, figures: Figures, whole: dict[str, Any], frame: Frame) -> Audit:
+    found = dict(zip(BALANCES.names or (), figures.audit.balances.tolist()[0], strict=True))
+    found["stop_error_m"] = float(run.state.clock[0]["stop_error_m"])
+    audited = {name: found[name] for name in LIMITS}
+    lowest = min(whole["lowest_voltage_v"], whole["lowest_node_v"])
+    if not math.isfinite(lowest):
+        return judge(audited, None, None, frame.limits)
+    return judge(audited, lowest, whole["highest_voltage_v"], frame.limits)

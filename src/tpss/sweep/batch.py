@@ -1,0 +1,97 @@
+"""Cases in a row, simulated in one process: what a worker does."""
+
+import datetime as dt
+import io
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tpss.api import Prepared, build
+from tpss.errors import TpssError
+from tpss.many import key_figures
+from tpss.sweep.columns import (
+    FAILED,
+    INVALID,
+    Names,
+    output_columns,
+    parameter_columns,
+    schema_of,
+    table_of,
+)
+from tpss.sweep.derive import scenario_of
+from tpss.sweep.design import Design, design_of
+from tpss.sweep.inputs import inputs_of
+from tpss.sweep.study import study_of_json
+from tpss.sweep.versions import versions
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that a worker has to know of a study, as text that goes to any machine."""
+
+    study: str
+    stations: tuple[str, ...]
+    services: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Opened:
+    design: Design
+    schema: pa.Schema
+    made_by: dict[str, str]
+
+
+@lru_cache(maxsize=4)
+def _open(plan: Plan) -> _Opened:
+    """A plan opened once in a process; its design is drawn once too."""
+    study = study_of_json(plan.study)
+    design = design_of(study)
+    return _Opened(
+        design=design,
+        schema=schema_of(design.parameters, Names(plan.stations, plan.services)),
+        made_by={"study_hash": study.digest, **versions()},
+    )
+
+
+def run_batch(plan: Plan, first: int, end: int) -> bytes:
+    """Simulate the cases from `first` to `end` - 1; return their rows as a file of Parquet."""
+    opened = _open(plan)
+    rows = [run_case(opened.design, case) | opened.made_by for case in range(first, end)]
+    file = io.BytesIO()
+    pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
+    return file.getvalue()
+
+
+def warm_up(plan: Plan) -> None:
+    """Compile the kernels, or load them, by the first case."""
+    key_figures(build(scenario_of(_open(plan).design, 0)))
+
+
+def run_case(design: Design, case: int) -> dict[str, Any]:
+    """Columns of one case; a case that cannot be simulated says why."""
+    values = design.values(case)
+    row: dict[str, Any] = {"case": case, **parameter_columns(design.parameters, values)}
+    started = time.perf_counter()
+    try:
+        prepared = build(scenario_of(design, case))
+        row |= described(prepared)
+        built = time.perf_counter()
+        row |= output_columns(key_figures(prepared))
+        row["timing.run_s"] = time.perf_counter() - built
+        row["timing.build_s"] = built - started
+    except TpssError as error:
+        row |= {"status": INVALID, "problem": str(error)}
+    except Exception as error:  # one case that fails must not take the others with it
+        row |= {"status": FAILED, "problem": f"{type(error).__name__}: {error}"}
+    row["timing.ended"] = dt.datetime.now(dt.UTC)
+    return row
+
+
+def described(prepared: Prepared) -> dict[str, Any]:
+    """What a case is, in numbers, and the digest of its scenario."""
+    scenario = prepared.scenario
+    return {**inputs_of(scenario)._asdict(), "scenario_hash": scenario.digest()}

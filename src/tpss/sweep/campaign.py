@@ -1,0 +1,236 @@
+"""Run a study on Dask: batches to the workers, files into the folder, as few at a time as suffice.
+
+Workers make a case from its number, so that the scheduler holds a few batches and no scenarios, however
+many cases there are.
+"""
+
+import os
+import time
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import distributed
+
+from tpss.errors import StudyError
+from tpss.sweep.batch import Plan, run_batch, warm_up
+from tpss.sweep.check import Checked, check, time_per_case
+from tpss.sweep.design import Design, design_of
+from tpss.sweep.folder import FORMAT, FORMAT_KEY, Folder, batches, missing
+from tpss.sweep.study import Study
+from tpss.sweep.versions import versions
+
+BATCH_S = 1.0
+"""Time that a batch takes, about: a hundred times what Dask and the file system need for it."""
+
+MOST_IN_BATCH = 5_000
+
+BATCHES_AHEAD = 2
+"""Batches a worker that are begun or wait to be."""
+
+CONNECT_S = 10.0
+"""How long a scheduler may take to answer. [s]"""
+
+
+@dataclass(frozen=True)
+class Advance:
+    """Where a study stands."""
+
+    cases: int
+    done: int
+    """Cases whose rows are there."""
+    before: int
+    """Those of them that were there at the start."""
+    elapsed_s: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a study will take."""
+
+    cases: int
+    case_s: float
+    """Time of a case in one process, without compilation."""
+    workers: int
+
+    @property
+    def whole_s(self) -> float:
+        """Time of all cases."""
+        return self.cases * self.case_s / self.workers
+
+
+def default_workers() -> int:
+    """A worker for each core."""
+    return os.cpu_count() or 1
+
+
+def estimate(study: Study, workers: int | None = None) -> Estimate:
+    """Check a study, and measure some of its cases.
+
+    Raises
+    ------
+    ScenarioError
+        It has faults.
+    """
+    design = design_of(study)
+    checked = check(design)
+    case_s = time_per_case(design, checked.sample)
+    return Estimate(design.cases, case_s, workers or default_workers())
+
+
+def run_study(
+    study: Study,
+    folder: str | Path,
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    report: Callable[[Advance], None] | None = None,
+) -> Advance:
+    """Run the cases of a study that its folder does not hold yet.
+
+    Parameters
+    ----------
+    study : Study
+    folder : path
+        Made, or gone on with if it holds a part of this study.
+    scheduler : str, optional
+        Address of a Dask scheduler; by default a local cluster is started.
+    workers : int, optional
+        Processes of the local cluster; by default one for each core.
+    report : callable, optional
+        Called after every batch.
+
+    Raises
+    ------
+    ScenarioError
+        The study has faults.
+    StudyError
+        The folder is another study's or cannot be written, or the scheduler does not answer.
+    """
+    design = design_of(study)
+    target = Folder(Path(folder))
+    manifest = {
+        FORMAT_KEY: FORMAT,
+        "name": study.file.name,
+        "study_hash": study.digest,
+        **versions(),
+    }
+    with target.opened({**manifest, "study": study.as_json()}):
+        started, done = time.perf_counter(), target.done()
+        todo = missing(done, design.cases)
+        before = design.cases - sum(end - first for first, end in todo)
+        count = before
+        checked = check(design)
+        plan = Plan(study.as_json(), checked.names.stations, checked.names.services)
+        for first, end, content in _results(design, checked, plan, todo, scheduler, workers):
+            target.add(first, end, content)
+            count += end - first
+            if report is not None:
+                report(Advance(design.cases, count, before, time.perf_counter() - started))
+    return Advance(design.cases, count, before, time.perf_counter() - started)
+
+
+def _results(
+    design: Design,
+    checked: Checked,
+    plan: Plan,
+    todo: list[tuple[int, int]],
+    scheduler: str | None,
+    workers: int | None,
+) -> Iterator[tuple[int, int, bytes]]:
+    """Cases from the first to the one before the second, and their rows, as they are done."""
+    if not todo:
+        return
+    # This compiles the kernels too, before any worker could do so.
+    case_s = time_per_case(design, checked.sample)
+    with _client(scheduler, workers) as client:
+        threads = sum(client.nthreads().values())
+        if scheduler is not None:
+            _prepare_workers(client, plan)
+        left = sum(end - first for first, end in todo)
+        size = max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-left // (4 * threads))))
+        yield from _in_turn(client, plan, batches(todo, size), BATCHES_AHEAD * threads)
+
+
+def _in_turn(
+    client: distributed.Client, plan: Plan, waiting: Iterator[tuple[int, int]], ahead: int
+) -> Iterator[tuple[int, int, bytes]]:
+    """Results of batches, of which only so many are with the scheduler at a time."""
+    own = uuid.uuid4().hex[:8]
+    running = distributed.as_completed([], with_results=False)
+    ranges: dict[str, tuple[int, int]] = {}
+
+    def submit() -> None:
+        cases = next(waiting, None)
+        if cases is not None:
+            key = f"tpss-{own}-{cases[0]}-{cases[1]}"
+            ranges[key] = cases
+            running.add(client.submit(run_batch, plan, *cases, key=key, pure=False))
+
+    for _ in range(ahead):
+        submit()
+    for future in running:
+        first, end = ranges.pop(future.key)
+        try:
+            content: bytes = future.result()
+        except Exception as error:
+            raise StudyError(
+                f"cases {first} to {end - 1} could not be run ({type(error).__name__}: {error}); the "
+                "others are kept, and the same command goes on from there"
+            ) from error
+        future.release()
+        submit()
+        yield first, end, content
+
+
+@contextmanager
+def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.Client]:
+    """Client of a running scheduler, or of a local cluster that ends with it."""
+    if scheduler is None:
+        with (
+            distributed.LocalCluster(
+                n_workers=workers or default_workers(),
+                threads_per_worker=1,
+                dashboard_address=None,
+                silence_logs=50,
+            ) as cluster,
+            distributed.Client(cluster) as client,
+        ):
+            yield client
+        return
+    try:
+        client = distributed.Client(scheduler, timeout=CONNECT_S)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise StudyError(
+            f"no scheduler answers at {scheduler} ({error}); start one (dask scheduler), check the "
+            "address, or leave --scheduler out for a local cluster"
+        ) from error
+    with client:
+        if not client.nthreads():
+            raise StudyError(
+                f"the scheduler at {scheduler} has no workers; start some (dask worker {scheduler})"
+            )
+        yield client
+
+
+def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
+    """Demand that the workers of a cluster are of this version, and compile once on every machine."""
+    try:
+        found: dict[str, Any] = client.run(versions)
+    except Exception as error:
+        raise StudyError(
+            f"the workers cannot import TPSS ({error}); install the same version there, with its extra "
+            "study"
+        ) from error
+    for address, theirs in found.items():
+        if theirs != versions():
+            raise StudyError(
+                f"the worker at {address} is of another version ({theirs}, here {versions()}); install "
+                "the same version there"
+            )
+    hosts = {urlsplit(address).hostname: address for address in found}
+    client.run(warm_up, plan, workers=list(hosts.values()))

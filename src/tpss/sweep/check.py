@@ -1,0 +1,139 @@
+"""Faults of a study that show before the first case is run, and how long it will take."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tpss.api import Prepared, build
+from tpss.errors import Finding, ScenarioError, StudyError, TooLargeError, TpssError
+from tpss.many import key_figures
+from tpss.sweep.columns import Names
+from tpss.sweep.derive import scenario_of, scenario_with
+from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
+
+SAMPLE = 100
+"""Cases that are built, evenly over the study, to find those that cannot be."""
+
+TRIAL_S, TRIAL_CASES = 2.0, 20
+"""How long, and with how many cases, the time of a case is measured at most."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A study whose cases can be built, as far as was tried."""
+
+    names: Names
+    sample: list[Prepared]
+
+
+def check(design: Design) -> Checked:
+    """Build the cases at the ends of every parameter, and a sample of the others.
+
+    Raises
+    ------
+    ScenarioError
+        Some cannot be built; each finding names the study's key and value.
+    """
+    findings: list[Finding] = []
+    built: list[Prepared] = []
+    for name, values in design.ends():
+        try:
+            built.append(build(scenario_with(design, values, 0)))
+        except (ScenarioError, TooLargeError) as error:
+            findings += _of_parameter(error, design, name, values)
+    if findings:
+        raise ScenarioError(list(dict.fromkeys(findings)))
+    sample = [_build(design, case) for case in _spread(design.cases, SAMPLE)]
+    everything = [*built, *sample]
+    return Checked(
+        names=Names(
+            stations=tuple(dict.fromkeys(name for p in everything for name in p.layout.stations)),
+            services=tuple(dict.fromkeys(s.name for p in everything for s in p.start.services)),
+        ),
+        sample=sample,
+    )
+
+
+def _build(design: Design, case: int) -> Prepared:
+    try:
+        return build(scenario_of(design, case))
+    except (ScenarioError, TooLargeError) as error:
+        raise ScenarioError(_of_case(error, design, case)) from error
+
+
+def _spread(cases: int, most: int) -> Iterator[int]:
+    count = min(cases, most)
+    yield from (i * cases // count for i in range(count))
+
+
+def _findings(error: TpssError, place: str) -> list[Finding]:
+    if isinstance(error, ScenarioError):
+        return list(error.findings)
+    return [Finding(place, "", "", str(error), "vary it less, or change the base scenario")]
+
+
+def key_of(name: str, design: Design) -> str:
+    """Where a parameter stands in the study file."""
+    if name in (MEAN, DEVIATION, PROFILE):
+        return name
+    return f"choices.{name}" if name in design.study.file.choices else f"vary.{name}"
+
+
+def _of_parameter(
+    error: TpssError, design: Design, name: str, values: dict[str, Any]
+) -> Iterator[Finding]:
+    """Findings of a scenario, told where the value stands that leads to them."""
+    source = str(design.study.source)
+    for finding in _findings(error, source):
+        problem, remedy = finding.problem, finding.remedy
+        if finding.key and not _is_place_of(name, finding.key):
+            shown = f" = {finding.value}" if finding.value else ""
+            problem = f"makes no scenario: {finding.key}{shown}: {problem}"
+        if finding.problem == "not a whole number" and design.parameters[name].low is not None:
+            remedy = "add whole = true to the range"
+        yield Finding(source, key_of(name, design), repr(values[name]), problem, remedy)
+
+
+def _is_place_of(name: str, key: str) -> bool:
+    """Whether a key path is one of those that a path with ``*`` means."""
+    mine, other = name.split("."), key.split(".")
+    return len(mine) == len(other) and all(a in ("*", b) for a, b in zip(mine, other, strict=True))
+
+
+def _of_case(error: TpssError, design: Design, case: int) -> list[Finding]:
+    """Findings of a scenario, told with the values that lead to them."""
+    values = design.values(case)
+    together = ", ".join(f"{name} = {value!r}" for name, value in values.items())
+    remedy = "vary less, or put values that belong together into choices"
+    return [
+        replace(
+            finding,
+            file=str(design.study.source),
+            problem=f"case {case} makes no scenario: {finding.problem} ({together})",
+            remedy=f"{finding.remedy}; {remedy}",
+        )
+        for finding in _findings(error, str(design.study.source))
+    ]
+
+
+def time_per_case(design: Design, sample: list[Prepared]) -> float:
+    """Time that a case takes, its scenario and model included, in one process. [s]
+
+    The first call compiles the kernels, which does not count.
+
+    Raises
+    ------
+    StudyError
+        The audit of a case failed.
+    """
+    first = key_figures(sample[0])
+    if not first.audit.passed:
+        failures = "; ".join(first.audit.failures)
+        raise StudyError(f"the audit of the first case failed: {failures}")
+    cases = list(_spread(design.cases, TRIAL_CASES))
+    started, done = time.perf_counter(), 0
+    while done < len(cases) and time.perf_counter() - started < TRIAL_S:
+        key_figures(build(scenario_of(design, cases[done])))
+        done += 1
+    return (time.perf_counter() - started) / done

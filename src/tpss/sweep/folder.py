@@ -1,0 +1,213 @@
+"""The folder of a study: what it is, and a file of rows for each batch, written whole or not at all."""
+
+import json
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from tpss.errors import StudyError
+
+MANIFEST, CASES = "study.json", "cases"
+
+FORMAT_KEY, FORMAT = "table_format", 1
+"""Name and value of what a folder says of the way in which it is written.
+
+It grows when a column is renamed, taken away or changes its meaning.
+"""
+
+_PART = re.compile(r"cases-(\d+)-(\d+)\.parquet")
+
+Ranges = list[tuple[int, int]]
+"""Cases from the first to the one before the second, ascending."""
+
+
+class Folder:
+    """The folder of a study, opened by one process at a time."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @contextmanager
+    def opened(self, manifest: dict[str, Any]) -> Iterator[dict[str, Any]]:
+        """Make the folder, or go on with it; gives the manifest that it was begun with.
+
+        Raises
+        ------
+        StudyError
+            It belongs to another study or version, another process works in it, or it cannot be
+            written.
+        """
+        with told(self.path):
+            self._refuse_others()
+            (self.path / CASES).mkdir(parents=True, exist_ok=True)
+            with _lock(self.path):
+                begun = self._begin(manifest)
+                for leftover in (self.path / CASES).glob("*.unfinished"):
+                    leftover.unlink()
+                yield begun
+
+    def _refuse_others(self) -> None:
+        """A folder that is not empty must be one of a study."""
+        if not self.path.exists():
+            return
+        if not self.path.is_dir():
+            raise StudyError(f"{self.path} is not a folder; give another --out")
+        names = {entry.name for entry in self.path.iterdir()} - {CASES, LOCK}
+        if names and MANIFEST not in names and not names <= {f"{MANIFEST}.unfinished"}:
+            raise StudyError(
+                f"{self.path} is not empty, nor the folder of a study; give another --out"
+            )
+
+    def _begin(self, manifest: dict[str, Any]) -> dict[str, Any]:
+        place = self.path / MANIFEST
+        if not place.exists():
+            write_whole(place, json.dumps(manifest, indent=1).encode())
+            return manifest
+        begun = read_manifest(self.path)
+        for key, problem, remedy in (
+            (FORMAT_KEY, "is of another format", "finish it with the version that began it"),
+            ("study_hash", "holds another study", f"see {MANIFEST} there"),
+            ("tpss_version", "was begun by another version", "finish it with that version"),
+            ("kernel_hash", "was begun by other kernels", "finish it with those"),
+        ):
+            if begun.get(key) != manifest[key]:
+                raise StudyError(
+                    f"{self.path} {problem} ({key} {begun.get(key)}, here {manifest[key]}); {remedy}, "
+                    "or give another --out"
+                )
+        return begun
+
+    def done(self) -> Ranges:
+        """Cases whose rows are there."""
+        parts = (_PART.fullmatch(file.name) for file in (self.path / CASES).iterdir())
+        return sorted((int(part[1]), int(part[2])) for part in parts if part)
+
+    def add(self, first: int, end: int, content: bytes) -> None:
+        """Add the rows of a batch."""
+        write_whole(self.path / CASES / f"cases-{first:08d}-{end:08d}.parquet", content)
+
+
+LOCK = ".lock"
+
+
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    """Keep other processes out, until this one ends, however it does."""
+    try:
+        import fcntl
+    except ImportError:  # not on Windows
+        yield
+        return
+    with (path / LOCK).open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise StudyError(
+                f"{path} is being worked on by another process; wait for it, or give another --out"
+            ) from None
+        yield
+
+
+@contextmanager
+def told(path: Path) -> Iterator[None]:
+    """Say where the system's words about a folder belong, and what to do."""
+    try:
+        yield
+    except OSError as error:
+        place = error.filename or path
+        raise StudyError(
+            f"{place} cannot be written: {error.strerror or error}; make room, or give another --out. "
+            "What is there is kept, and the same command goes on from it"
+        ) from error
+
+
+def write_whole(place: Path, content: bytes) -> None:
+    """Write a file that is there whole, and on the disk, or not at all."""
+    unfinished = place.with_name(f"{place.name}.unfinished")
+    try:
+        with unfinished.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(place)
+    except OSError:
+        unfinished.unlink(missing_ok=True)
+        raise
+
+
+def missing(done: Ranges, cases: int) -> Ranges:
+    """What lies between ranges of cases that are done."""
+    gaps, at = [], 0
+    for first, end in [*done, (cases, cases)]:
+        if first > at:
+            gaps.append((at, min(first, cases)))
+        at = max(at, end)
+    return gaps
+
+
+def batches(ranges: Ranges, size: int) -> Iterator[tuple[int, int]]:
+    """Ranges cut into batches, at multiples of their size."""
+    for first, end in ranges:
+        while first < end:
+            cut = min(end, (first // size + 1) * size)
+            yield first, cut
+            first = cut
+
+
+def read_manifest(path: Path) -> dict[str, Any]:
+    """What a folder of a study says of itself.
+
+    Raises
+    ------
+    StudyError
+        It is no such folder.
+    """
+    try:
+        manifest = json.loads((path / MANIFEST).read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise StudyError(
+            f"{path} is not the folder of a study ({MANIFEST}: {error}); name one that tpss sweep has "
+            "written"
+        ) from error
+    if not isinstance(manifest, dict):
+        raise StudyError(f"{path / MANIFEST} is damaged; give the study another folder")
+    return manifest
+
+
+def load_table(folder: str | Path) -> pd.DataFrame:
+    """The table of a study, a row a case, as far as it is done.
+
+    Raises
+    ------
+    StudyError
+        The folder is not that of a study, or of another version's format, or a file is damaged.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = Path(folder)
+    found = read_manifest(path).get(FORMAT_KEY)
+    if found != FORMAT:
+        raise StudyError(
+            f"{path} was written by another version of TPSS: its format is {found}, this version reads "
+            f"{FORMAT}; read it with that version, or run the study again"
+        )
+    files = sorted((path / CASES).glob("*.parquet"))
+    if not files:
+        raise StudyError(f"{path} has no cases yet; run the study's command again")
+    tables = []
+    for file in files:
+        try:
+            tables.append(pq.read_table(file))
+        except (OSError, pa.ArrowException) as error:
+            raise StudyError(
+                f"{file} is damaged ({error}); delete it and run the study's command again, which makes "
+                "its cases anew"
+            ) from error
+    table: pd.DataFrame = pa.concat_tables(tables).to_pandas()
+    return table.sort_values("case", ignore_index=True)

@@ -1,0 +1,151 @@
+"""What a case is, in numbers that an approximator can learn from: computed from its scenario."""
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from tpss import library
+from tpss.model.supply import transformer_positions_km
+from tpss.scenario.line import Line
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import Catenary
+
+
+class Inputs(NamedTuple):
+    """Inputs of a case.  Of the trains, those of the first traffic entry are described."""
+
+    length_km: float
+    route_km: float
+    """Way of the studied train."""
+    stops: int
+    converter_stations: int
+    station_distance_km: float
+    """Mean distance between neighbouring converter stations; NaN of a single one."""
+    longest_station_distance_km: float
+    converters: int
+    """Installed, in all stations."""
+    converters_per_station: float
+    converter_rating_mva: float
+    """Of all installed converters."""
+    catenary: str
+    """Name in the library, or own."""
+    catenary_r_ohm_per_km: float
+    catenary_x_ohm_per_km: float
+    connection_x_ohm: float
+    """Between a feeding point and the line; 0 of a BT system."""
+    high_voltage_line: bool
+    transformers: int
+    """Between the stations."""
+    feeding_distance_km: float
+    """Mean distance between neighbouring converter stations and transformers."""
+    headway_min: float
+    """NaN if departures are listed."""
+    trains_per_h: float
+    """Of all services with a headway."""
+    speed_limit_kmh: float
+    """Highest on the way of the studied train, of the line and of the train itself."""
+    mean_speed_limit_kmh: float
+    train_mass_t: float
+    max_motor_current_a: float
+    """NaN of a train without this limit."""
+    gradient_mean_permille: float
+    gradient_std_permille: float
+    """Standard deviation over the line."""
+    steepest_permille: float
+    """Steepest rise."""
+    time_step_min: float
+
+
+def inputs_of(scenario: Scenario) -> Inputs:
+    """Inputs of a scenario."""
+    line, supply, first = scenario.line, scenario.supply, scenario.traffic[0]
+    train, catenary = scenario.trains[first.train], supply.catenary
+    place_km = {station.name: station.position_km for station in line.stations}
+    begin_km, end_km = place_km[first.origin], place_km[first.destination]
+    stations_km = sorted(station.position_km for station in supply.converter_stations)
+    transformers_km = transformer_positions_km(supply)
+    converters = [station.converters for station in supply.converter_stations]
+    ratings = [s.converters * s.type.rating_mva for s in supply.converter_stations]
+    headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]
+    limits = _over([(s.from_km, s.speed_kmh) for s in line.speed_limits], begin_km, end_km)
+    limits = [(way, min(speed, train.max_speed_kmh)) for way, speed in limits]
+    mean, deviation, steepest = _gradients(line)
+    return Inputs(
+        length_km=line.length_km,
+        route_km=end_km - begin_km,
+        stops=len(first.stops),
+        converter_stations=len(stations_km),
+        station_distance_km=_mean_distance(stations_km),
+        longest_station_distance_km=max(
+            (b - a for a, b in pairwise(stations_km)), default=math.nan
+        ),
+        converters=sum(converters),
+        converters_per_station=sum(converters) / len(converters),
+        converter_rating_mva=math.fsum(ratings),
+        catenary=_name_of(catenary),
+        catenary_r_ohm_per_km=catenary.r_ohm_per_km,
+        catenary_x_ohm_per_km=catenary.x_ohm_per_km,
+        connection_x_ohm=catenary.connection_x_ohm,
+        high_voltage_line=supply.high_voltage_line is not None,
+        transformers=len(transformers_km),
+        feeding_distance_km=_mean_distance(sorted([*stations_km, *transformers_km])),
+        headway_min=_or_nan(first.headway_min),
+        trains_per_h=sum(60.0 / headway for headway in headways),
+        speed_limit_kmh=max(speed for _, speed in limits),
+        mean_speed_limit_kmh=sum(way * speed for way, speed in limits) / (end_km - begin_km),
+        train_mass_t=train.mass_t,
+        max_motor_current_a=_or_nan(train.max_motor_current_a),
+        gradient_mean_permille=mean,
+        gradient_std_permille=deviation,
+        steepest_permille=steepest,
+        time_step_min=scenario.simulation.time_step_min,
+    )
+
+
+def _or_nan(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _mean_distance(places_km: Sequence[float]) -> float:
+    if len(places_km) < 2:
+        return math.nan
+    return (places_km[-1] - places_km[0]) / (len(places_km) - 1)
+
+
+def _over(
+    staircase: Sequence[tuple[float, float]], begin_km: float, end_km: float
+) -> list[tuple[float, float]]:
+    """Ways [km] and values of a staircase over a stretch."""
+    ends = [*(place for place, _ in staircase[1:]), math.inf]
+    ways = [
+        (min(end, end_km) - max(place, begin_km), value)
+        for (place, value), end in zip(staircase, ends, strict=True)
+    ]
+    return [(way, value) for way, value in ways if way > 0.0]
+
+
+def _gradients(line: Line) -> tuple[float, float, float]:
+    """Mean, standard deviation and highest gradient over the line. [‰]"""
+    from_km = np.array([gradient.from_km for gradient in line.gradients])
+    permille = np.array([gradient.permille for gradient in line.gradients])
+    # The outer gradients go on beyond the profile's ends.
+    from_km[0] = min(from_km[0], 0.0)
+    ends = np.clip(np.append(from_km, np.inf), 0.0, line.length_km)
+    share = np.diff(ends) / line.length_km
+    mean = float(share @ permille)
+    deviation = math.sqrt(float(share @ (permille - mean) ** 2))
+    return mean, deviation, float(permille[share > 0.0].max())
+
+
+@cache
+def _catenaries() -> dict[str, Catenary]:
+    names = library.entries("catenaries")
+    return {name: Catenary.model_validate(library.values("catenaries", name)) for name in names}
+
+
+def _name_of(catenary: Catenary) -> str:
+    return next((name for name, known in _catenaries().items() if known == catenary), "own")

@@ -1,0 +1,178 @@
+"""The study file: a base scenario, what varies, and how cases are drawn."""
+
+import copy
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tpss.errors import Finding, ScenarioError
+from tpss.scenario.fields import Part, Real, Whole, fault
+from tpss.scenario.files import read_toml
+from tpss.scenario.inline import inline_files
+from tpss.scenario.override import override
+from tpss.scenario.validate import validate
+from tpss.sweep.variation import Variation, flattened
+
+Settings = dict[str, Any]
+"""Values by the key paths of a scenario, in which ``*`` is any item or key."""
+
+LEFT_OUT = "none"
+"""Stands for a key of the scenario that is left out, which TOML has no word for."""
+
+
+class Gradients(Part):
+    """A gradient profile that is drawn for every case."""
+
+    mean_permille: Variation = Field(description="Mean of the gradient over the line.")
+    standard_deviation_permille: Variation = Field(
+        description="Standard deviation of the gradient over the line."
+    )
+    profile: Variation | None = Field(
+        default=None,
+        description="Number that the profile is drawn from; by default each case has its own.",
+    )
+    piece_km: Real = Field(
+        default=0.5, ge=0.01, le=100, description="Length over which the gradient stays the same."
+    )
+    correlation_km: Real = Field(
+        default=5.0,
+        ge=0,
+        le=1_000,
+        description="Distance over which the correlation of the gradient falls to 1/e.",
+    )
+
+
+class StudyFile(Part):
+    """A study file of format 1."""
+
+    format: Literal[1] = Field(description="Version of the file format.")
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")] = Field(
+        description="Short name."
+    )
+    description: str = Field(default="", description="What the study is about.")
+    scenario: str = Field(description="Scenario file that all cases start from, beside the study.")
+    design: Literal["grid", "latin-hypercube", "sobol"] = Field(
+        description="How cases are drawn: all combinations, or so many points of the space."
+    )
+    cases: Whole | None = Field(
+        default=None, ge=1, le=10_000_000, description="Number of cases; a grid has its own."
+    )
+    seed: Whole = Field(default=0, ge=0, description="Number that all draws follow from.")
+    set: Settings = Field(default={}, description="Values that all cases share, by key path.")
+    vary: dict[str, Variation] = Field(default={}, description="What varies, by key path.")
+    choices: dict[str, Annotated[dict[str, Settings], Field(min_length=1)]] = Field(
+        default={}, description="Sets of values that vary together, by name and option."
+    )
+    gradients: Gradients | None = Field(default=None, description="Gradient profiles to draw.")
+
+    @model_validator(mode="after")
+    def _can_be_drawn(self) -> Self:
+        if self.design == "grid" and self.cases is not None:
+            raise fault("a grid has as many cases as combinations", "leave cases out")
+        if self.design != "grid" and self.cases is None:
+            raise fault(f"how many cases does the {self.design} have?", "add cases = 256")
+        if not (self.vary or self.choices or self.gradients):
+            raise fault("nothing varies", "add a table vary, choices or gradients")
+        for name in sorted(set(self.vary) & set(self.choices)):
+            raise fault(f"{name} stands in vary and in choices", "leave one of them out")
+        return self
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study with its base scenario, ready to draw cases from."""
+
+    file: StudyFile
+    base: dict[str, Any]
+    """Document of the base scenario, with the files that it names."""
+    source: Path
+    """The study file."""
+    base_source: Path
+
+    @property
+    def digest(self) -> str:
+        """Digest of all that decides what a case is.
+
+        A Sobol sequence goes on where it ended, so the number of its cases does not count.
+        """
+        document = self.file.model_dump(mode="json")
+        for key in ("name", "description", *(["cases"] if self.file.design == "sobol" else [])):
+            del document[key]
+        text = json.dumps([document, self.base], sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def as_json(self) -> str:
+        """The study as text, from which `study_of_json` makes it again, on any machine."""
+        return json.dumps(
+            {
+                "file": self.file.model_dump(mode="json", exclude_none=True),
+                "base": self.base,
+                "source": str(self.source),
+                "base_source": str(self.base_source),
+            }
+        )
+
+
+def study_of_json(text: str) -> Study:
+    """Study from the text of `Study.as_json`."""
+    parts = json.loads(text)
+    return Study(
+        file=StudyFile.model_validate(parts["file"]),
+        base=parts["base"],
+        source=Path(parts["source"]),
+        base_source=Path(parts["base_source"]),
+    )
+
+
+def load_study(path: str | Path) -> Study:
+    """Study of a TOML file, with its base scenario.
+
+    Raises
+    ------
+    ScenarioError
+        The file, or the scenario that it names, cannot be read or has faults; all are listed.
+    """
+    source = Path(path)
+    document = read_toml(source)
+    for key in ("set", "vary"):
+        if isinstance(document.get(key), dict):
+            document[key] = flattened(document[key], is_variation=key == "vary")
+    for options in _tables(document.get("choices")):
+        for name, settings in options.items():
+            if isinstance(settings, dict):
+                options[name] = flattened(settings, is_variation=False)
+    file = validate(StudyFile, document, source)
+    base_source = source.parent / file.scenario
+    try:
+        inlined = inline_files(read_toml(base_source), base_source)
+        if inlined.findings:
+            raise ScenarioError(inlined.findings)
+        base = override(inlined.document, settings_of(file.set), base_source)
+    except ScenarioError as error:
+        raise _told_in_study(error, source, "scenario", file.scenario) from error
+    return Study(file, base, source.absolute(), base_source.absolute())
+
+
+def _tables(value: Any) -> list[dict[str, Any]]:
+    tables = value.values() if isinstance(value, dict) else ()
+    return [table for table in tables if isinstance(table, dict)]
+
+
+def settings_of(values: Mapping[str, Any]) -> Settings:
+    """Values by key path, with None for what is left out."""
+    return {
+        path: None if isinstance(value, str) and value == LEFT_OUT else copy.deepcopy(value)
+        for path, value in values.items()
+    }
+
+
+def _told_in_study(error: ScenarioError, source: Path, key: str, value: str) -> ScenarioError:
+    """The findings of a scenario, of which the first one names the study that led there."""
+    problem = f"the base scenario has {len(error.findings)} fault(s), listed below"
+    first = Finding(str(source), key, repr(value), problem, "mend them, or name another scenario")
+    return ScenarioError([first, *error.findings])

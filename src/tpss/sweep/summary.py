@@ -1,0 +1,59 @@
+"""Key figures of a study's table."""
+
+from dataclasses import dataclass
+
+import pandas as pd
+
+SHOWN = {
+    "trip_time_min": "trip time [min]",
+    "mean_speed_kmh": "mean speed [km/h]",
+    "total_energy_mwh": "energy of all stations [MWh]",
+    "losses_mwh": "losses [MWh]",
+    "lowest_voltage_kv": "lowest voltage [kV]",
+    "mean_useful_voltage_kv": "mean useful voltage [kV]",
+    "peak_loading": "peak loading [1]",
+}
+"""Columns of which the spread is told, of the cases that finished."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a table holds."""
+
+    cases: int
+    """Cases of the study; some may be missing."""
+    status: dict[str, int]
+    """Number of cases by their status."""
+    spread: pd.DataFrame
+    """Lowest, median and highest value of columns, of the cases that finished."""
+    audits_failed: int
+    problems: dict[str, int]
+    """Words of what could not be run, and how often."""
+    work_s: float
+    """Time of all cases, added up over the workers."""
+
+    @property
+    def done(self) -> int:
+        """Number of cases in the table."""
+        return sum(self.status.values())
+
+
+def summarise(table: pd.DataFrame, cases: int) -> Summary:
+    """Key figures of a table."""
+    finished = table[table.status == "finished"]
+    columns = {label: finished[name] for name, label in SHOWN.items()}
+    unusable = table[~table.status.isin(("finished", "collapsed", "stalled"))]
+    return Summary(
+        cases=cases,
+        status={str(name): int(n) for name, n in table.status.value_counts().items()},
+        spread=pd.DataFrame(
+            {
+                "lowest": {label: values.min() for label, values in columns.items()},
+                "median": {label: values.median() for label, values in columns.items()},
+                "highest": {label: values.max() for label, values in columns.items()},
+            }
+        ),
+        audits_failed=int((table.audit_passed == False).sum()),  # noqa: E712, it may be null
+        problems={str(text): int(n) for text, n in unusable.problem.value_counts().items()},
+        work_s=float((table["timing.build_s"] + table["timing.run_s"]).sum()),
+    )
