@@ -54,10 +54,7 @@ class Replay:
 
 def solve_step_slowly(count: int, model: Model, state: State) -> float:
     """As the clock does it, but every load flow begins without load; return the share carried."""
-    planned = True
-    share = 1.0
-    while planned and share == 1.0:
-        share = raise_loads(model, state)
+    while (share := raise_loads(model, state)) == 1.0:
         planned = False
         for place in state.flow.standing[:count]:
             train = state.trains[place.train]
@@ -67,6 +64,8 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
                 begin_plan(train, model)
                 aim(train, model)
                 planned = True
+        if not planned:
+            break
     return share
 
 
