@@ -171,6 +171,8 @@ OUT_OF_RANGE = [
     pytest.param({f"{HV}.transformers_km": [40.0, math.nan]}, f"{HV}.transformers_km.1", "nan",
                  "finite number", id="nan-in-a-list"),
     pytest.param({"format": 2}, "format", "2", "choose from 1", id="format-of-the-future"),
+    pytest.param({"format": True}, "format", "True", "choose from 1", id="format-true"),
+    pytest.param({"format": 1.0}, "format", "1.0", "choose from 1", id="format-with-decimals"),
     pytest.param({"simulation.until": "last-train"}, "simulation.until", "'last-train'",
                  "choose from first-departure-arrives", id="unknown-end"),
     pytest.param({f"{WEST}.control": "load"}, f"{WEST}.control", "'load'",
