@@ -84,13 +84,14 @@ def judge_converters(result: Result) -> None:
     steps = data.sizes["time"] - 1
     for s, station in enumerate(result.scenario.supply.converter_stations):
         loading = data.converter_loading.to_numpy()[:steps, s]
+        recorded = data.active_converters.to_numpy()[:, s]
         running, since, period = station.converters, 0, 1
         for k in range(steps):
             if station.control == "loading" and k * h >= 180.0 * period - 1e-6:
                 needed = math.ceil(loading[since:k].mean() * running / 0.85 - 1e-9)
                 running = min(station.converters, max(1, needed))
                 since, period = k, math.floor((k * h + 1e-6) / 180.0) + 1
-            assert data.active_converters[k, s] == running, f"{station.name}, step {k}"
+            assert recorded[k] == running, f"{station.name}, step {k}"
 
 
 class Journey:
@@ -116,10 +117,13 @@ class Journey:
         self.limit = np.array(limits) / 3.6
         self.place_m = {station.name: station.position_km * 1e3 for station in line.stations}
         self.end_m = self.place_m[self.entry.destination]
-        self.force, self.volts = (
-            data[name].to_numpy()[rows, i] for name in ("tractive_force", "pantograph_voltage")
-        )
-        self.opposing = (data.running_resistance + data.gradient_force).to_numpy()[rows, i]
+        self.force, self.volts, resistance, climb = (
+            data[name].to_numpy()[rows, i]
+            for name in (
+                "tractive_force", "pantograph_voltage", "running_resistance", "gradient_force"
+            )
+        )  # fmt: skip
+        self.opposing = resistance + climb
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
 
