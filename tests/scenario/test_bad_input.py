@@ -471,9 +471,9 @@ def copied(tmp_path):
                      "begin with the line", id="other-column"),
         pytest.param("gradient_permille,position_km\n1,0\n", "line 1",
                      "gradient_permille,position_km", "begin with the line", id="columns-swapped"),
-        pytest.param("", "", "", "begin with the line", id="empty"),
-        pytest.param("# nothing\n", "", "", "begin with the line", id="comments-only"),
-        pytest.param(HEADER, "", "", "add rows", id="header-only"),
+        pytest.param("", "line 1", "", "begin with the line", id="empty"),
+        pytest.param("# nothing\n", "line 1", "", "begin with the line", id="comments-only"),
+        pytest.param("# a\n" + HEADER, "line 2", HEADER.strip(), "add rows", id="header-only"),
     ],
 )  # fmt: skip
 def test_a_fault_of_a_profile_is_reported_with_its_line(copied, text, key, value, remedy):
@@ -522,19 +522,27 @@ def test_a_folder_in_place_of_a_file_is_reported(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "problem", "remedy"),
+    ("content", "place", "value", "problem", "remedy"),
     [
-        pytest.param(b"format = 1\nname = \n", "line 2", "mend the file", id="no-value"),
-        pytest.param(b"name = 'a'\nname = 'b'\n", "line 2", "mend the file", id="key-twice"),
-        pytest.param(b"position_km,gradient_permille\n", "not TOML", "toml.io", id="csv"),
-        pytest.param(b"name = 'Lule\xe5'\n", "not text in UTF-8", "UTF-8", id="latin-1"),
+        pytest.param(b"format = 1\nname = \n", "line 2", "name =", "Invalid value",
+                     "mend the file", id="no-value"),
+        pytest.param(b"name = 'a'\nname = 'b'\n", "line 2", "name = 'b'", "not TOML",
+                     "mend the file", id="key-twice"),
+        pytest.param(b"[line]\r\nlength_km = 160 km\r\n", "line 2", "length_km = 160 km",
+                     "not TOML", "mend the file", id="unit-behind-a-number"),
+        pytest.param(b"[line\n", "line 1", "[line", "not TOML", "mend the file", id="bracket"),
+        pytest.param(b"x = [1,", "", "", "at end of document", "mend the file", id="cut-off"),
+        pytest.param(b"position_km,gradient_permille\n", "line 1",
+                     "position_km,gradient_permille", "not TOML", "toml.io", id="csv"),
+        pytest.param(b"# a\nname = 'Lule\xe5'\n", "line 2", "byte 0xe5", "not text in UTF-8",
+                     "UTF-8", id="latin-1"),
     ],
-)
-def test_a_file_that_is_not_toml_is_reported(tmp_path, content, problem, remedy):
+)  # fmt: skip
+def test_a_file_that_is_not_toml_is_reported(tmp_path, content, place, value, problem, remedy):
     file = tmp_path / "line.toml"
     file.write_bytes(content)
     (finding,) = faults_of({}, file)
-    assert finding.file == str(file)
+    assert (finding.file, finding.key, finding.value) == (str(file), place, value)
     assert problem in finding.problem
     assert remedy in finding.remedy
 

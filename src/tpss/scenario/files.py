@@ -1,5 +1,6 @@
 """Read the files of a scenario: TOML, and CSV profiles beside it."""
 
+import re
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -30,8 +31,11 @@ def read_text(path: Path, named_by: str = "") -> str:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         problem, remedy = "there is no such file", _remedy_for_missing(path)
-    except UnicodeDecodeError:
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        byte = f"byte 0x{error.object[error.start]:02x}"
         problem, remedy = "the file is not text in UTF-8", "save it as UTF-8"
+        raise ScenarioError([Finding(str(path), f"line {line}", byte, problem, remedy)]) from error
     except ValueError:
         problem, remedy = "not a file name", "name a file"
     except OSError as error:
@@ -59,8 +63,18 @@ def read_toml(path: Path, named_by: str = "") -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
+        at_line = re.search(r"at line (\d+)", str(error))
+        place, value = shown_line(text, int(at_line[1])) if at_line else ("", "")
         remedy = "mend the file at that place; https://toml.io describes the format"
-        raise ScenarioError([Finding(str(path), "", "", f"not TOML: {error}", remedy)]) from error
+        finding = Finding(str(path), place, value, f"not TOML: {error}", remedy)
+        raise ScenarioError([finding]) from error
+
+
+def shown_line(text: str, number: int) -> tuple[str, str]:
+    """Name of a line, counted from 1, and its text, as a finding shows them."""
+    lines = text.split("\n")
+    line = lines[number - 1].strip() if number <= len(lines) else ""
+    return f"line {number}", line if len(line) <= 60 else f"{line[:57]}..."
 
 
 def read_gradients(path: Path) -> Profile:
@@ -81,13 +95,14 @@ def read_gradients(path: Path) -> Profile:
     if not rows or rows[0][1] != header:
         found = ",".join(rows[0][1]) if rows else ""
         remedy = f"begin with the line {','.join(header)}"
-        key = f"line {rows[0][0]}" if rows else ""
+        key = f"line {rows[0][0]}" if rows else "line 1"
         raise ScenarioError([Finding(str(path), key, found, "not the expected header", remedy)])
     findings: list[Finding] = []
     gradients = [_read_row(path, number, cells, findings) for number, cells in rows[1:]]
     if not gradients:
         remedy = "add rows of a position and a gradient"
-        findings.append(Finding(str(path), "", "", "the profile has no rows", remedy))
+        place, value = f"line {rows[0][0]}", ",".join(header)
+        findings.append(Finding(str(path), place, value, "no rows follow the header", remedy))
     profile = Profile(path, gradients, [number for number, _ in rows[1:]])
     if not findings:
         findings = _check_order(profile)
