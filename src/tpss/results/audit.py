@@ -134,13 +134,14 @@ def limits_of(model: Model) -> dict[str, float]:
     """Limits of the figures that are judged in a run of this model.
 
     Over impedances of some microohms, a few metres of line, rounding alone is a visible mismatch; the
-    limits of what it touches follow it.  A traction balance billed at the start of a step, or with
-    what slip wastes, does not close, and is not judged.
+    limits of what it touches follow it, and a train between two pieces of line meets the roundings of
+    both.  A traction balance billed at the start of a step, or with what slip wastes, does not close,
+    and is not judged.
     """
     limits = dict(LIMITS)
     blurred = model.network.tolerance / TOLERANCE
     shortest_ohm = np.abs(model.network.sections.impedance_ohm_per_m).min() * SHORTEST_PIECE_M
-    limits["power_mismatch_va"] *= max(blurred, resolution_va(shortest_ohm) / JUDGED_VA)
+    limits["power_mismatch_va"] *= max(blurred, 2.0 * resolution_va(shortest_ohm) / JUDGED_VA)
     limits["converter_residual"] *= blurred
     limits["network_balance"] *= blurred
     if not model.options.mean_power or model.options.driver == AGGRESSIVE:
