@@ -40,7 +40,7 @@ def is_on_line(phase: int) -> bool:
     return phase in (DRIVING, PLANNED, DWELLING)
 
 
-@inlined
+@kernel
 def list_trains(trains: Any, flow: Flow) -> int:
     """Bring the trains on the line to the front of `flow.standing`, in the order in which they stood
     there; return their number.
