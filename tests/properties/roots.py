@@ -30,6 +30,9 @@ RISE = 0.04
 FINEST = 2e-4
 """Where not even this much more can be carried, the branch has ended. [1]"""
 
+ALMOST = 0.99
+"""Of the highest plausible voltage: from here on, it was too high a voltage that ended the branch."""
+
 
 class Replay:
     """A scenario's run, done again, to look into single steps of it in ascending order."""
@@ -73,20 +76,24 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
 
 
 def raise_loads(model: Model, state: State) -> float:
-    """Raise all loads from zero; return the share that is carried, whatever the voltages on the way."""
+    """Raise all loads from zero; return the share that is carried."""
     share = raise_loads_within_the_band(model, state)
-    return share if share == 1.0 else raise_loads_beyond_the_band(share, model, state)
+    flow = state.flow
+    standing = flow.standing[: flow.sections.end[-1]]
+    voltage_v = np.concatenate([flow.nodes.voltage_v, standing.voltage_v])
+    if share < 1.0 and np.abs(voltage_v).max() > ALMOST * HIGHEST_VOLTAGE * BASE_VOLTAGE_V:
+        return raise_loads_beyond_the_band(share, standing, model, state)
+    return share
 
 
-def raise_loads_beyond_the_band(share: float, model: Model, state: State) -> float:
+def raise_loads_beyond_the_band(share: float, standing: Any, model: Model, state: State) -> float:
     """Follow the path of another load flow, past voltages too high; a whole load has to return.
 
     What filters feed into a weak line lifts the voltages most at some part of the load, and the whole of
     it may bring them back into the plausible band.
     """
-    flow, loads = state.flow, Loads(state.trains, model.types, model.machine)
-    standing = flow.standing[: flow.sections.end[-1]]
-    equations = Equations.of(model.network, flow._replace(standing=standing), loads)
+    loads = Loads(state.trains, model.types, model.machine)
+    equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
     whole, voltage = carry(equations, highest=np.inf)
     if whole < 1.0 or np.abs(voltage).max() > HIGHEST_VOLTAGE:
         return share
