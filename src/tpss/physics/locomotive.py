@@ -406,7 +406,7 @@ def electrical_demand(
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
+    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24), (F.23b) and (F.24)-(F.28).
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)
