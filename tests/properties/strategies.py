@@ -156,6 +156,7 @@ SIMULATIONS = st.fixed_dictionaries(
         "gradient_sampling": st.sampled_from(["mean", "start"]),
         "adhesion_speed_unit": st.sampled_from(["m/s", "km/h"]),
         "rail": st.sampled_from(["dry", "wet"]),
+        "braking": st.sampled_from(["within-step", "whole-steps"]),
     },
 )
 

@@ -107,6 +107,7 @@ DEMAND = np.dtype(
         ("resistance_n", float),
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
+        ("driven_share", float),  # share of the step in which the motors give the force, mostly 1
         ("efficiency", float),
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
         ("taken_speed_m_s", float),  # speed to which all that `take_speed` writes belongs
@@ -271,6 +272,8 @@ def motor_state(
 
     .. math:: P_{motor} = F_{motor} \, v \, (\kappa + 1)
 
+    The power is the mean over the step, if the motors work for a share of it only.
+
     References
     ----------
     [Boullanger2009]_, eq. (2.12) and (F.23a).
@@ -280,7 +283,7 @@ def motor_state(
     speed, speed_slope = billed_speed(force_n, kind, train)
     if force_n <= 0.0 or motor <= 0.0:
         return 0.0, speed, 0.0, 0.0
-    slip = kind.slip_factor
+    slip = kind.slip_factor * train.driven_share
     slope = slip * ((1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed + motor * speed_slope)
     return motor, speed, motor * speed * slip, slope
 
@@ -289,10 +292,13 @@ def motor_state(
 def train_armature_current(
     motor_force_n: float, speed_m_s: float, kind: TrainType, train: Demand
 ) -> float:
-    """Sum of the four motors' currents at full line voltage. [A] See `armature_current`."""
+    """Sum of the four motors' currents at full line voltage, mean of the step. [A]
+
+    See `armature_current`.
+    """
     return armature_current(
         motor_force_n,
-        kind.slip_factor,
+        kind.slip_factor * train.driven_share,
         speed_m_s,
         kind.base_speed_m_s,
         kind.highest_motor_voltage_v,
@@ -373,7 +379,7 @@ def electrical_demand(
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
+    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24), (F.23b) and (F.24)-(F.28).
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)

@@ -120,7 +120,7 @@ def reactive_ratio(factor: float) -> float:
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.21), (2.24), (F.23) and (F.27).
+    [Boullanger2009]_, eq. (2.21), (2.24), (F.23b) and (F.27).
     """
     return math.sqrt(1.0 - factor * factor) / factor
 

@@ -58,9 +58,9 @@ def state_code(train: Any) -> int:
     """Code of `train_state` of a train on the line."""
     if train.phase == DWELLING:
         return STATE_DWELLING
-    if train.force_n > 0.0:
-        return STATE_MOTORING
-    return STATE_BRAKING if train.braking_force_n > 0.0 else STATE_COASTING
+    if train.braking_force_n > 0.0:  # in a step that holds the speed first there is both
+        return STATE_BRAKING
+    return STATE_MOTORING if train.force_n > 0.0 else STATE_COASTING
 
 
 @inlined
@@ -76,13 +76,14 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n
     row.braking_force = train.braking_force_n
-    row.running_resistance = train.running_resistance_n
-    row.gradient_force = train.gradient_force_n
+    row.running_resistance = train.running_resistance_n * train.moving_share
+    row.gradient_force = train.gradient_force_n * train.moving_share
     row.motor_current = motor_current(current, kind.current_model)
     row.pantograph_voltage = train.voltage_v
     row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
     row.active_power = train.active_power_w
     row.reactive_power = train.reactive_power_var
+    row.holding_time = train.hold_s
     if train.force_cap_n > 0.0:
         count_limits(train, kind, model, recording.counters)
 
