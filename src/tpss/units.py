@@ -6,6 +6,7 @@ Files, the scenario's fields and the columns of tables carry engineering units i
 """
 
 import math
+from functools import cache
 
 SUFFIXES: dict[str, tuple[str, float]] = {
     # suffix: (label, factor to SI)
@@ -42,6 +43,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
 }
 
 
+@cache
 def suffix(name: str) -> str:
     """Longest unit suffix of a name, which may be nothing but a unit, or an empty string."""
     return max((s for s in SUFFIXES if f"_{name}".endswith(s)), key=len, default="")

@@ -21,15 +21,11 @@ from plotly.offline import get_plotlyjs
 from tpss.errors import ResultError
 from tpss.report import plots, sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.report.validity import limits_of_validity
 from tpss.results.audit import LIMITS
+from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result
-
-GENERATOR = "TPSS report"
-"""By this the page says what it is, so that nothing else is ever replaced."""
-
-HEAD_BYTES = 2_000
-"""Within these first bytes of the file it says so."""
 
 NAMES = {
     "finished": "The run finished.",
@@ -83,16 +79,8 @@ def check_target(file: Path, force: bool) -> None:
         return
     if not force:
         raise ResultError(f"{file} exists already; give another --out, or --force to replace it")
-    if not _is_a_report(file):
+    if not is_report(file):
         raise ResultError(f"{file} is not a report, so it is not replaced; give another --out")
-
-
-def _is_a_report(file: Path) -> bool:
-    try:
-        with file.open("rb") as opened:
-            return GENERATOR.encode() in opened.read(HEAD_BYTES)
-    except OSError:
-        return False
 
 
 def report(result: Result) -> str:
@@ -221,7 +209,7 @@ def _page(
         lstrip_blocks=True,
     )
     return environment.get_template("report.html").render(
-        generator=GENERATOR,
+        generator=REPORT_MARK,
         version=version("tpss"),
         title=title,
         results=results,
@@ -234,6 +222,7 @@ def _page(
         key_figures=key_figures,
         notes=notes,
         limits=LIMITS,
+        validity=limits_of_validity(results.values()),
         violations=_violations(results),
         scenarios={label: _as_toml(result) for label, result in results.items()},
         style=_part("report.css"),
