@@ -6,6 +6,7 @@ from pathlib import Path
 import typer
 
 from tpss import library
+from tpss.results.contents import FIGURE_NAMES
 
 
 def scenario_files(incomplete: str) -> list[str]:
@@ -34,6 +35,4 @@ def library_names(context: typer.Context, incomplete: str) -> list[str]:
 
 def figures(incomplete: str) -> list[str]:
     """Names of figures that begin like this."""
-    from tpss.report.figures import FIGURES  # matplotlib takes its time to load
-
-    return [name for name in (*FIGURES, "all") if name.startswith(incomplete)]
+    return [name for name in (*FIGURE_NAMES, "all") if name.startswith(incomplete)]

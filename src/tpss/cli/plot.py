@@ -6,12 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from tpss.errors import ResultError
+from tpss.results.contents import FIGURE_NAMES, FIGURES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FOLDER = "figures"
-"""Folder, within that of the result, of figures that nobody has placed."""
 
 ALL = "all"
 FORMATS = ("png", "svg", "pdf")
@@ -42,7 +40,7 @@ def plot_result(
 
     if figure != ALL:
         catalogue.demand_figure(figure)
-    place, names = _target(folder, figure, list(catalogue.FIGURES), out)
+    place, names = _target(folder, figure, out)
     result = load_result(folder)
     store.check_files(place, names.values(), force)
     contents: dict[str, bytes] = {}
@@ -63,17 +61,15 @@ def plot_result(
         print(f"Left out {name}: {reason}")
 
 
-def _target(
-    folder: Path, figure: str, figures: Sequence[str], out: Path | None
-) -> tuple[Path, dict[str, str]]:
+def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str, str]]:
     """Folder to write into, and files in it by the names of their figures."""
     if figure == ALL:
         if out is not None and out.suffix.removeprefix(".").lower() in FORMATS:
             raise ResultError(
                 f"{out} is one file, and all figures need a folder; give another --out"
             )
-        return out or folder / FOLDER, {name: f"{name}.png" for name in figures}
-    file = out or folder / FOLDER / f"{figure}.png"
+        return out or folder / FIGURES, {name: f"{name}.png" for name in FIGURE_NAMES}
+    file = out or folder / FIGURES / f"{figure}.png"
     if file.suffix.removeprefix(".").lower() not in FORMATS:
         raise ResultError(
             f"{file} does not say its format; let it end in {', '.join(f'.{f}' for f in FORMATS)}"

@@ -16,10 +16,9 @@ import tomli_w
 import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
+from tpss.results.contents import DATASET, SCENARIO, SUMMARY, carry_over
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
-
-DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
 
 FORMAT_KEY, FORMAT = "result_format", 1
 """Name and value of what a result says of the way in which it is written.
@@ -198,7 +197,9 @@ def _move(new: Path, target: Path, old: Path) -> None:
     finally:
         if old.exists() and not target.exists():
             old.rename(target)
-    shutil.rmtree(old, ignore_errors=True)
+    if old.exists():
+        carry_over(old, target)
+        shutil.rmtree(old, ignore_errors=True)
 
 
 def _move_files(new: Path, target: Path, old: Path) -> None:

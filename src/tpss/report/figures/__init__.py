@@ -8,7 +8,7 @@ dashed, then dash-dotted.  All return a matplotlib figure, which is neither show
 from tpss.report.figures.catalogue import FIGURES, draw
 from tpss.report.figures.effort import effort
 from tpss.report.figures.energy import energy_flow
-from tpss.report.figures.journey import inclination, journey
+from tpss.report.figures.journey import journey
 from tpss.report.figures.stations import station_loading, station_powers
 from tpss.report.figures.time_distance import time_distance
 from tpss.report.figures.voltage import voltage_along_line, voltage_envelope
@@ -18,7 +18,6 @@ __all__ = [
     "draw",
     "effort",
     "energy_flow",
-    "inclination",
     "journey",
     "station_loading",
     "station_powers",

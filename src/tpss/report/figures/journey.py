@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from tpss.report.style import STYLE, Floats, as_text, colour, held, legend, line, panels, style
+from tpss.report.gradients import inclination
+from tpss.report.style import STYLE, as_text, colour, held, legend, line, panels, style
 from tpss.results.result import Result
 
 JOURNEY = (
@@ -60,12 +61,3 @@ def journey(
         held(axes[5], x, -np.degrees(data.pantograph_angle.to_numpy()), style(k))
     legend(figure, axes[0])
     return figure
-
-
-def inclination(result: Result, position_m: Floats) -> Floats:
-    """Rise over run at positions on the line; NaN where there is no position. [1]"""
-    profile = result.scenario.line.gradients
-    from_m = np.array([gradient.from_km for gradient in profile]) * 1e3
-    rise = np.array([gradient.permille for gradient in profile]) / 1e3
-    index = np.clip(np.searchsorted(from_m, position_m, side="right") - 1, 0, None)
-    return np.where(np.isfinite(position_m), rise[np.minimum(index, len(rise) - 1)], np.nan)
