@@ -7,7 +7,6 @@ from typing import Any
 
 from tpss.errors import Finding, ScenarioError
 
-
 _LEAVES = frozenset((float, int, str, bool, type(None)))
 
 
