@@ -30,7 +30,7 @@ class Gradients(Part):
         description="Number that the profile is drawn from; by default each case has its own.",
     )
     piece_km: Real = Field(
-        default=0.5, ge=0.01, le=100, description="Length over which the gradient stays the same."
+        default=1.0, ge=0.01, le=100, description="Length over which the gradient stays the same."
     )
     correlation_km: Real = Field(
         default=5.0,
