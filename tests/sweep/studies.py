@@ -1,8 +1,11 @@
 """A small study to vary in tests."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import distributed
 import tomli_w
 
 import tpss
@@ -34,3 +37,16 @@ def write_study(folder: Path, changes: dict[str, Any] | None = None) -> Path:
 def study(folder: Path, changes: dict[str, Any] | None = None) -> tpss.Study:
     """The small study with some tables or values changed."""
     return tpss.load_study(write_study(folder, changes))
+
+
+@contextmanager
+def small_cluster() -> Iterator[str]:
+    """Address of a scheduler with a worker of two threads in this process."""
+    with distributed.LocalCluster(
+        n_workers=1,
+        threads_per_worker=2,
+        processes=False,
+        protocol="tcp",
+        dashboard_address="127.0.0.1:0",
+    ) as cluster:
+        yield cluster.scheduler_address

@@ -8,14 +8,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import distributed
 import pandas as pd
 import psutil
 import pyarrow.parquet as pq
 import pytest
 
 import tpss
-from sweep.studies import study, write_study
+from sweep.studies import small_cluster, study, write_study
 from tpss.sweep import campaign
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
@@ -34,11 +33,8 @@ SLOW = {
 
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
-    """Address of a scheduler with a worker in this process."""
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=2, processes=False, protocol="tcp", dashboard_address=None
-    ) as cluster:
-        yield cluster.scheduler_address
+    with small_cluster() as address:
+        yield address
 
 
 def without_timings(table: pd.DataFrame) -> pd.DataFrame:

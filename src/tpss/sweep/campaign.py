@@ -190,15 +190,7 @@ def _in_turn(
 def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.Client]:
     """Client of a running scheduler, or of a local cluster that ends with it."""
     if scheduler is None:
-        with (
-            distributed.LocalCluster(
-                n_workers=workers or default_workers(),
-                threads_per_worker=1,
-                dashboard_address=None,
-                silence_logs=50,
-            ) as cluster,
-            distributed.Client(cluster) as client,
-        ):
+        with _local_cluster(workers) as cluster, distributed.Client(cluster) as client:
             yield client
         return
     try:
@@ -214,6 +206,21 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.
                 f"the scheduler at {scheduler} has no workers; start some (dask worker {scheduler})"
             )
         yield client
+
+
+def _local_cluster(workers: int | None) -> distributed.LocalCluster:
+    """Processes of one thread each on this machine."""
+    try:
+        return distributed.LocalCluster(
+            n_workers=workers or default_workers(),
+            threads_per_worker=1,
+            dashboard_address="127.0.0.1:0",  # any free port, as 8787 may be taken
+            silence_logs=50,
+        )
+    except (OSError, RuntimeError, TimeoutError) as error:
+        raise StudyError(
+            f"the workers cannot be started ({error}); run it again, or with fewer --workers"
+        ) from error
 
 
 def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
