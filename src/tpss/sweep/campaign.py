@@ -7,7 +7,7 @@ many cases there are.
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,7 @@ import distributed
 
 from tpss.errors import StudyError
 from tpss.sweep.batch import Plan, run_batch, warm_up
-from tpss.sweep.check import Checked, check, time_per_case
+from tpss.sweep.check import check, time_per_case
 from tpss.sweep.design import Design, design_of
 from tpss.sweep.folder import FORMAT, FORMAT_KEY, Folder, batches, missing
 from tpss.sweep.study import Study
@@ -77,8 +77,8 @@ def estimate(study: Study, workers: int | None = None) -> Estimate:
         It has faults.
     """
     design = design_of(study)
-    checked = check(design)
-    case_s = time_per_case(design, checked.sample)
+    check(design)
+    case_s = time_per_case(design)
     return Estimate(design.cases, case_s, workers or default_workers())
 
 
@@ -124,9 +124,9 @@ def run_study(
         todo = missing(done, design.cases)
         before = design.cases - sum(end - first for first, end in todo)
         count = before
-        checked = check(design)
-        plan = Plan(study.as_json(), checked.names.stations, checked.names.services)
-        for first, end, content in _results(design, checked, plan, todo, scheduler, workers):
+        names = check(design)
+        plan = Plan(study.as_json(), names.stations, names.services)
+        for first, end, content in _results(design, plan, todo, scheduler, workers):
             target.add(first, end, content)
             count += end - first
             if report is not None:
@@ -136,7 +136,6 @@ def run_study(
 
 def _results(
     design: Design,
-    checked: Checked,
     plan: Plan,
     todo: list[tuple[int, int]],
     scheduler: str | None,
@@ -146,7 +145,7 @@ def _results(
     if not todo:
         return
     # This compiles the kernels too, before any worker could do so.
-    case_s = time_per_case(design, checked.sample)
+    case_s = time_per_case(design)
     with _client(scheduler, workers) as client:
         threads = sum(client.nthreads().values())
         if scheduler is not None:
@@ -191,15 +190,7 @@ def _in_turn(
 def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.Client]:
     """Client of a running scheduler, or of a local cluster that ends with it."""
     if scheduler is None:
-        with (
-            distributed.LocalCluster(
-                n_workers=workers or default_workers(),
-                threads_per_worker=1,
-                dashboard_address=None,
-                silence_logs=50,
-            ) as cluster,
-            distributed.Client(cluster) as client,
-        ):
+        with _local_cluster(workers) as cluster, distributed.Client(cluster) as client:
             yield client
         return
     try:
@@ -217,8 +208,23 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.
         yield client
 
 
+def _local_cluster(workers: int | None) -> distributed.LocalCluster:
+    """Processes of one thread each on this machine."""
+    try:
+        return distributed.LocalCluster(
+            n_workers=workers or default_workers(),
+            threads_per_worker=1,
+            dashboard_address="127.0.0.1:0",  # any free port, as 8787 may be taken
+            silence_logs=50,
+        )
+    except (OSError, RuntimeError, TimeoutError) as error:
+        raise StudyError(
+            f"the workers cannot be started ({error}); run it again, or with fewer --workers"
+        ) from error
+
+
 def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
-    """Demand that the workers of a cluster are of this version, and compile once on every machine."""
+    """See to it that the workers of a cluster are of this version; compile once on each machine."""
     try:
         found: dict[str, Any] = client.run(versions)
     except Exception as error:
@@ -226,11 +232,21 @@ def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
             f"the workers cannot import TPSS ({error}); install the same version there, with its extra "
             "study"
         ) from error
+    demand_version(found)
+    hosts = {urlsplit(address).hostname: address for address in found}
+    client.run(warm_up, plan, workers=list(hosts.values()))
+
+
+def demand_version(found: Mapping[str, Mapping[str, str]]) -> None:
+    """Demand that workers, by their addresses, are of this version.
+
+    Raises
+    ------
+    StudyError
+    """
     for address, theirs in found.items():
         if theirs != versions():
             raise StudyError(
                 f"the worker at {address} is of another version ({theirs}, here {versions()}); install "
                 "the same version there"
             )
-    hosts = {urlsplit(address).hostname: address for address in found}
-    client.run(warm_up, plan, workers=list(hosts.values()))

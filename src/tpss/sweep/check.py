@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from tpss.api import Prepared, build
-from tpss.errors import Finding, ScenarioError, StudyError, TooLargeError, TpssError
-from tpss.many import key_figures
+from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
+from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
 from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
@@ -19,16 +19,13 @@ TRIAL_S, TRIAL_CASES = 2.0, 20
 """How long, and with how many cases, the time of a case is measured at most."""
 
 
-@dataclass(frozen=True)
-class Checked:
-    """A study whose cases can be built, as far as was tried."""
-
-    names: Names
-    sample: list[Prepared]
-
-
-def check(design: Design) -> Checked:
+def check(design: Design) -> Names:
     """Build the cases at the ends of every parameter, and a sample of the others.
+
+    Returns
+    -------
+    Names
+        Of all stations and services that were met.
 
     Raises
     ------
@@ -44,14 +41,10 @@ def check(design: Design) -> Checked:
             findings += _of_parameter(error, design, name, values)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
-    sample = [_build(design, case) for case in _spread(design.cases, SAMPLE)]
-    everything = [*built, *sample]
-    return Checked(
-        names=Names(
-            stations=tuple(dict.fromkeys(name for p in everything for name in p.layout.stations)),
-            services=tuple(dict.fromkeys(s.name for p in everything for s in p.start.services)),
-        ),
-        sample=sample,
+    built += [_build(design, case) for case in _spread(design.cases, SAMPLE)]
+    return Names(
+        stations=tuple(dict.fromkeys(name for each in built for name in each.layout.stations)),
+        services=tuple(dict.fromkeys(s.name for each in built for s in each.start.services)),
     )
 
 
@@ -117,23 +110,16 @@ def _of_case(error: TpssError, design: Design, case: int) -> list[Finding]:
     ]
 
 
-def time_per_case(design: Design, sample: list[Prepared]) -> float:
+def time_per_case(design: Design) -> float:
     """Time that a case takes, its scenario and model included, in one process. [s]
 
     The first call compiles the kernels, which does not count.
-
-    Raises
-    ------
-    StudyError
-        The audit of a case failed.
     """
-    first = key_figures(sample[0])
-    if not first.audit.passed:
-        failures = "; ".join(first.audit.failures)
-        raise StudyError(f"the audit of the first case failed: {failures}")
-    cases = list(_spread(design.cases, TRIAL_CASES))
+    run_case(design, 0)
     started, done = time.perf_counter(), 0
-    while done < len(cases) and time.perf_counter() - started < TRIAL_S:
-        key_figures(build(scenario_of(design, cases[done])))
+    for case in _spread(design.cases, TRIAL_CASES):
+        run_case(design, case)
         done += 1
+        if time.perf_counter() - started > TRIAL_S:
+            break
     return (time.perf_counter() - started) / done

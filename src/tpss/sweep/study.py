@@ -1,10 +1,8 @@
 """The study file: a base scenario, what varies, and how cases are drawn."""
 
-import copy
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -14,15 +12,10 @@ from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import Part, Real, Whole, fault
 from tpss.scenario.files import read_toml
 from tpss.scenario.inline import inline_files
-from tpss.scenario.override import override
+from tpss.scenario.scenario import Scenario
 from tpss.scenario.validate import validate
+from tpss.sweep.settings import Settings, apply
 from tpss.sweep.variation import Variation, flattened
-
-Settings = dict[str, Any]
-"""Values by the key paths of a scenario, in which ``*`` is any item or key."""
-
-LEFT_OUT = "none"
-"""Stands for a key of the scenario that is left out, which TOML has no word for."""
 
 
 class Gradients(Part):
@@ -37,7 +30,7 @@ class Gradients(Part):
         description="Number that the profile is drawn from; by default each case has its own.",
     )
     piece_km: Real = Field(
-        default=0.5, ge=0.01, le=100, description="Length over which the gradient stays the same."
+        default=1.0, ge=0.01, le=100, description="Length over which the gradient stays the same."
     )
     correlation_km: Real = Field(
         default=5.0,
@@ -148,31 +141,36 @@ def load_study(path: str | Path) -> Study:
                 options[name] = flattened(settings, is_variation=False)
     file = validate(StudyFile, document, source)
     base_source = source.parent / file.scenario
+    base = _load_base(base_source, source, file.scenario)
+    _apply_set(file, base, source, base_source)
+    return Study(file, base, source.absolute(), base_source.absolute())
+
+
+def _load_base(base_source: Path, source: Path, name: str) -> dict[str, Any]:
+    """Document of a sound base scenario, with the files that it names."""
     try:
         inlined = inline_files(read_toml(base_source), base_source)
         if inlined.findings:
             raise ScenarioError(inlined.findings)
-        base = override(inlined.document, settings_of(file.set), base_source)
+        Scenario.from_document(inlined.document, base_source)
     except ScenarioError as error:
-        raise _told_in_study(error, source, "scenario", file.scenario) from error
-    return Study(file, base, source.absolute(), base_source.absolute())
+        problem = f"the base scenario has {len(error.findings)} fault(s), listed below"
+        remedy = "mend them, or name another scenario"
+        first = Finding(str(source), "scenario", repr(name), problem, remedy)
+        raise ScenarioError([first, *error.findings]) from error
+    return inlined.document
+
+
+def _apply_set(file: StudyFile, base: dict[str, Any], source: Path, base_source: Path) -> None:
+    """Put the values that all cases share into the base; its faults are now those of the study."""
+    try:
+        apply(base, file.set, source)
+        Scenario.from_document(base, base_source)
+    except ScenarioError as error:
+        findings = [replace(f, file=str(source), key=f"set.{f.key}") for f in error.findings]
+        raise ScenarioError(findings) from error
 
 
 def _tables(value: Any) -> list[dict[str, Any]]:
     tables = value.values() if isinstance(value, dict) else ()
     return [table for table in tables if isinstance(table, dict)]
-
-
-def settings_of(values: Mapping[str, Any]) -> Settings:
-    """Values by key path, with None for what is left out."""
-    return {
-        path: None if isinstance(value, str) and value == LEFT_OUT else copy.deepcopy(value)
-        for path, value in values.items()
-    }
-
-
-def _told_in_study(error: ScenarioError, source: Path, key: str, value: str) -> ScenarioError:
-    """The findings of a scenario, of which the first one names the study that led there."""
-    problem = f"the base scenario has {len(error.findings)} fault(s), listed below"
-    first = Finding(str(source), key, repr(value), problem, "mend them, or name another scenario")
-    return ScenarioError([first, *error.findings])

@@ -25,7 +25,7 @@ class Summary:
     status: dict[str, int]
     """Number of cases by their status."""
     spread: pd.DataFrame
-    """Lowest, median and highest value of columns, of the cases that finished."""
+    """Lowest, median and highest value of columns that have any, of the cases that finished."""
     audits_failed: int
     problems: dict[str, int]
     """Words of what could not be run, and how often."""
@@ -41,7 +41,9 @@ class Summary:
 def summarise(table: pd.DataFrame, cases: int) -> Summary:
     """Key figures of a table."""
     finished = table[table.status == "finished"]
-    columns = {label: finished[name] for name, label in SHOWN.items()}
+    columns = {
+        label: finished[name] for name, label in SHOWN.items() if finished[name].notna().any()
+    }
     unusable = table[~table.status.isin(("finished", "collapsed", "stalled"))]
     return Summary(
         cases=cases,

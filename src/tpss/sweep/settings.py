@@ -1,0 +1,116 @@
+"""Values by key paths in a scenario's document, each in all the places that its path means."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tpss.errors import Finding, ScenarioError
+from tpss.scenario.override import copy_of, put_in
+
+Settings = dict[str, Any]
+"""Values by the key paths of a scenario, in which ``*`` is any item or key."""
+
+LEFT_OUT = "none"
+"""Stands for a key of the scenario that is left out, which TOML has no word for."""
+
+LENGTH = "line.length_km"
+
+PLACES = (
+    "line.stations.*.position_km",
+    "line.speed_limits.*.from_km",
+    "supply.converter_stations.*.position_km",
+    "supply.high_voltage_line.transformers_km.*",
+    "traffic.*.initial_trains.*.position_km",
+    "standards.zones.*.from_km",
+    "standards.zones.*.to_km",
+)
+"""What moves with the end of the line, in proportion.  The ground, that is the gradients, stays."""
+
+INSTEAD_OF = {
+    "transformers": "transformers_km",
+    "transformers_km": "transformers",
+    "headway_min": "departures_min",
+    "departures_min": "headway_min",
+    "duration_min": "until",
+    "until": "duration_min",
+    "gradients": "gradients_file",
+}
+"""Keys that take the place of another one."""
+
+
+def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -> None:
+    """Put values into a document; a new length of the line comes first, positions after it.
+
+    Raises
+    ------
+    ScenarioError
+        A path leads to no place; it is told as one of `source`.
+    """
+    values = {
+        path: None if isinstance(value, str) and value == LEFT_OUT else copy_of(value)
+        for path, value in settings.items()
+    }
+    length_km = values.pop(LENGTH, None)
+    if length_km is not None:
+        _move_places(document, length_km)
+    _put(document, values, source)
+
+
+def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
+    """Put values of a document in all the places that their paths mean."""
+    changes: dict[str, Any] = {}
+    for path, value in settings.items():
+        found = list(places_of(document, path))
+        if not found:
+            problem = "there is no such place in the base scenario"
+            remedy = (
+                "name tables by their keys, list items by their number from 0 or all of them by *"
+            )
+            raise ScenarioError([Finding(str(source), path, repr(value), problem, remedy)])
+        for place in found:
+            above, _, key = place.rpartition(".")
+            if key in INSTEAD_OF and value is not None:
+                changes[f"{above}.{INSTEAD_OF[key]}"] = None
+            changes[place] = value
+    put_in(document, changes, source)
+
+
+def places_of(document: Any, path: str) -> Iterator[str]:
+    """Key paths that a path with ``*`` means in a document."""
+    before, star, after = path.partition("*")
+    if not star:
+        yield path
+        return
+    container = document
+    for name in filter(None, before.split(".")):
+        container = _item(container, name)
+    keys: Iterable[Any] = (
+        container if isinstance(container, Mapping) else range(len(container or ()))
+    )
+    for key in keys:
+        yield from places_of(document, f"{before}{key}{after}")
+
+
+def _item(container: Any, key: str) -> Any:
+    """An item of a table or list; None if there is none."""
+    if isinstance(container, Mapping):
+        return container.get(key)
+    is_there = isinstance(container, list | tuple) and key.isdigit() and int(key) < len(container)
+    return container[int(key)] if is_there else None
+
+
+def _move_places(document: dict[str, Any], length_km: float) -> None:
+    """Give a line another length; what stands along it moves in proportion."""
+    before_km = _item(_item(document, "line"), "length_km")
+    if isinstance(before_km, int | float) and isinstance(length_km, int | float) and before_km > 0:
+        for place in (place for pattern in PLACES for place in places_of(document, pattern)):
+            *above, last = place.split(".")
+            container: Any = document
+            for key in above:
+                container = _item(container, key)
+            position = _item(container, last)
+            if isinstance(position, int | float):
+                key_or_number: Any = int(last) if isinstance(container, list) else last
+                # Multiplied first, what stands at the end stands there exactly.
+                container[key_or_number] = position * length_km / before_km
+    document["line"]["length_km"] = length_km
