@@ -178,6 +178,51 @@ def test_it_prints(browser, report_file):
     found.tab.close()
 
 
+def test_a_dark_page_has_light_curves_and_prints_in_dark_ones(browser, report_file):
+    """The black line of 100 % loading turns light; on paper, and for who wants it light, it is black."""
+    found = open_page(browser, report_file, color_scheme="dark")
+    state = (
+        "(({layout}) => [layout.paper_bgcolor, layout.shapes[0].line.color])"
+        "(document.getElementById('converters'))"
+    )
+    assert found.tab.evaluate(state) == ["#15181D", "#E6E6E6"]
+    body = "getComputedStyle(document.body).backgroundColor"
+    assert found.tab.evaluate(body) == "rgb(21, 24, 29)"
+    found.tab.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert found.tab.evaluate(state) == ["#FFFFFF", "#000000"]
+    found.tab.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert found.tab.evaluate(state) == ["#15181D", "#E6E6E6"]
+    found.tab.emulate_media(color_scheme="light")
+    found.wait_for("document.getElementById('converters').layout.paper_bgcolor === '#FFFFFF'")
+    assert found.faults == []
+    found.tab.close()
+
+
+def test_one_slider_moves_the_trains_of_all_compared_runs(browser, compared, tmp_path):
+    file = tmp_path / "comparison.html"
+    file.write_text(compared, encoding="utf-8")
+    found = open_page(browser, file)
+    shown = "document.getElementById('envelopes').data.slice(-2).map((trace) => trace.x.length)"
+    found.tab.locator("#time").fill("220")  # 11 min in steps of 0.05 min
+    found.wait_for(f"({shown})[1] === 3")
+    assert found.tab.evaluate(shown) == [2, 3]
+    assert found.tab.locator("#now").inner_text() == "11.00 min"
+    said = found.tab.locator("#state p").all_inner_texts()
+    assert [line.split(";")[0] for line in said] == [
+        "every 10 min: 2 trains on the line",
+        "every 5 min: 3 trains on the line",
+    ]
+    assert found.cursor("powers") == pytest.approx(11.0)
+    assert found.faults == []
+    found.tab.close()
+
+
+def test_the_gradient_below_a_journey_is_that_of_the_line(opened):
+    opened.tab.select_option("#train", index=1)
+    shown = opened.tab.evaluate("[...new Set(document.getElementById('journey').data[2].y)]")
+    assert shown == [0.0]
+
+
 def test_a_comparison_draws_its_plots(browser, compared, tmp_path):
     file = tmp_path / "comparison.html"
     file.write_text(compared, encoding="utf-8")

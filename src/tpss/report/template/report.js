@@ -11,7 +11,7 @@
     // Named one by one: among plotly's own there is one that sends the figure to its maker's cloud.
     modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
   };
-  const PRINTED = { width: 680, height: 370 }; // two plots a page
+  const PRINTED = { width: 680, height: 370, tall: 480 }; // two plots a page, one of three panels
   const RED = "#D55E00";
 
   // ---- plots, and a cursor of time in all that are drawn over time
@@ -29,9 +29,9 @@
       type: "line", xref: "x", yref: "paper", x0: 0, x1: 0, y0: 0, y1: 1,
       line: { color: "#000000", width: 1.5, dash: "dot" }, visible: false,
     });
-    const skipped = div.id === "graph"; // black paths over the map of voltages
+    const skipped = div.id === "graph"; // black paths and cursor over the map of voltages
     colours.set(div, {
-      layout: coloursIn(layout, "", []),
+      layout: coloursIn(skipped ? { ...layout, shapes: [] } : layout, "", []),
       traces: data.map(({ line, marker }) => (skipped ? [] : coloursIn({ line, marker }, "", []))),
     });
     return Plotly.newPlot(div, data, layout, CONFIG).then(() => {
@@ -267,7 +267,8 @@
   addEventListener("beforeprint", () => {
     paint(false);
     for (const div of divs) {
-      const height = Math.min(PRINTED.height, heights.get(div));
+      const most = div.layout.yaxis3 ? PRINTED.tall : PRINTED.height;
+      const height = Math.min(most, heights.get(div));
       Plotly.relayout(div, { width: PRINTED.width, height });
     }
   });
