@@ -138,7 +138,8 @@ class Journey:
             self.keeps_to_the_limits()
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
-        if regulated and self.train.tractive_effort == "Rc4":
+        free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
+        if regulated and free:
             self.gives_all_it_can()
         self.stops_and_dwells()
 

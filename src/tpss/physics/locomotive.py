@@ -75,10 +75,7 @@ TRAIN_TYPE = np.dtype(
         ("limit_speed_m_s", float),  # infinite without a pull-out limit
         ("zero_voltage_v", float),
         ("full_voltage_v", float),
-        (
-            "highest_line_current_a",
-            float,
-        ),  # infinite without a limit, which the next three belong to
+        ("highest_line_current_a", float),  # infinite without a limit; the next three belong to it
         ("auxiliary_current_a", float),
         ("no_traction_voltage_v", float),
         ("full_current_voltage_v", float),

@@ -66,6 +66,7 @@ def train_at(speed_kmh, kind, points, cap_n=1e6, resistance_n=0.0, mean_over_s=0
     train = blank_records(1, DEMAND)[0]
     train.speed_m_s, train.force_cap_n, train.resistance_n = speed_kmh / 3.6, cap_n, resistance_n
     train.adhesion_n, train.mean_speed_weight_s = grip_n, mean_over_s / 2.0
+    train.driven_share = 1.0
     train.taken_speed_m_s = train.free_band_v = -1.0
     take_speed(15e3, kind, train, MACHINE, points)
     prove_free_band(kind, train)
