@@ -18,7 +18,7 @@ from tpss.simulation.advance import begin_step
 from tpss.simulation.coupling import settle
 from tpss.simulation.driver import aim
 from tpss.simulation.run import Run, trains_on_line
-from tpss.simulation.state import Model, State
+from tpss.simulation.state import Model, State, sight_of
 from tpss.simulation.timetable import departing_trains
 from tpss.simulation.traffic import begin_plan, must_plan
 
@@ -68,7 +68,7 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
             settle(train, model)
             if must_plan(train, model):
                 begin_plan(train, model)
-                aim(train, model)
+                aim(train, sight_of(model))
                 planned = True
         if not planned:
             break

@@ -13,7 +13,7 @@ from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
-from tpss.simulation.state import DWELLING, EVEN, LATEST, Model, State
+from tpss.simulation.state import DWELLING, EVEN, LATEST, Model, State, sight_of
 from tpss.simulation.stopping import settle_course
 from tpss.simulation.traffic import begin_plan, must_plan
 
@@ -57,7 +57,7 @@ def settle_all(count: int, model: Model, state: State) -> bool:
         settle(train, model)
         if must_plan(train, model):
             begin_plan(train, model)
-            aim(train, model)
+            aim(train, sight_of(model))
             stands = False
     return stands
 

@@ -30,6 +30,8 @@ from tpss.simulation.state import (
     USUAL,
     WITHIN_STEP,
     Model,
+    Sight,
+    sight_of,
 )
 from tpss.simulation.stopping import steer_to_stop
 from tpss.simulation.traffic import distance_to_stop
@@ -50,7 +52,7 @@ def fastest_and_coasting(train: Any, kind: Any, step_s: float) -> tuple[float, f
 
 
 @inlined
-def target_speed(train: Any, kind: Any, model: Model) -> float:
+def target_speed(train: Any, kind: Any, sight: Sight) -> float:
     """Speed that a train is to have after this step, if its machine can. [m/s]
 
     The lower of line and train limits it, or the original driver's rule, and the highest acceleration
@@ -62,19 +64,19 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
     ----------
     [Boullanger2009]_, section 2.3.1 and figure 3-7.
     """
-    limits, h, retardation = model.limits, model.options.step_s, kind.highest_retardation_m_s2
+    limits, h, retardation = sight.limits, sight.options.step_s, kind.highest_retardation_m_s2
     if train.phase == PLANNED:
         target = planned_speed(train, retardation * h)
     else:
         limit = limits.value[step_index(train.position_m, limits.from_m)]
         target = min(limit, kind.highest_speed_m_s)
-        if model.options.driver == AGGRESSIVE:
+        if sight.options.driver == AGGRESSIVE:
             fastest, coasting = fastest_and_coasting(train, kind, h)
             slowest = train.speed_m_s - retardation * h
             target = aggressive_speed(train.speed_m_s, target, fastest, coasting, slowest)
         if train.speed_m_s < target / 2.0:
-            room_m = distance_to_stop(train, model)
-            if model.options.braking == WITHIN_STEP:
+            room_m = distance_to_stop(train, sight.stops)
+            if sight.options.braking == WITHIN_STEP:
                 most = highest_speed_that_stops_within(train.speed_m_s, room_m, retardation, h)
             else:
                 most = highest_speed_that_stops(train.speed_m_s, room_m, retardation, h)
@@ -125,11 +127,11 @@ def oppose(train: Any, kind: Any, model: Model) -> None:
 
 
 @inlined
-def aim_uniformly(train: Any, kind: Any, model: Model) -> None:
+def aim_uniformly(train: Any, kind: Any, sight: Sight) -> None:
     """Set the target of a train for a step of constant acceleration, and the force that it takes."""
-    options = model.options
+    options = sight.options
     by_rule = options.driver == AGGRESSIVE and train.phase == DRIVING
-    target = target_speed(train, kind, model)
+    target = target_speed(train, kind, sight)
     a = wanted_acceleration(train.speed_m_s, target, options.step_s)
     wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
     if by_rule:
@@ -142,14 +144,14 @@ def aim_uniformly(train: Any, kind: Any, model: Model) -> None:
 
 
 @kernel
-def aim(train: Any, model: Model) -> None:
+def aim(train: Any, sight: Sight) -> None:
     """Set the target of a train, and the force that adhesion and driver allow at most.
 
     References
     ----------
     [Boullanger2009]_, eq. (2.6), (F.5), (F.20).
     """
-    kind, options = model.types[train.train_type], model.options
+    kind, options = sight.types[train.train_type], sight.options
     train.force_cap_n = 0.0
     train.target_speed_m_s = 0.0
     train.wanted_force_n = 0.0
@@ -158,9 +160,9 @@ def aim(train: Any, model: Model) -> None:
         train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
         on_course = False
         if train.phase == PLANNED and options.braking == WITHIN_STEP:
-            on_course = steer_to_stop(train, kind, model)
+            on_course = steer_to_stop(train, kind, sight)
         if not on_course:
-            aim_uniformly(train, kind, model)
+            aim_uniformly(train, kind, sight)
     prove_free_band(kind, train)
     note_cap(kind, train)
 
@@ -180,4 +182,4 @@ def prepare(train: Any, model: Model) -> None:
     train.course = USUAL
     take_speed(train.voltage_v, kind, train, model.machine[0], model.points)
     oppose(train, kind, model)
-    aim(train, model)
+    aim(train, sight_of(model))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import blank_records, record_type
+from tpss.kernel import blank_records, inlined, record_type
 from tpss.physics.locomotive import DEMAND
 from tpss.powerflow.network import Flow, Network, new_flow
 
@@ -168,6 +168,25 @@ class Model(NamedTuple):
     points: Any
     """Records of `CURVE_POINT`, of all curves of the trains."""
     network: Network
+
+
+class Sight(NamedTuple):
+    """What a driver looks at: a `Model` without its network and machines.
+
+    To compiled code each array costs a call something; a whole model costs as much as driving does.
+    """
+
+    options: Options
+    gradients: Profile
+    limits: Profile
+    stops: Any
+    types: Any
+
+
+@inlined
+def sight_of(model: Model) -> Sight:
+    """The part of a model that drivers look at."""
+    return Sight(model.options, model.gradients, model.limits, model.stops, model.types)
 
 
 class State(NamedTuple):

@@ -18,53 +18,53 @@ from tpss.kernel import inlined, kernel
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.locomotive import acceleration
 from tpss.physics.running_resistance import gradient_force
-from tpss.simulation.state import DRIVING, EVEN, LATEST, LIMIT_FIRST, Model, State
+from tpss.simulation.state import DRIVING, EVEN, LATEST, LIMIT_FIRST, Model, Sight, State
 from tpss.simulation.traffic import distance_to_stop, stand_at_stop
 
 
 @inlined
-def _climb(train: Any, kind: Any, way_m: float, model: Model) -> None:
+def _climb(train: Any, kind: Any, way_m: float, sight: Sight) -> None:
     """Find the resistances of a step that goes `way_m`."""
-    if model.options.mean_gradient:
-        profile = model.gradients
+    if sight.options.mean_gradient:
+        profile = sight.gradients
         slope = mean_gradient(train.position_m, way_m, profile.from_m, profile.value)
         train.gradient_force_n = gradient_force(kind.mass_kg, slope)
         train.resistance_n = train.running_resistance_n + train.gradient_force_n
 
 
 @kernel
-def _follow(hold_s: float, brake_s: float, train: Any, kind: Any, model: Model) -> None:
+def _follow(hold_s: float, brake_s: float, train: Any, kind: Any, sight: Sight) -> None:
     """Take this step's part of a course."""
-    v, h = train.speed_m_s, model.options.step_s
+    v, h = train.speed_m_s, sight.options.step_s
     train.hold_s, train.brake_s, train.target_speed_m_s = part_of_step(v, hold_s, brake_s, h)
     train.moving_share = (train.hold_s + train.brake_s) / h
     way_m = way_of_part(v, train.target_speed_m_s, train.hold_s, train.brake_s)
-    _climb(train, kind, way_m, model)
+    _climb(train, kind, way_m, sight)
 
 
 @kernel
-def steer_to_stop(train: Any, kind: Any, model: Model) -> bool:
+def steer_to_stop(train: Any, kind: Any, sight: Sight) -> bool:
     """Set the course of a train that brakes to its stop, and the force that it takes.
 
     Return whether the course holds.  If not, a lower limit before the stop asks for less speed: it goes
     first, and the step is driven as usual.  Where there is such a limit, the train brakes evenly, as
     limits are met in uniform steps.
     """
-    h, retardation = model.options.step_s, kind.highest_retardation_m_s2
-    v, distance_m = train.speed_m_s, distance_to_stop(train, model)
-    limits, position_m = model.limits, train.position_m
+    h, retardation = sight.options.step_s, kind.highest_retardation_m_s2
+    v, distance_m = train.speed_m_s, distance_to_stop(train, sight.stops)
+    limits, position_m = sight.limits, train.position_m
     limited = slows_down(v, position_m, position_m + distance_m, limits.from_m, limits.value)
     if train.course != EVEN and not limited:
         train.course = LATEST
         hold_s, brake_s = latest_braking(v, distance_m, retardation)
-        _follow(hold_s, brake_s, train, kind, model)
+        _follow(hold_s, brake_s, train, kind, sight)
         if train.resistance_n > kind.inertia_kg * retardation:
             train.course = EVEN  # the machine would have to drive while the train brakes
     else:
         train.course = EVEN
     driven_s, wanted = train.hold_s, train.resistance_n
     if train.course == EVEN:
-        _follow(0.0, even_braking(v, distance_m, retardation), train, kind, model)
+        _follow(0.0, even_braking(v, distance_m, retardation), train, kind, sight)
         target = train.target_speed_m_s
         if limited and target > heed_limits_ahead(
             position_m, v, target, limits.from_m, limits.value, retardation, h
@@ -72,14 +72,14 @@ def steer_to_stop(train: Any, kind: Any, model: Model) -> bool:
             train.phase = DRIVING
             train.course = LIMIT_FIRST
             train.moving_share = 1.0
-            _climb(train, kind, v * h, model)
+            _climb(train, kind, v * h, sight)
             return False
         driven_s = train.brake_s
         wanted = train.resistance_n - kind.inertia_kg * (v - target) / driven_s
     elif driven_s == 0.0:
         wanted = 0.0
     train.driven_share = driven_s / h
-    train.mean_speed_weight_s = driven_s / 2.0 if model.options.mean_power else 0.0
+    train.mean_speed_weight_s = driven_s / 2.0 if sight.options.mean_power else 0.0
     train.wanted_force_n = wanted
     train.force_cap_n = max(0.0, min(wanted, train.adhesion_n))
     return True
@@ -119,7 +119,7 @@ def move_on_course(step: int, train: Any, model: Model, state: State) -> None:
     train.speed_m_s = train.next_speed_m_s
     if train.speed_m_s > 0.0:
         return
-    error_m = abs(distance_to_stop(train, model))
+    error_m = abs(distance_to_stop(train, model.stops))
     state.clock[0].stop_error_m = max(state.clock[0].stop_error_m, error_m)
     train.stood_s = max(0.0, model.options.step_s * (1.0 - train.moving_share))
     stand_at_stop(step + 1, train, model)

@@ -5,7 +5,7 @@ from typing import Any
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
 from tpss.driving.speed_limits import SLACK_M
 from tpss.driving.within_step import braking_distance
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
     ARRIVED,
@@ -62,10 +62,10 @@ def list_trains(trains: Any, flow: Flow) -> int:
     return count
 
 
-@kernel
-def distance_to_stop(train: Any, model: Model) -> float:
+@fused
+def distance_to_stop(train: Any, stops: Any) -> float:
     """Way of a train to its next stop. [m]"""
-    return model.stops[train.route, train.next_stop].position_m - train.position_m
+    return stops[train.route, train.next_stop].position_m - train.position_m
 
 
 @inlined
@@ -97,7 +97,7 @@ def must_plan(train: Any, model: Model) -> bool:
     way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
     retardation = model.types[train.train_type].highest_retardation_m_s2
     needed_m = least_room(speed, retardation, model.options)
-    return distance_to_stop(train, model) - way_m < needed_m
+    return distance_to_stop(train, model.stops) - way_m < needed_m
 
 
 @kernel
@@ -112,7 +112,7 @@ def begin_plan(train: Any, model: Model) -> None:
         return
     hold, first, full, last = braking_plan(
         train.speed_m_s,
-        distance_to_stop(train, model),
+        distance_to_stop(train, model.stops),
         model.types[train.train_type].highest_retardation_m_s2,
         model.options.step_s,
     )
@@ -146,7 +146,7 @@ def move(step: int, train: Any, model: Model, state: State) -> None:
         return
     train.plan_step += 1
     if train.plan_step == plan_length(train.plan_hold, train.plan_full, train.plan_last):
-        error_m = abs(distance_to_stop(train, model))
+        error_m = abs(distance_to_stop(train, model.stops))
         state.clock[0].stop_error_m = max(state.clock[0].stop_error_m, error_m)
         stand_at_stop(step + 1, train, model)
 
