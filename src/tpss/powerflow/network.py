@@ -35,6 +35,7 @@ SECTION = np.dtype(
         ("block_ab", np.int64),
         ("block_ba", np.int64),
         ("block_bb", np.int64),
+        ("gap_weight", float),  # square of the power at its ends that a gap causes, both per unit
     ],
     align=True,
 )
@@ -177,6 +178,12 @@ def resolution_va(impedance_ohm: float) -> float:
     return float(4.0 * np.finfo(float).eps * BASE_VOLTAGE_V**2 / impedance_ohm)
 
 
+def gap_weight(start_m: float, end_m: float, impedance_ohm_per_m: complex) -> float:
+    """Square of the power that a gap of the base voltage causes at a section's ends. [p.u.]"""
+    impedance_ohm = abs(impedance_ohm_per_m) * max(SHORTEST_PIECE_M, end_m - start_m)
+    return float((BASE_VOLTAGE_V**2 / impedance_ohm / BASE_POWER_VA) ** 2)
+
+
 def assemble(
     n_nodes: int,
     sections: list[tuple[int, int, float, float, complex, float]],
@@ -206,7 +213,9 @@ def assemble(
         return place[a, a], place[a, b], place[b, a], place[b, b]
 
     return Network(
-        sections=records([(*section, *blocks(*section[:2])) for section in sections], SECTION),
+        sections=records(
+            [(*each, *blocks(*each[:2]), gap_weight(*each[2:5])) for each in sections], SECTION
+        ),
         branches=records([(a, b, z, 1.0 / z, *blocks(a, b)) for a, b, z in branches], BRANCH),
         sources=sources,
         source_of_node=source_of_node,

@@ -41,12 +41,22 @@ from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import converter_voltage, terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
 from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
-from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
-from tpss.powerflow.pairs import apply, compose, determinant, inverse, magnitude, scaled
+from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.pairs import (
+    apply,
+    compose,
+    determinant,
+    inverse,
+    magnitude,
+    scaled,
+    squared,
+)
 
 CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
 its sign on so short a way but at the turning point itself. [p.u.]"""
+
+PER_SQUARE_VOLT = 1.0 / BASE_VOLTAGE_V**2
 
 LOWEST_VOLTAGE = 0.5
 HIGHEST_VOLTAGE = 1.2
@@ -155,7 +165,7 @@ def _turn_source_row(
 
 @inlined
 def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
-    """Residual of node `n`, and its row of the linear system. [p.u.]
+    """Square of the residual of node `n` [p.u.], and its row of the linear system.
 
     References
     ----------
@@ -164,11 +174,11 @@ def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
     node, s = flow.nodes[n], network.source_of_node[n]
     if s < 0:
         node.right_side -= node.leaving_current_a
-        return magnitude(node.leaving_current_a) * (BASE_VOLTAGE_V / BASE_POWER_VA)
+        return squared(node.leaving_current_a) * (BASE_VOLTAGE_V / BASE_POWER_VA) ** 2
     law, s1, s2 = source_law(s, node.voltage_v, node.leaving_current_a, network, flow)
     if start != CHECK:
         _turn_source_row(n, law, s1, s2, network, flow)
-    return magnitude(node.voltage_v - law) / BASE_VOLTAGE_V
+    return squared(node.voltage_v - law) * PER_SQUARE_VOLT
 
 
 @kernel
@@ -198,7 +208,7 @@ def evaluate(
     if start != CHECK:
         _stamp_branches(network, flow)
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
-    mismatch, merit, sign = 0.0, 0.0, 1.0
+    largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
         section, found = network.sections[s], flow.sections[s]
         gap = run_chain(s, scale, start, network, flow, loads)
@@ -207,19 +217,17 @@ def evaluate(
         flow.nodes[section.end_node].leaving_current_a -= found.end_current_a
         if start != CHECK:
             sign *= _stamp_section(s, network, flow)
-        residual = magnitude(found.gap_v) / BASE_VOLTAGE_V
-        length_m = max(SHORTEST_PIECE_M, section.end_m - section.start_m)
-        impedance = magnitude(section.impedance_ohm_per_m) * length_m
-        mismatch = max(mismatch, residual * BASE_VOLTAGE_V**2 / impedance / BASE_POWER_VA)
-        merit += residual**2
+        square = squared(found.gap_v) * PER_SQUARE_VOLT
+        largest = max(largest, square * section.gap_weight)
+        merit += square
     # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
-        residual = _evaluate_node(n, start, network, flow)
-        mismatch = max(mismatch, residual)
-        merit += residual**2
+        square = _evaluate_node(n, start, network, flow)
+        largest = max(largest, square)
+        merit += square
     if not math.isfinite(merit):
         return math.inf, math.inf, 0.0
-    return mismatch, merit, sign
+    return math.sqrt(largest), merit, sign
 
 
 @inlined
