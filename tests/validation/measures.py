@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 import tpss
-from tpss.report.figures import inclination
+from tpss.report.gradients import inclination
 
 Floats = npt.NDArray[np.float64]
 Measure = Callable[..., float]
