@@ -29,6 +29,7 @@ Complexes = npt.NDArray[np.complex128]
 
 BASE_ADMITTANCE_S = BASE_POWER_VA / BASE_VOLTAGE_V**2
 CONVERGED, MOST_ITERATIONS = 1e-9, 8
+ROUNDINGS = 4
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.05, 0.1, 1e-6
 LARGEST_CORRECTION = 0.02
 SLIGHTLY = 1e-5
@@ -90,6 +91,11 @@ class Equations:
     @property
     def nodes(self) -> int:
         return self.network.source_of_node.size
+
+    @property
+    def converged(self) -> float:
+        """Mismatch of a solution: over microohms, the rounding of a voltage is a visible one."""
+        return max(CONVERGED, ROUNDINGS * np.finfo(float).eps * np.abs(self.admittance).max())
 
     def demand(self, voltage: Complexes) -> tuple[Complexes, Complexes]:
         """Powers of the trains, and their slopes over the magnitude."""
@@ -156,7 +162,7 @@ class Equations:
                 left = self.residual(voltage, share)
             if not np.isfinite(left).all():
                 return None
-            if np.abs(left).max() < CONVERGED:
+            if np.abs(left).max() < self.converged:
                 return voltage
             voltage = voltage - self._solve(voltage, share, left)
         return None
@@ -175,8 +181,13 @@ class Equations:
         return found[: self.buses] + 1j * found[self.buses :]
 
 
-def carry(equations: Equations, most: float = 1.0) -> tuple[float, Complexes]:
-    """Follow the path; return the share of the loads at its end (at `most`), and the voltages there."""
+def carry(
+    equations: Equations, most: float = 1.0, highest: float = HIGHEST_VOLTAGE
+) -> tuple[float, Complexes]:
+    """Follow the path; return the share of the loads at its end (at `most`), and the voltages there.
+
+    It ends where a voltage leaves the plausible band, whose upper bound is `highest`. [p.u.]
+    """
     share, step = 0.0, FIRST_STEP
     voltage = equations.correct(np.ones(equations.buses, dtype=complex), 0.0)
     assert voltage is not None, "no solution without load"
@@ -185,7 +196,7 @@ def carry(equations: Equations, most: float = 1.0) -> tuple[float, Complexes]:
         target = min(most, share + step)
         predicted = voltage + (target - share) * tangent
         found = equations.correct(predicted, target)
-        if found is not None and _goes_on(found, predicted):
+        if found is not None and _goes_on(found, predicted, highest):
             following = equations.tangent(found, target)
             if np.vdot(following, tangent).real > 0.0:
                 share, voltage, tangent = target, found, following
@@ -195,8 +206,8 @@ def carry(equations: Equations, most: float = 1.0) -> tuple[float, Complexes]:
     return share, voltage
 
 
-def _goes_on(found: Complexes, predicted: Complexes) -> bool:
+def _goes_on(found: Complexes, predicted: Complexes, highest: float) -> bool:
     """Whether a corrected point is near to its prediction, and within the plausible band."""
     size = np.abs(found)
-    within = size.min() >= LOWEST_VOLTAGE and size.max() <= HIGHEST_VOLTAGE
+    within = size.min() >= LOWEST_VOLTAGE and size.max() <= highest
     return bool(within and np.abs(found - predicted).max() < LARGEST_CORRECTION)

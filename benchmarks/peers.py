@@ -76,6 +76,10 @@ GROUPS = [
                 "lightsim2grid, Jacobian factorised once a step",
                 partial(LIGHTSIM.prepare_moving, policy=CHORD),
             ),
+            Row(
+                "lightsim2grid, the same from a predicted start",
+                partial(LIGHTSIM.prepare_moving, policy=CHORD, predicted=True),
+            ),
             Row("CasADi fast_newton", with_casadi.prepare_called),
             Row("CasADi fast_newton, through its buffers", with_casadi.prepare_buffered),
             Row(

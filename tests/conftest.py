@@ -1,15 +1,38 @@
-"""Fixtures shared by all tests."""
+"""Fixtures shared by all tests, and how the whole of the tests is spread over processes."""
 
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only cost
+
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tpss.kernel import plain
+from tpss.kernel import kernels_are_compiled, plain
 
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLE_SCENARIOS = sorted({*EXAMPLES.glob("*.toml")} - {*EXAMPLES.glob("study_*.toml")})
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """A process for each core if all tests are run; a part is done before they would have started."""
+    return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the kernels once, before the processes start that would each do so."""
+    if config.option.tx and not hasattr(config, "workerinput") and not kernels_are_compiled():
+        import tpss
+
+        from scenarios import short_line
+
+        print("Compiling the numerical kernels, once.", file=sys.stderr)
+        tpss.simulate(short_line())
 
 
 @pytest.fixture(params=["compiled", "plain"])

@@ -39,7 +39,7 @@ FASTEST_TURN = 0.5
 
 BASE_IMPEDANCE_OHM = BASE_VOLTAGE_V**2 / BASE_POWER_VA
 TOLERANCE = 1e-8
-"""Power mismatch of a solution, in per unit of `BASE_POWER_VA`; that of TPSS is 1e-10."""
+"""Power mismatch of a solution, in per unit of `BASE_POWER_VA`; a simulation with TPSS takes 1e-10."""
 MOST_ITERATIONS = 20
 
 

@@ -70,8 +70,11 @@ def with_policy(configuration: Any, policy: RefactorPolicyType) -> Any:
     return configuration
 
 
-def prepare_moving(case: Case, policy: RefactorPolicyType) -> Run:
-    """Line parameters replaced before each solve, which starts from the solution before."""
+def prepare_moving(case: Case, policy: RefactorPolicyType, *, predicted: bool = False) -> Run:
+    """Line parameters replaced before each solve, which starts from the solution before.
+
+    Or from the straight line through the last two, as that of TPSS.
+    """
     branches = build_branches(case)
     grid = build_grid(case, branches, policy)
     resistance, reactance = branches.impedance.real.copy(), branches.impedance.imag.copy()
@@ -79,10 +82,11 @@ def prepare_moving(case: Case, policy: RefactorPolicyType) -> Run:
     found = np.zeros((case.steps, grid.start.size), dtype=complex)
 
     def run() -> Complexes:
-        voltage = grid.start
+        before = voltage = grid.start
         for step in range(case.steps):
             grid.grid.update_powerlines_parameters(resistance[step], reactance[step], shunt, shunt)
-            voltage = grid.solve(voltage)
+            start = 2.0 * voltage - before if predicted else voltage
+            before, voltage = voltage, grid.solve(start)
             found[step] = voltage
         return found[:, grid.bus]
 

@@ -1,4 +1,7 @@
-"""TPSS: a loop in compiled code, as a simulation runs it, and one in Python."""
+"""TPSS: a loop in compiled code, as a simulation runs it, and one in Python.
+
+As in a simulation, a solve starts from the straight line through the last two solutions.
+"""
 
 import math
 from dataclasses import replace
@@ -9,23 +12,24 @@ from tpss.kernel import blank_records, kernel
 from tpss.model.trains import build_machine
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import TRAIN_TYPE
+from tpss.physics.reactive_power import POWER_FACTOR
 from tpss.powerflow.chain import WARM, place_trains
 from tpss.powerflow.network import Flow, Loads, Network, new_flow
 from tpss.powerflow.newton import SOLVED, newton
-from tpss.powerflow.solve import start_flat
+from tpss.powerflow.solve import predict, remember, start_flat
 from tpss.simulation.state import TRAIN
 
-from load_flow.case import Case, Complexes, Floats, Run, build_network
+from load_flow.case import TOLERANCE, Case, Complexes, Floats, Run, build_network
 
 
 @kernel
 def take_step(step: int, position_m: Floats, power_va: Complexes, loads: Loads) -> None:
     """Put all trains to their places in a step, with their loads of that step."""
     for k in range(loads.trains.size):
-        kind = loads.types[k]
-        kind.auxiliary_power_w = power_va[step, k].real
-        kind.auxiliary_reactive_power_var = power_va[step, k].imag
-        loads.trains[k].position_m = position_m[step, k]
+        train = loads.trains[k]
+        train.position_m = position_m[step, k]
+        train.cap_power_w = power_va[step, k].real
+        train.reactive_ratio = power_va[step, k].imag / power_va[step, k].real
 
 
 @kernel
@@ -38,6 +42,11 @@ def note_voltages(flow: Flow, voltage: Complexes) -> None:
 
 
 @kernel
+def remember_flat(flow: Flow) -> None:
+    remember(True, flow)
+
+
+@kernel
 def solve_steps(
     position_m: Floats, power_va: Complexes, network: Network, flow: Flow, loads: Loads,
     voltage: Complexes,
@@ -47,27 +56,30 @@ def solve_steps(
     for step in range(position_m.shape[0]):
         take_step(step, position_m, power_va, loads)
         place_trains(loads.trains.size, loads.trains, network, flow)
+        predict(flow)
         status, passes = newton(1.0, WARM, network, flow, loads)
         if status != SOLVED:
             return -1
         total += passes
+        remember(False, flow)
         note_voltages(flow, voltage[step])
     return total
 
 
 def constant_loads(trains: int) -> Loads:
-    """Trains of which each draws a power of its own, at any voltage the same."""
-    types, rows = blank_records(trains, TRAIN_TYPE), blank_records(trains, TRAIN)
-    types.inertia_kg, types.slip_factor, types.filter_reactance_ohm = 1.0, 1.0, math.inf
-    rows.train_type, rows.efficiency = np.arange(trains), 1.0
-    return Loads(rows, types, build_machine())
+    """Trains that nothing but their driver limits, so that each draws a power of its own."""
+    kind, rows = blank_records(1, TRAIN_TYPE), blank_records(trains, TRAIN)
+    kind.reactive_model, kind.filter_reactance_ohm = POWER_FACTOR, math.inf
+    rows.efficiency, rows.force_cap_n, rows.free_band_v = 1.0, 1.0, math.inf
+    return Loads(rows, kind, build_machine())
 
 
 def start(case: Case) -> tuple[Network, Flow, Loads]:
     """The state without load, which the first run of a loop begins from."""
     flow, loads = new_flow(case.network, case.trains), constant_loads(case.trains)
     start_flat(flow)
-    return case.network, flow, loads
+    remember_flat(flow)
+    return case.network._replace(tolerance=TOLERANCE), flow, loads
 
 
 def prepare_compiled(case: Case) -> Run:

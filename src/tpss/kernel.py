@@ -83,11 +83,20 @@ def inlined(function: _Function) -> _Function:
     return _compiled(function, inline="always")
 
 
-def _compiled(function: _Function, inline: str) -> _Function:
+def fused(function: _Function) -> _Function:
+    """`kernel` whose machine code goes into each of its callers: for what the innermost loops call.
+
+    There a call costs as much as the work that it asks for.  Every further caller takes longer to
+    compile.
+    """
+    return _compiled(function, inline="never", forceinline=True)
+
+
+def _compiled(function: _Function, inline: str, forceinline: bool = False) -> _Function:
     folder_before = _config.CACHE_DIR
     _config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = _njit(inline=inline, **_OPTIONS)(function)
+        compiled: _Function = _njit(inline=inline, forceinline=forceinline, **_OPTIONS)(function)
     finally:
         _config.CACHE_DIR = folder_before
     return compiled

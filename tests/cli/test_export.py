@@ -65,9 +65,9 @@ def summary_of_an_old_version(folder):
 
 
 def dataset_of_another_version(folder):
-    dataset = xr.load_dataset(folder / "result.nc", engine="h5netcdf")
+    dataset = xr.load_dataset(folder / "result.nc", engine="netcdf4")
     dataset.attrs["result_format"] = 2
-    dataset.to_netcdf(folder / "result.nc", engine="h5netcdf")
+    dataset.to_netcdf(folder / "result.nc", engine="netcdf4")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from conftest import EXAMPLES
 
 COMMANDS = ("run", "report", "check", "export", "new", "library", "schema")
-HEAVY = {"h5netcdf", "h5py", "jinja2", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
+HEAVY = {"jinja2", "netCDF4", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
 
 
 def test_the_version_is_told(tpss_command):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tpss.cli.report import labels
-from tpss.report.html import GENERATOR, HEAD_BYTES
+from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
 from conftest import EXAMPLES
 from pages import Page
@@ -22,7 +22,7 @@ def folder(tpss_command, tmp_path) -> Path:
 
 
 def is_report(file: Path) -> bool:
-    return GENERATOR.encode() in file.read_bytes()[:HEAD_BYTES]
+    return REPORT_MARK.encode() in file.read_bytes()[:HEAD_BYTES]
 
 
 def test_a_report_goes_into_the_result_folder(tpss_command, folder):

@@ -11,12 +11,12 @@ import tpss
 from tpss.scenario.override import override
 from tpss.scenario.schema import scenario_schema
 
-from conftest import EXAMPLES, SHARED
+from conftest import EXAMPLE_SCENARIOS, EXAMPLES, SHARED
 from scenarios import SHORT_LINE
 
 SCHEMA = scenario_schema()
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
-FILES = sorted([*EXAMPLES.glob("*.toml"), *(SHARED / "scenarios").glob("*.toml")])
+FILES = sorted([*EXAMPLE_SCENARIOS, *(SHARED / "scenarios").glob("*.toml")])
 
 
 def faults(changes):

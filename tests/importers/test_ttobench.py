@@ -322,25 +322,65 @@ FAULTS = [
                  "'infinity'", "write a number", id="infinity"),
     pytest.param(TRACK, {"gradients/values/1": [3.0]}, "gradients.values.1", "[3.0]",
                  "give these values", id="one value"),
-    pytest.param(TRACK, {"gradients/values/2/0": 1000.0}, "gradients.values.2", "",
+    pytest.param(TRACK, {"gradients/values/2/0": 1000.0}, "gradients.values.2.0", "1000.0 m",
                  "ascending order", id="not ascending"),
+    pytest.param(TRACK, {"stops/values": [0.0, 500.0, 400.0]}, "stops.values.2", "400.0 m",
+                 "ascending order", id="stops not ascending"),
+    pytest.param(TRACK, {"stops/values": [0.0, 0.0]}, "stops.values.1", "0.0 m",
+                 "ascending order", id="a stop twice"),
+    pytest.param(TRACK, {"stops/values": [0.0, 6e6]}, "stops.values.1", "6000000.0 m",
+                 "less than or equal to 2000 km", id="a line around the world"),
+    pytest.param(TRACK, {"stops/values": [-5.0, 6000.0]}, "stops.values.0", "-5.0 m",
+                 "greater than or equal to 0 km", id="a stop before the line"),
+    pytest.param(TRACK, {"stops/values": 6200.5}, "stops.values", "6200.5", "give a list",
+                 id="a number for a list"),
+    pytest.param(TRACK, {"stops": [0.0, 6200.5]}, "stops", "[0.0, 6200.5]", "with its unit",
+                 id="a bare list"),
     pytest.param(TRACK, {"speed limits": None}, "speed limits", "", "give it", id="no limits"),
     pytest.param(TRACK, {"speed limits/values": []}, "speed limits.values", "[]", "give a list",
                  id="empty"),
-    pytest.param(TRACK, {"speed limits/values/1/1": 900}, "speed limits.values.1.speed_kmh",
-                 "900.0", "less than or equal to 500 km/h", id="too fast"),
-    pytest.param(TRACK, {"speed limits/values/0/0": 10.0}, "speed limits.values.0.from_km", "0.01",
+    pytest.param(TRACK, {"speed limits/units": None}, "speed limits.units.position", "",
+                 "one of m, km", id="no units"),
+    pytest.param(TRACK, {"speed limits/values/1/1": 900}, "speed limits.values.1.1", "900 km/h",
+                 "less than or equal to 500 km/h", id="too fast"),
+    pytest.param(TRACK, {"speed limits/units/velocity": "m/s"}, "speed limits.values.1.1",
+                 "140 m/s", "less than or equal to 500 km/h", id="km/h called m/s"),
+    pytest.param(TRACK, {"speed limits/values/1/1": True}, "speed limits.values.1.1", "True",
+                 "write a number", id="a flag"),
+    pytest.param(TRACK, {"speed limits/values/1": [3.0, 4.0, 5.0]}, "speed limits.values.1",
+                 "[3.0, 4.0, 5.0]", "give these values", id="three values"),
+    pytest.param(TRACK, {"speed limits/values/0/0": 10.0}, "speed limits.values.0.0", "10.0 m",
                  "begin at 0", id="begins late"),
-    pytest.param(TRACK, {"stops/values": [0.0]}, "stops.values",
-                 "[{'name': 'Stop 1', 'position_km': 0.0}]", "add at least one", id="one stop"),
+    pytest.param(TRACK, {"gradients/values/1/1": 250.0}, "gradients.values.1.1", "250.0 permil",
+                 "less than or equal to 100", id="a staircase"),
+    pytest.param(TRACK, {"gradients/units/slope": "rad"}, "gradients.units.slope", "'rad'",
+                 "permil", id="a slope in radians"),
+    pytest.param(TRACK, {"stops/values": [0.0]}, "stops.values", "[0.0] m", "add at least one",
+                 id="one stop"),
     pytest.param(TRAIN, {"mass/unit": "lb"}, "mass.unit", "'lb'", "kg, t", id="pounds"),
     pytest.param(TRAIN, {"mass/value": None}, "mass.value", "", "write a number", id="no value"),
-    pytest.param(TRAIN, {"mass/value": -1}, "mass", "-0.001", "greater than or equal to 1 t",
+    pytest.param(TRAIN, {"mass/value": -1}, "mass.value", "-1 kg", "greater than or equal to 1 t",
                  id="negative"),
+    pytest.param(TRAIN, {"mass/value": "100 t"}, "mass.value", "'100 t'", "write a number",
+                 id="a text with its unit"),
+    pytest.param(TRAIN, {"rho/value": -8}, "rho.value", "-8 %", "greater than or equal to 0",
+                 id="negative rotating mass"),
+    pytest.param(TRAIN, {"rolling resistance r1/unit": "N"}, "rolling resistance r1.unit", "'N'",
+                 "N/(m/s)", id="a force for its slope"),
+    pytest.param(TRAIN, {"rolling resistance r0/value": -2.0}, "rolling resistance r0.value",
+                 "-2.0 kN", "greater than or equal to 0 N", id="negative resistance"),
+    pytest.param(TRAIN, {"max deceleration/value": 9.0}, "max deceleration.value", "9.0 m/s^2",
+                 "less than or equal to 5", id="deceleration of a crash"),
+    pytest.param(TRAIN, {"max traction force": None}, "max traction force", "", "add it",
+                 id="no force"),
     pytest.param(TRAIN, {"max traction power": None}, "max traction power", "", "add it",
                  id="no power"),
+    pytest.param(TRAIN, {"max traction power/value": 0}, "max traction power.value", "0 kW",
+                 "greater than 0", id="power of nothing"),
     pytest.param(TRAIN, {"max speed": 120}, "max speed", "120", "with its unit", id="bare number"),
-    pytest.param(TRAIN, {"efficiency traction/value": 120}, "efficiency traction", "1.2",
+    pytest.param(TRAIN, {"max speed/value": 900}, "max speed.value", "900 km/h",
+                 "less than or equal to 500 km/h", id="an aircraft"),
+    pytest.param(TRAIN, {"efficiency traction/value": 120}, "efficiency traction.value", "120 %",
                  "less than or equal to 1", id="efficiency"),
 ]  # fmt: skip
 
@@ -356,16 +396,27 @@ def test_a_fault_names_file_key_value_and_remedy(folder, document, changes, key,
 
 
 @pytest.mark.parametrize(
-    ("text", "problem"),
-    [("{", "not JSON"), ("[1]", "not a JSON object"), ("{}", "neither a track"), (None, "no such")],
+    ("text", "place", "value", "problem"),
+    [
+        ('{"stops": {\n "unit": }}', "line 2", '"unit": }}', "not JSON"),
+        ("", "line 1", "", "not JSON"),
+        ("[1]", "", "", "not a JSON object"),
+        ("{}", "", "", "neither a track"),
+        (None, "", "", "no such"),
+    ],
 )
-def test_files_that_are_something_else_are_reported_all_at_once(folder, text, problem):
+def test_files_that_are_something_else_are_reported_all_at_once(
+    folder, text, place, value, problem
+):
     if text is not None:
         (folder / "other.json").write_text(text)
     bad = write(folder / "bad.json", changed(TRAIN, {"mass/unit": "lb"}))
     with pytest.raises(tpss.ScenarioError) as caught:
         read([folder / "other.json", bad])
-    assert problem in caught.value.findings[0].problem
+    other = caught.value.findings[0]
+    assert (other.file, other.key, other.value) == (str(folder / "other.json"), place, value)
+    assert problem in other.problem
+    assert other.remedy
     assert caught.value.findings[-1].file == str(bad)
 
 

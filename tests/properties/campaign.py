@@ -6,6 +6,10 @@ The same seed gives the same cases.  A fault is shrunk to its smallest scenario,
 a Python literal: `judge` of it shows the fault again.  The exit code is 1 if there were faults.
 """
 
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only cost
+
 import argparse
 import sys
 import time

@@ -125,7 +125,7 @@ def judge_result(result: Result) -> None:
 def judge_ending(result: Result) -> None:
     """A run that ends early says why, what helps, and has its exit code."""
     if result.status == "finished":
-        assert exit_code(result) == DONE
+        assert exit_code(result) == DONE, result.audit["failures"]
         return
     assert result.status in ("collapsed", "stalled")
     assert exit_code(result) == NO_SOLUTION

@@ -3,8 +3,9 @@
 import math
 
 import numpy as np
+import pytest
 
-from tpss import Result
+from tpss import Result, library
 from tpss.model.build import steps_of
 from tpss.simulation.state import STATE_ARRIVED, STATE_DWELLING
 
@@ -18,6 +19,7 @@ def keep_the_rules(result: Result) -> None:
     assert result.audit["passed"], result.audit["failures"]
     judge_values(result)
     judge_departures(result)
+    judge_converters(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
 
@@ -63,6 +65,35 @@ def judge_departures(result: Result) -> None:
         assert departed.tolist() == [step for step in due if step < max(begun, 1)], entry.name
 
 
+def motor_force_n(speed_kmh: float, voltage_kv: float, current_a: float) -> float:
+    """Largest force of all motors: the network as it is printed, (C.1)-(C.17)."""
+    net = library.networks()["tractive_effort"]
+    low, high = np.array(net["input_min"]), np.array(net["input_max"])
+    scaled = 2.0 * (np.array([speed_kmh, voltage_kv, current_a]) - low) / (high - low) - 1.0
+    hidden = np.tanh(np.array(net["b1"]) + np.array(net["W1"]) @ scaled)
+    output = net["b2"] + np.array(net["w2"]) @ hidden
+    return float(net["output_min"] + (output + 1.0) / 2.0 * (net["output_max"] - net["output_min"]))
+
+
+def judge_converters(result: Result) -> None:
+    """As many converters run as carry 85 % of the mean loading since the last action, three-minutely.
+
+    At the first instant at or past each multiple of three minutes; where all are to run, all run.
+    """
+    data, h = result.dataset, result.dataset.attrs["time_step_s"]
+    steps = data.sizes["time"] - 1
+    for s, station in enumerate(result.scenario.supply.converter_stations):
+        loading = data.converter_loading.to_numpy()[:steps, s]
+        recorded = data.active_converters.to_numpy()[:, s]
+        running, since, period = station.converters, 0, 1
+        for k in range(steps):
+            if station.control == "loading" and k * h >= 180.0 * period - 1e-6:
+                needed = math.ceil(loading[since:k].mean() * running / 0.85 - 1e-9)
+                running = min(station.converters, max(1, needed))
+                since, period = k, math.floor((k * h + 1e-6) / 180.0) + 1
+            assert recorded[k] == running, f"{station.name}, step {k}"
+
+
 class Journey:
     """The way of one train, and the rules that it has to keep."""
 
@@ -85,13 +116,30 @@ class Journey:
         limits = [min(item.speed_kmh, self.train.max_speed_kmh) for item in line.speed_limits]
         self.limit = np.array(limits) / 3.6
         self.place_m = {station.name: station.position_km * 1e3 for station in line.stations}
+        self.end_m = self.place_m[self.entry.destination]
+        self.force, self.volts, resistance, climb = (
+            data[name].to_numpy()[rows, i]
+            for name in (
+                "tractive_force", "pantograph_voltage", "running_resistance", "gradient_force"
+            )
+        )  # fmt: skip
+        self.opposing = resistance + climb
+        self.wet = result.scenario.simulation.rail == "wet"
+        self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
 
     def judge(self) -> None:
-        """All rules; the aggressive driver does not keep to limits."""
-        if self.driver == "regulated":
+        """All rules; the aggressive driver does not keep to limits, nor aims at them.
+
+        Full effort is known here for the network's machine; tables and limits have closed forms in
+        their own tests.
+        """
+        regulated = self.driver == "regulated"
+        if regulated:
             self.keeps_to_the_limits()
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
+        if regulated and self.train.tractive_effort == "Rc4":
+            self.gives_all_it_can()
         self.stops_and_dwells()
 
     def keeps_to_the_limits(self) -> None:
@@ -117,13 +165,44 @@ class Journey:
         highest = self.train.max_retardation_m_s2
         assert hardest <= highest * (1.0 + 1e-9) + 1e-12, f"{self.name} brakes by {hardest} m/s²"
 
+    def gives_all_it_can(self) -> None:
+        """Well before its next stop and lower limits, a train reaches its limit, or gives all it can.
+
+        That is what adhesion allows at its speed, and the machine at its voltage.
+        """
+        ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
+        for k in np.flatnonzero((self.state[:-1] >= 0) & (self.state[:-1] != STATE_DWELLING)):
+            limit = self.limit[np.searchsorted(self.limit_m, self.x[k], side="right") - 1]
+            if abs(self.v[k + 1] - limit) < ROUNDING_M_S:
+                continue
+            well_m = limit * (8.0 * self.step_s + 2.0 * limit / self.train.max_retardation_m_s2)
+            ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + well_m)
+            to_stop_m = min(end for end in ends if end > self.x[k]) - self.x[k]
+            if to_stop_m < well_m or (self.limit[ahead] < limit).any():
+                continue
+            most = self.largest_force_n(k)
+            assert self.force[k] == pytest.approx(most, rel=1e-9, abs=1e-6), (
+                f"{self.name} gives {self.force[k]} N of {most} N at {self.x[k]} m"
+            )
+
+    def largest_force_n(self, k: int) -> float:
+        """Force at the wheel rim in step `k` with full effort: adhesion, machine, never negative."""
+        train, v = self.train, self.v[k] * (3.6 if self.adhesion_in_km_h else 1.0)
+        share = 3.78 / (23.6 + v) if self.wet else 0.161 + 7.5 / (44.0 + 3.6 * v)
+        motors = motor_force_n(3.6 * self.v[k], self.volts[k] / 1e3, train.max_motor_current_a)
+        hauled_kg = 1e3 * (train.mass_t - train.adhesive_mass_t)
+        inertia_kg = 1e3 * train.adhesive_mass_t + hauled_kg * (1.0 + train.rotating_mass_factor)
+        rotors = train.motor_inertia_kg * (1.0 + train.slip) / inertia_kg
+        machine = (max(0.0, motors) + rotors * self.opposing[k]) / (1.0 + rotors)
+        return max(0.0, min(1e3 * train.adhesive_mass_t * 9.81 * share, machine))
+
     def stops_and_dwells(self) -> None:
         """At each stop it meets: within a millimetre, for the steps of its dwell."""
         stops = [
             (self.place_m[stop.station], steps_of(60.0 * stop.dwell_min, self.step_s))
             for stop in self.entry.stops
         ]
-        for place, dwell in [*stops, (self.place_m[self.entry.destination], 0)]:
+        for place, dwell in [*stops, (self.end_m, 0)]:
             stood = (np.abs(self.x - place) < STOP_ERROR_M) & (self.v == 0.0)
             left = self.x[-1] > place + STOP_ERROR_M
             if self.x[0] >= place or not (left or stood.any()):

@@ -142,6 +142,10 @@ TRAINS = st.fixed_dictionaries(
         "resistance_c_n_s2_per_m2": numbers(0.0, 200.0),
         "base_speed_kmh": numbers(20.0, 200.0),
         "filter_reactance_ohm": numbers(-5.0, -0.2),
+        "current_limitation": st.fixed_dictionaries(
+            {"max_current_a": st.one_of(numbers(900.0, 2000.0), st.just(900.0))},
+            optional={"knee_factor": numbers(0.8, 1.0), "umin2_kv": numbers(9.0, 11.9)},
+        ),
     },
 )
 
@@ -152,6 +156,7 @@ SIMULATIONS = st.fixed_dictionaries(
         "gradient_sampling": st.sampled_from(["mean", "start"]),
         "adhesion_speed_unit": st.sampled_from(["m/s", "km/h"]),
         "rail": st.sampled_from(["dry", "wet"]),
+        "braking": st.sampled_from(["within-step", "whole-steps"]),
     },
 )
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import tpss
-from tpss.report.html import GENERATOR, HEAD_BYTES, report
+from tpss.report.html import report
+from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
 from pages import Page
 from scenarios import run
@@ -29,7 +30,7 @@ def test_the_page_forbids_itself_the_network(page):
 
 
 def test_the_page_says_what_it_is_in_its_first_bytes(page):
-    assert GENERATOR in page[:HEAD_BYTES]
+    assert REPORT_MARK in page[:HEAD_BYTES]
 
 
 def test_it_holds_every_plot_table_and_section(page):

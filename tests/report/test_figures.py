@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from tpss.report.figures import (
-    inclination,
     journey,
     station_loading,
     station_powers,
     voltage_along_line,
 )
+from tpss.report.gradients import inclination
 
 from scenarios import run
 

@@ -132,7 +132,7 @@ def test_another_train_can_be_chosen_over_time_too(opened):
     opened.tab.select_option("#train", index=1)
     opened.tab.select_option("#against", "time")
     shown = opened.tab.evaluate(
-        "(({data, layout}) => [data[0].name, data[0].x[0], layout.xaxis2.title.text])"
+        "(({data, layout}) => [data[0].name, data[0].x[0], layout.xaxis3.title.text])"
         "(document.getElementById('journey'))"
     )
     assert shown == ["eastbound 2", pytest.approx(10.0), "time [min]"]

@@ -104,6 +104,40 @@ def test_a_forged_value_exceeds_a_limit(main_line, records, field, place, change
     assert not checked.passed
 
 
+@pytest.fixture(scope="module")
+def stops_within_steps():
+    """A train 3499 m before its stop: three steps of a minute at 60 km/h; in the fourth it holds that
+    for 20.1 s, and brakes."""
+    within = {"simulation.braking": "within-step", "simulation.time_step_min": 1.0}
+    placed = {"traffic.0.initial_trains": [{"position_km": 16.501, "speed_kmh": 60.0}]}
+    return Case(short_line({**within, **placed}), 6)
+
+
+def test_a_sound_run_that_brakes_within_steps_passes(stops_within_steps):
+    held = stops_within_steps.outcome.recording.trains["holding_time"][STEP, 0]
+    assert 0.0 < held < 60.0
+    assert stops_within_steps.audit().passed
+
+
+@pytest.mark.parametrize(
+    ("field", "change", "figure"),
+    [
+        ("holding_time", lambda time_s: time_s + 1e-3, "motion_error_m"),
+        ("speed", lambda v: v + 1e-3, "motion_error_m"),
+        ("position", lambda x: x - 1e-3, "motion_error_m"),
+        ("braking_force", lambda f: f + 1e3, "traction_balance"),
+        ("running_resistance", lambda f: 1.01 * f, "traction_balance"),
+        ("gradient_force", lambda f: f + 1e3, "traction_balance"),
+        ("active_power", lambda p: 1.01 * p, "traction_balance"),
+        ("tractive_force", lambda f: 1.01 * f, "force_balance"),
+        ("braking_force", lambda f: f + 1e3, "force_balance"),
+    ],
+)
+def test_a_forged_step_of_holding_and_braking_is_found(stops_within_steps, field, change, figure):
+    checked = stops_within_steps.audit_of_forgery("trains", field, 0, change)
+    assert any(failure.startswith(f"{figure} is") for failure in checked.failures)
+
+
 def test_the_mismatch_is_the_power_that_was_added(main_line):
     """A train is billed 250 W more than its voltage and current ask for."""
     checked = main_line.audit_of_forgery("trains", "active_power", TRAIN, lambda p: p + 250.0)

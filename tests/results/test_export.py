@@ -3,6 +3,7 @@
 import io
 
 import numpy as np
+import openpyxl
 import pandas as pd
 import pytest
 
@@ -178,3 +179,12 @@ def test_csv_is_plain(result, tmp_path):
     assert "eastbound 2,eastbound,15,,," in text
     assert "nan" not in text.lower()
     assert pd.read_csv(io.StringIO(text)).shape == result.trips.shape
+
+
+def test_a_name_that_begins_like_a_formula_is_text_in_a_workbook(tmp_path):
+    name = "=1+1"
+    odd = run({"traffic.0.name": name, "simulation.duration_min": 1.0})
+    export.export(odd, Kind.XLSX, tmp_path)
+    sheet = openpyxl.load_workbook(tmp_path / "result.xlsx")["trips"]
+    cell = next(cell for row in sheet.iter_rows(min_row=2) for cell in row if cell.value == name)
+    assert cell.data_type == "s"

@@ -99,6 +99,7 @@ def test_figures_of_the_examples_are_those_of_their_results(file):
         ({"traffic.0.headway_min": 0.2, "supply.catenary": "BT"}, "collapsed"),
         ({"simulation.duration_min": 30.0, "standards.peak_from_min": 10.0}, "finished"),
         ({"simulation.duration_min": 5.0, "standards.peak_from_min": 10.0}, "finished"),
+        ({"simulation.braking": "within-step"}, "finished"),
         ({"simulation.driver": "aggressive", "simulation.time_step_min": 0.5}, "finished"),
         ({"supply.high_voltage_line": {"type": "132kV", "transformers": 2}}, "finished"),
         ({"traffic.0.first_departure_min": 7.0, "simulation.duration_min": 3.0}, "finished"),

@@ -48,7 +48,7 @@ def test_a_damaged_or_foreign_file_is_called_that(tmp_path):
     (folder / "result.nc").write_bytes(data[: len(data) // 2])
     with pytest.raises(tpss.ResultError, match="damaged"):
         tpss.load_result(folder)
-    xr.Dataset({"other": ("x", [1.0])}).to_netcdf(folder / "result.nc", engine="h5netcdf")
+    xr.Dataset({"other": ("x", [1.0])}).to_netcdf(folder / "result.nc", engine="netcdf4")
     with pytest.raises(tpss.ResultError, match="not the dataset of a run"):
         tpss.load_result(folder)
     (folder / "summary.json").write_text(json.dumps([]))

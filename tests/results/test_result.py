@@ -389,7 +389,7 @@ def interrupt(*_, **__):
     raise KeyboardInterrupt
 
 
-BREAKS = [(xr.Dataset, "to_netcdf"), (store.tomli_w, "dumps"), (store.json, "dumps")]
+BREAKS = [(xr.Dataset, "dump_to_store"), (store.tomli_w, "dumps"), (store.json, "dumps")]
 
 
 @pytest.mark.parametrize(("owner", "name"), BREAKS, ids=["dataset", "scenario", "summary"])
@@ -410,7 +410,7 @@ def test_an_interrupted_save_leaves_nothing_behind(at_line, tmp_path, monkeypatc
 
 def test_a_failed_save_leaves_the_former_result(folder, high_voltage, monkeypatch):
     before = contents(folder)
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    monkeypatch.setattr(xr.Dataset, "dump_to_store", fail)
     with pytest.raises(ResultError):
         high_voltage.save(folder, force=True)
     assert contents(folder) == before

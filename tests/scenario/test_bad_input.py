@@ -20,6 +20,7 @@ WEST = "supply.converter_stations.0"
 EAST = "supply.converter_stations.1"
 ENTRY = "traffic.0"
 FREIGHT = "trains.freight"
+LIMITATION = f"{FREIGHT}.current_limitation"
 
 INLINE = "line.gradients_file"
 NOT_RUNNING = {f"{ENTRY}.already_running": None}
@@ -171,6 +172,8 @@ OUT_OF_RANGE = [
     pytest.param({f"{HV}.transformers_km": [40.0, math.nan]}, f"{HV}.transformers_km.1", "nan",
                  "finite number", id="nan-in-a-list"),
     pytest.param({"format": 2}, "format", "2", "choose from 1", id="format-of-the-future"),
+    pytest.param({"format": True}, "format", "True", "choose from 1", id="format-true"),
+    pytest.param({"format": 1.0}, "format", "1.0", "choose from 1", id="format-with-decimals"),
     pytest.param({"simulation.until": "last-train"}, "simulation.until", "'last-train'",
                  "choose from first-departure-arrives", id="unknown-end"),
     pytest.param({f"{WEST}.control": "load"}, f"{WEST}.control", "'load'",
@@ -362,6 +365,18 @@ CONFLICTS = [
                                       "connection_r_ohm": 1e-9}},
                  "supply.catenary", "", "or 0: no connection impedance",
                  id="connection-of-a-nanoohm"),
+    pytest.param({f"{LIMITATION}.knee_factor": 0.9}, f"{LIMITATION}.max_current_a", "", "add it",
+                 id="no-line-current"),
+    pytest.param({LIMITATION: {"max_current_a": 0}}, f"{LIMITATION}.max_current_a", "0",
+                 "greater than 0 A", id="zero-line-current"),
+    pytest.param({LIMITATION: {"max_current_a": 400.0, "knee_factor": 95}},
+                 f"{LIMITATION}.knee_factor", "95", "less than or equal to 1", id="knee-in-percent"),
+    pytest.param({LIMITATION: {"max_current_a": 400.0, "umin2_kv": 14.5}}, LIMITATION, "",
+                 "lower umin2_kv", id="no-traction-above-the-knee"),
+    pytest.param({LIMITATION: {"max_current_a": 10.0}}, FREIGHT, "", "raise max_current_a",
+                 id="auxiliaries-above-the-line-current"),
+    pytest.param({LIMITATION: 400.0}, LIMITATION, "400.0", "write a table",
+                 id="line-current-alone"),
     pytest.param({f"{FREIGHT}.adhesive_mass_t": 2000.0}, FREIGHT, "", "lower adhesive_mass_t",
                  id="more-adhesive-mass-than-mass"),
     pytest.param({f"{ENTRY}.headway_min": None, f"{ENTRY}.departures_min": [0.0]}, ENTRY, "",
@@ -443,9 +458,35 @@ def copied(tmp_path):
                      id="one-cell"),
         pytest.param(HEADER + "0,0,1\n", "line 2", "0,0,1", "separated by a comma",
                      id="three-cells"),
-        pytest.param("", "", "", "begin with the line", id="empty"),
-        pytest.param("# nothing\n", "", "", "begin with the line", id="comments-only"),
-        pytest.param(HEADER, "", "", "add rows", id="header-only"),
+        pytest.param(HEADER + "0,1\n5,300\n", "line 3, gradient_permille", "300.0",
+                     "less than or equal to 100", id="staircase"),
+        pytest.param(HEADER + "# a\n0,nan\n", "line 3, gradient_permille", "nan",
+                     "finite number", id="nan"),
+        pytest.param(HEADER + "0,1\n1e999,2\n", "line 3, position_km", "inf", "finite number",
+                     id="infinite"),
+        pytest.param(HEADER + "0,1\n1e9,2\n", "line 3, position_km", "1000000000.0",
+                     "less than or equal to 100000", id="position-in-millimetres"),
+        pytest.param(HEADER + "0,1\n\n5,2\n3,1\n7,0\n", "line 5, position_km", "3",
+                     "ascending order", id="unsorted"),
+        pytest.param(HEADER + "0,1\n0,2\n", "line 3, position_km", "0", "each place once",
+                     id="twice"),
+        pytest.param(HEADER + '"0",1\n', "line 2, position_km", '"0"',
+                     "decimal point and no unit", id="quotes"),
+        pytest.param(HEADER + "0;1\n", "line 2", "0;1", "separated by a comma",
+                     id="semicolon-in-a-row"),
+        pytest.param(HEADER + "0,1,\n", "line 2", "0,1,", "separated by a comma",
+                     id="comma-at-the-end"),
+        pytest.param(HEADER + "0,1 # steep\n", "line 2, gradient_permille", "1 # steep",
+                     "decimal point and no unit", id="comment-behind-a-value"),
+        pytest.param(HEADER + "0,\n", "line 2, gradient_permille", "",
+                     "decimal point and no unit", id="empty-cell"),
+        pytest.param("position_km,gradient\n0,1\n", "line 1", "position_km,gradient",
+                     "begin with the line", id="other-column"),
+        pytest.param("gradient_permille,position_km\n1,0\n", "line 1",
+                     "gradient_permille,position_km", "begin with the line", id="columns-swapped"),
+        pytest.param("", "line 1", "", "begin with the line", id="empty"),
+        pytest.param("# nothing\n", "line 1", "", "begin with the line", id="comments-only"),
+        pytest.param("# a\n" + HEADER, "line 2", HEADER.strip(), "add rows", id="header-only"),
     ],
 )  # fmt: skip
 def test_a_fault_of_a_profile_is_reported_with_its_line(copied, text, key, value, remedy):
@@ -494,19 +535,27 @@ def test_a_folder_in_place_of_a_file_is_reported(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "problem", "remedy"),
+    ("content", "place", "value", "problem", "remedy"),
     [
-        pytest.param(b"format = 1\nname = \n", "line 2", "mend the file", id="no-value"),
-        pytest.param(b"name = 'a'\nname = 'b'\n", "line 2", "mend the file", id="key-twice"),
-        pytest.param(b"position_km,gradient_permille\n", "not TOML", "toml.io", id="csv"),
-        pytest.param(b"name = 'Lule\xe5'\n", "not text in UTF-8", "UTF-8", id="latin-1"),
+        pytest.param(b"format = 1\nname = \n", "line 2", "name =", "Invalid value",
+                     "mend the file", id="no-value"),
+        pytest.param(b"name = 'a'\nname = 'b'\n", "line 2", "name = 'b'", "not TOML",
+                     "mend the file", id="key-twice"),
+        pytest.param(b"[line]\r\nlength_km = 160 km\r\n", "line 2", "length_km = 160 km",
+                     "not TOML", "mend the file", id="unit-behind-a-number"),
+        pytest.param(b"[line\n", "line 1", "[line", "not TOML", "mend the file", id="bracket"),
+        pytest.param(b"x = [1,", "", "", "at end of document", "mend the file", id="cut-off"),
+        pytest.param(b"position_km,gradient_permille\n", "line 1",
+                     "position_km,gradient_permille", "not TOML", "toml.io", id="csv"),
+        pytest.param(b"# a\nname = 'Lule\xe5'\n", "line 2", "byte 0xe5", "not text in UTF-8",
+                     "UTF-8", id="latin-1"),
     ],
-)
-def test_a_file_that_is_not_toml_is_reported(tmp_path, content, problem, remedy):
+)  # fmt: skip
+def test_a_file_that_is_not_toml_is_reported(tmp_path, content, place, value, problem, remedy):
     file = tmp_path / "line.toml"
     file.write_bytes(content)
     (finding,) = faults_of({}, file)
-    assert finding.file == str(file)
+    assert (finding.file, finding.key, finding.value) == (str(file), place, value)
     assert problem in finding.problem
     assert remedy in finding.remedy
 

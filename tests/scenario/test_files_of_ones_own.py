@@ -260,6 +260,45 @@ def test_a_fault_of_a_tractive_effort_names_its_place(
     assert remedy in finding.remedy
 
 
+# A place that takes a library name, the table in its file, and key, value and remedy of the finding.
+WIRES = {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.2}
+LIBRARY_FILES = [
+    pytest.param("supply.catenary", {**WIRES, "r_ohm_per_km": "0.2"}, "r_ohm_per_km", "'0.2'",
+                 "a number in Ω/km", id="text for a resistance"),
+    pytest.param("supply.catenary", {**WIRES, "r_ohm_per_km": 200.0}, "r_ohm_per_km", "200.0",
+                 "less than or equal to", id="milliohms"),
+    pytest.param("supply.catenary", {**WIRES, "capacitance_nf": 9.0}, "capacitance_nf", "9.0",
+                 "did you mean capacitance_nf_per_km?", id="capacitance of nothing"),
+    pytest.param("supply.catenary", {"r_ohm_per_km": 0.2}, "x_ohm_per_km", "", "add it",
+                 id="no reactance"),
+    *[
+        pytest.param(path, {key: change}, key, value, remedy, id=f"{path.split('.')[-1]} {key}")
+        for path, key, change, value, remedy in [
+            ("supply.converter_stations.1.type", "rated_mva", 10, "10", "choose from"),
+            ("supply.converter_stations.1.type", "motor_reactance_pu", "0.5", "'0.5'", "a number"),
+            ("supply.high_voltage_line.type", "r_ohm_per_km", -0.05, "-0.05", "greater than"),
+            ("supply.high_voltage_line.type", "x_ohm_km", 0.4, "0.4", "did you mean x_ohm_per_km?"),
+            ("supply.high_voltage_line.line_transformer", "r_ohm", True, "True", "a number in Ω"),
+            ("supply.high_voltage_line.station_transformer", "x_ohm", -1.0, "-1.0", "greater than"),
+        ]
+    ],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("path", "table", "key", "value", "remedy"), LIBRARY_FILES)
+def test_a_fault_of_equipment_in_a_file_names_the_file_key_value_and_remedy(
+    scenario_file, path, table, key, value, remedy
+):
+    """Beside the values of the library's own entry, where there is one."""
+    if path in EQUIPMENT and path != "supply.catenary":
+        kind, name = EQUIPMENT[path]
+        table = {**library.values(kind, name), **table}
+    write(scenario_file.parent, "equipment.toml", table)
+    finding = faults_of(scenario_file, {path: "equipment.toml"})["equipment.toml", key]
+    assert finding.value == value
+    assert remedy in finding.remedy
+
+
 def test_a_current_limit_outside_the_table_is_reported(scenario_file):
     table = {"speed_kmh": SPEEDS, "motor_current_a": [500, 1000], "force_kn": [[3, 2, 1]] * 2}
     changes = {

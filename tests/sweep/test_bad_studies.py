@@ -5,11 +5,12 @@ from typing import Any
 import pytest
 
 import tpss
-from conftest import EXAMPLES
 from sweep.studies import study, write_study
 from tpss.sweep.campaign import estimate
 from tpss.sweep.check import check
 from tpss.sweep.design import design_of
+
+from conftest import EXAMPLES
 
 SOBOL = {"design": "sobol", "cases": 8}
 

@@ -4,7 +4,7 @@ import pytest
 
 import tpss
 
-from conftest import EXAMPLES
+from conftest import EXAMPLE_SCENARIOS, EXAMPLES
 
 REFERENCE = {
     # name: (trip or duration [min], station energies [MWh], lowest pantograph voltage [kV])
@@ -49,7 +49,6 @@ def test_the_example_of_own_trains_runs_within_what_its_files_say():
 
 
 def test_every_example_is_one_of_the_above():
-    """`thesis_original` has tests of its own, and so have studies."""
-    files = (file for file in EXAMPLES.glob("*.toml") if not file.stem.startswith("study_"))
-    names = {file.stem for file in files}
+    """`thesis_original` has tests of its own."""
+    names = {file.stem for file in EXAMPLE_SCENARIOS}
     assert names == {*REFERENCE, "overloaded", "own_trains", "thesis_original"}

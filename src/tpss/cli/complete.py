@@ -6,6 +6,7 @@ from pathlib import Path
 import typer
 
 from tpss import library
+from tpss.results.contents import FIGURE_NAMES
 
 
 def scenario_files(incomplete: str) -> list[str]:
@@ -30,3 +31,8 @@ def library_names(context: typer.Context, incomplete: str) -> list[str]:
     kind = context.params.get("kind")
     names = library.entries(kind) if kind in library.KINDS else {}
     return [name for name in names if name.startswith(incomplete)]
+
+
+def figures(incomplete: str) -> list[str]:
+    """Names of figures that begin like this."""
+    return [name for name in (*FIGURE_NAMES, "all") if name.startswith(incomplete)]

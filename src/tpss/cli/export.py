@@ -2,12 +2,10 @@
 
 from pathlib import Path
 
+from tpss.results.contents import TABLES
 from tpss.results.export import export
 from tpss.results.file_kinds import Kind
 from tpss.results.result import load_result
-
-TABLES = "tables"
-"""Folder, within that of the result, of files that nobody has placed."""
 
 
 def export_result(folder: Path, kind: Kind, out: Path | None, force: bool) -> None:

@@ -8,6 +8,7 @@ import atexit
 import gc
 import os
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,14 @@ import typer
 
 from tpss.cli import complete
 from tpss.results.file_kinds import Kind
+
+
+class Against(StrEnum):
+    """What the horizontal axis of a journey carries."""
+
+    TIME = "time"
+    DISTANCE = "distance"
+
 
 app = typer.Typer(
     name="tpss",
@@ -129,6 +138,56 @@ def report(
     from tpss.cli.report import report_results
 
     report_results(results, out, force)
+
+
+@app.command(
+    epilog="Examples:  tpss plot results/thesis-160km-001, then tpss plot results/thesis-160km-001 "
+    "--figure journey --train 'eastbound 3' --against time --out journey.pdf"
+)
+def plot(
+    result: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RESULT", help="Folder that tpss run has written.", show_default=False
+        ),
+    ],
+    figure: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="time-distance, journey, voltage, train-voltage, stations, converters, energy, "
+            "effort, or all.",
+            autocompletion=complete.figures,
+        ),
+    ] = "all",
+    train: Annotated[
+        str | None,
+        typer.Option(
+            help="Train of journey, train-voltage and effort; by default the studied one.",
+            show_default=False,
+        ),
+    ] = None,
+    against: Annotated[
+        Against, typer.Option(metavar="AXIS", help="time or distance, of the journey.")
+    ] = Against.DISTANCE,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="File to write, .png, .svg or .pdf, or a folder for all; by default "
+            "RESULT/figures/NAME.png.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+) -> None:
+    """Draw figures of a result, as a file each, for print and presentations.
+
+    Exit codes: 0 done, 2 the folder holds no result, its audit failed, there is no such figure or
+    train, nothing to draw, or the files cannot be written.
+    """
+    from tpss.cli.plot import plot_result
+
+    plot_result(result, figure, train, against.value, out, force)
 
 
 @app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tpss.results.contents import REPORT
+
 if TYPE_CHECKING:
     from tpss.results.result import Result
 
-REPORT = "report.html"
 COMPARISON = "comparison.html"
 
 

@@ -53,6 +53,19 @@ def slowing_distance(
     return step_s * n * (speed_m_s - n * unit / 2.0)
 
 
+@inlined
+def slows_down(
+    speed_m_s: float, from_m: float, to_m: float, limits_from_m: Array, limit_m_s: Array
+) -> bool:
+    """Whether a limit below a speed begins between two positions, both left out."""
+    j = step_index(from_m, limits_from_m) + 1
+    while j < limits_from_m.size and limits_from_m[j] < to_m:
+        if limit_m_s[j] < speed_m_s:
+            return True
+        j += 1
+    return False
+
+
 @kernel
 def can_meet_limit(
     speed_m_s: float, next_speed_m_s: float, distance_m: float, limit_m_s: float,

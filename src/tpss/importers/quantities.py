@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.files import read_text
+from tpss.scenario.files import read_text, shown_line
 
 Units = Mapping[str, float]
 """What one of each unit is in the unit that a scenario is written in."""
@@ -40,12 +40,17 @@ class Quantities:
         self.findings: list[Finding] = []
         self.taken: set[str] = set()
         """Names of the quantities that were asked for."""
+        self.given: dict[str, str] = {}
+        """Values by their keys as they stand in the file, each with its unit."""
+        text = read_text(path)
         try:
-            document = json.loads(read_text(path))
+            document = json.loads(text)
         except (ValueError, RecursionError) as error:
+            number = getattr(error, "lineno", None)  # of errors of the format alone
+            place, value = shown_line(text, number) if number else ("", "")
             remedy = "mend the file at that place, or name another file"
             raise ScenarioError(
-                [Finding(str(path), "", "", f"not JSON: {error}", remedy)]
+                [Finding(str(path), place, value, f"not JSON: {error}", remedy)]
             ) from error
         if not isinstance(document, dict):
             problem, remedy = "not a JSON object", "name a file of a track or of a train"
@@ -72,18 +77,17 @@ class Quantities:
             self.blame(name, None, "it is missing", "add it, with its unit and value")
             return math.nan
         entry = self._entry(name)
-        factor = self._factor(f"{name}.unit", entry.get("unit"), units)
-        return self._converted(f"{name}.value", entry.get("value"), factor)
+        scale = self._scale(f"{name}.unit", entry.get("unit"), units)
+        return self._converted(f"{name}.value", entry.get("value"), scale)
 
     def column(self, name: str, units: Units) -> list[float]:
         """Values of ``{"unit": ..., "values": [...]}``."""
         self.taken.add(name)
         entry = self._entry(name)
-        factor = self._factor(f"{name}.unit", entry.get("unit"), units)
-        return [
-            self._converted(f"{name}.values.{i}", value, factor)
-            for i, value in enumerate(self._rows(name, entry))
-        ]
+        scale = self._scale(f"{name}.unit", entry.get("unit"), units)
+        rows = self._rows(name, entry)
+        self.given[f"{name}.values"] = f"{rows!r} {scale[0]}"
+        return [self._converted(f"{name}.values.{i}", value, scale) for i, value in enumerate(rows)]
 
     def pairs(self, name: str, columns: Mapping[str, Units]) -> list[tuple[float, ...]]:
         """Rows of ``{"units": {...}, "values": [[...], ...]}``, a value for each of the columns."""
@@ -91,20 +95,21 @@ class Quantities:
         entry = self._entry(name)
         units = entry.get("units")
         units = units if isinstance(units, dict) else {}
-        factors = [
-            self._factor(f"{name}.units.{column}", units.get(column), known)
+        scales = [
+            self._scale(f"{name}.units.{column}", units.get(column), known)
             for column, known in columns.items()
         ]
-        found = []
+        found: list[tuple[float, ...]] = []
         for i, row in enumerate(self._rows(name, entry)):
             key = f"{name}.values.{i}"
             if not isinstance(row, list) or len(row) != len(columns):
                 self.blame(key, row, f"not a list of {', '.join(columns)}", "give these values")
+                found.append((math.nan,) * len(columns))
                 continue
             found.append(
                 tuple(
-                    self._converted(f"{key}.{k}", value, factor)
-                    for k, (value, factor) in enumerate(zip(row, factors, strict=True))
+                    self._converted(f"{key}.{k}", value, scale)
+                    for k, (value, scale) in enumerate(zip(row, scales, strict=True))
                 )
             )
         return found
@@ -113,8 +118,11 @@ class Quantities:
         """Note a fault if the values, positions of a quantity's rows, do not grow."""
         for i, (before, after) in enumerate(zip(values, values[1:], strict=False), 1):
             if after <= before:
+                key = f"{name}.values.{i}"
+                key = key if key in self.given else f"{key}.0"
                 problem = f"the position does not grow: {after:g} km follows {before:g} km"
-                self.blame(f"{name}.values.{i}", None, problem, "put the rows in ascending order")
+                remedy = "put the rows in ascending order"
+                self.findings.append(Finding(str(self.path), key, self.given[key], problem, remedy))
 
     def _entry(self, name: str) -> dict[str, Any]:
         entry = self.document.get(name)
@@ -132,15 +140,18 @@ class Quantities:
             self.blame(f"{name}.values", rows, "not a list with values", "give a list in brackets")
         return []
 
-    def _factor(self, key: str, unit: object, units: Units) -> float:
+    def _scale(self, key: str, unit: object, units: Units) -> tuple[str, float]:
+        """A unit, and what one of it is; NaN, with a finding, if it is at fault."""
         if isinstance(unit, str) and unit in units:
-            return units[unit]
+            return unit, units[unit]
         if key.split(".")[0] in self:
             problem = "it is missing" if unit is None else "not a unit that is known here"
             self.blame(key, unit, problem, f"convert the values to one of {', '.join(units)}")
-        return math.nan
+        return "", math.nan
 
-    def _converted(self, key: str, value: object, factor: float) -> float:
+    def _converted(self, key: str, value: object, scale: tuple[str, float]) -> float:
+        unit, factor = scale
+        self.given[key] = f"{value!r} {unit}".removesuffix(" -")
         if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
             if key.split(".")[0] in self:
                 self.blame(key, value, "not a number", "write a number, without quotes")

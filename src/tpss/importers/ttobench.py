@@ -53,21 +53,23 @@ _WHY_LEFT_OUT = {
 
 
 _ORIGIN = {
-    "line.length_km": "stops",
-    "line.stations": "stops.values",
-    "line.speed_limits": "speed limits.values",
-    "line.gradients": "gradients.values",
-    "train.mass_t": "mass",
-    "train.motor_inertia_kg": "rho",
-    "train.resistance_a_n": "rolling resistance r0",
-    "train.resistance_b_n_s_per_m": "rolling resistance r1",
-    "train.resistance_c_n_s2_per_m2": "rolling resistance r2",
-    "train.max_speed_kmh": "max speed",
-    "train.max_acceleration_m_s2": "max acceleration",
-    "train.max_retardation_m_s2": "max deceleration",
-    "train.efficiency": "efficiency traction",
-    "train.tractive_effort.max_force_kn": "max traction force",
-    "train.tractive_effort.max_power_kw": "max traction power",
+    r"line\.stations\.(\d+)\.position_km": r"stops.values.\1",
+    r"line\.stations": "stops.values",
+    r"line\.speed_limits\.(\d+)\.from_km": r"speed limits.values.\1.0",
+    r"line\.speed_limits\.(\d+)\.speed_kmh": r"speed limits.values.\1.1",
+    r"line\.gradients\.(\d+)\.from_km": r"gradients.values.\1.0",
+    r"line\.gradients\.(\d+)\.permille": r"gradients.values.\1.1",
+    r"trains\.t\.(adhesive_)?mass_t": "mass.value",
+    r"trains\.t\.motor_inertia_kg": "rho.value",
+    r"trains\.t\.resistance_a_n": "rolling resistance r0.value",
+    r"trains\.t\.resistance_b_n_s_per_m": "rolling resistance r1.value",
+    r"trains\.t\.resistance_c_n_s2_per_m2": "rolling resistance r2.value",
+    r"trains\.t\.max_speed_kmh": "max speed.value",
+    r"trains\.t\.max_acceleration_m_s2": "max acceleration.value",
+    r"trains\.t\.max_retardation_m_s2": "max deceleration.value",
+    r"trains\.t\.efficiency": "efficiency traction.value",
+    r"trains\.t\.tractive_effort\.max_force_kn": "max traction force.value",
+    r"trains\.t\.tractive_effort\.max_power_kw": "max traction power.value",
 }
 """Where the values of a scenario stand in the files."""
 
@@ -152,7 +154,7 @@ def track(data: Quantities) -> Imported:
         taken.append(f"gradients: {len(gradients)}, positive uphill, from their positions on")
     assumed.append(f"names of the stations: {', '.join(names)}, from the file's id")
     found = Imported(name, data.path, line, taken, _left_out(data), assumed)
-    _check(found, line=line)
+    _check(found, data, line=line)
     return found
 
 
@@ -199,7 +201,7 @@ def train(data: Quantities) -> Imported:
         raise ScenarioError(data.findings)
     taken = [name for name in data.document if name in data.taken]
     found = Imported(_name(data), data.path, document, taken, _left_out(data), assumed)
-    _check(found, train=document)
+    _check(found, data, train=document)
     return found
 
 
@@ -258,7 +260,10 @@ def _left_out(data: Quantities) -> list[str]:
 
 
 def _check(
-    part: Imported, line: dict[str, Any] | None = None, train: dict[str, Any] | None = None
+    part: Imported,
+    data: Quantities,
+    line: dict[str, Any] | None = None,
+    train: dict[str, Any] | None = None,
 ) -> None:
     """Validate a part in a scenario whose other parts stand in for those to come.
 
@@ -296,13 +301,17 @@ def _check(
         Scenario.from_document(document, part.source)
     except ScenarioError as error:
         own = [finding for finding in error.findings if not finding.key.startswith("traffic")]
-        raise ScenarioError([_at_its_origin(finding) for finding in own]) from error
+        found = dict.fromkeys(_at_its_origin(finding, data) for finding in own)
+        raise ScenarioError(list(found)) from error
 
 
-def _at_its_origin(finding: Finding) -> Finding:
-    """A finding of a scenario's value, with the key of the value that it was made from."""
-    key = re.sub(r"^trains\.t\.", "train.", finding.key)
+def _at_its_origin(finding: Finding, data: Quantities) -> Finding:
+    """A finding of a scenario's value, with the place and the value that it was made from."""
+    key = finding.key
+    if key == "line.length_km":
+        key = f"line.stations.{len(data.document['stops']['values']) - 1}.position_km"
     for ours, theirs in _ORIGIN.items():
-        if key == ours or key.startswith(f"{ours}."):
-            key = theirs + key.removeprefix(ours)
+        if match := re.fullmatch(ours, key):
+            key = match.expand(theirs)
+            return replace(finding, key=key, value=data.given.get(key, finding.value))
     return replace(finding, key=key)

@@ -85,7 +85,10 @@ def _line_files(track: Imported) -> dict[str, str]:
     profile = f"{track.name}_gradients.csv"
     line = {key: value for key, value in track.document.items() if key != "gradients"}
     rows = [f"{row['from_km']:.10g},{row['permille']:.10g}" for row in track.document["gradients"]]
-    head = ["# Gradients hold from their positions on, positive uphill.", ",".join(PROFILE_COLUMNS)]
+    head = [
+        "# Gradients hold from their positions on, positive uphill.",
+        ",".join(PROFILE_COLUMNS.values()),
+    ]
     return {
         f"{track.name}.toml": _comments(track)
         + tomli_w.dumps({"source": _source(track), "gradients_file": profile, **line}),

@@ -11,7 +11,16 @@ from tpss.model.trains import build_machine, build_train_types
 from tpss.physics.adhesion import DRY, WET
 from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.state import AGGRESSIVE, REGULATED, STOP, Model, Options, Profile
+from tpss.simulation.state import (
+    AGGRESSIVE,
+    REGULATED,
+    STOP,
+    WHOLE_STEPS,
+    WITHIN_STEP,
+    Model,
+    Options,
+    Profile,
+)
 from tpss.units import si, si_of_each
 
 STEP_ROUNDING = 1e-9
@@ -66,6 +75,7 @@ def _options(scenario: Scenario) -> Options:
         adhesion_in_km_h=simulation.adhesion_speed_unit == "km/h",
         rail=WET if simulation.rail == "wet" else DRY,
         driver=AGGRESSIVE if simulation.driver == "aggressive" else REGULATED,
+        braking=WITHIN_STEP if simulation.braking == "within-step" else WHOLE_STEPS,
         fixed_voltage_v=0.0,
         studied_train=-1,
     )

@@ -4,12 +4,13 @@ from typing import Any
 
 from tpss.driving.braking import shortest_stop
 from tpss.driving.speed_limits import can_meet_limit
+from tpss.driving.within_step import braking_distance
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
 from tpss.physics.gradient import step_index
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
-from tpss.simulation.state import REGULATED, Model
+from tpss.simulation.state import REGULATED, WHOLE_STEPS, Model
 from tpss.simulation.timetable import Service
 from tpss.units import si
 
@@ -58,6 +59,13 @@ def _departures(entry: Traffic) -> dict[str, Any]:
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 
+def _stopping_distance(speed_m_s: float, retardation_m_s2: float, model: Model) -> float:
+    """Shortest way in which a train stops. [m]"""
+    if model.options.braking == WHOLE_STEPS:
+        return plain(shortest_stop)(speed_m_s, retardation_m_s2, model.options.step_s)
+    return plain(braking_distance)(speed_m_s, retardation_m_s2)
+
+
 def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Finding]:
     """Faults of the `i`-th train that a service places on the line."""
     position_m, speed = service.initial[i]
@@ -71,8 +79,9 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     problem = ""
     if speed > limit and model.options.driver == REGULATED:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
-    elif plain(shortest_stop)(speed, retardation, h) > stop_m - position_m:
-        problem = f"too fast to stop at {stop_m / 1e3:g} km in whole time steps"
+    elif _stopping_distance(speed, retardation, model) > stop_m - position_m:
+        problem = f"too fast to stop at {stop_m / 1e3:g} km"
+        problem += " in whole time steps" if model.options.braking == WHOLE_STEPS else ""
     else:
         slowest = max(0.0, speed - retardation * h)
         for j in range(here + 1, limits.from_m.size):

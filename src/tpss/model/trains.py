@@ -66,6 +66,7 @@ def _train_type(train: Train, book: CurveBook) -> tuple[Any, ...]:
         "highest_speed_m_s": si(train, "max_speed_kmh"),
         "efficiency": _over_speed(train.efficiency, book),
         **_effort(train, book),
+        **_current_limit(train),
         **_electric(train, book),
     }
     return tuple(values.get(name, 0) for name in TRAIN_TYPE.names or ())
@@ -102,6 +103,19 @@ def _effort_table(train: Train, effort: EffortTable, book: CurveBook) -> dict[st
         "effort": places[0],
         "effort_rows": len(voltages),
         "effort_voltage_v": voltages + [math.inf] * (MOST_VOLTAGES - len(voltages)),
+    }
+
+
+def _current_limit(train: Train) -> dict[str, float]:
+    """Fields of `TRAIN_TYPE` that limit the current at the pantograph."""
+    limit = train.current_limitation
+    if limit is None:
+        return {"highest_line_current_a": math.inf}
+    return {
+        "highest_line_current_a": si(limit, "max_current_a"),
+        "auxiliary_current_a": train.auxiliary_current_a,
+        "no_traction_voltage_v": si(limit, "umin2_kv"),
+        "full_current_voltage_v": limit.knee_factor * si(limit, "un_kv"),
     }
 
 

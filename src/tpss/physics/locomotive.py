@@ -22,25 +22,18 @@ from typing import Any
 
 import numpy as np
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined, kernel
+from tpss.physics.bridge import bridge_ratio
+from tpss.physics.current_limit import within_line_current
 from tpss.physics.curve import CURVE, Points, curve_at
 from tpss.physics.effort_table import MOST_VOLTAGES
 from tpss.physics.machine import highest_force, take_effort
-from tpss.physics.motor import (
-    NEW,
-    armature_current,
-    line_voltage_factor,
-    motor_force,
-    motor_voltage,
-)
+from tpss.physics.motor import armature_current, motor_force
 from tpss.physics.neural_network import NETWORK, NEURONS
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     POWER_FACTOR,
     POWER_FACTOR_CURVE,
-    TRANSFORMER_RATIO,
-    bridge_reactive_power,
-    bridge_sine,
     filter_reactive_power,
     power_factor,
     reactive_ratio,
@@ -82,6 +75,13 @@ TRAIN_TYPE = np.dtype(
         ("limit_speed_m_s", float),  # infinite without a pull-out limit
         ("zero_voltage_v", float),
         ("full_voltage_v", float),
+        (
+            "highest_line_current_a",
+            float,
+        ),  # infinite without a limit, which the next three belong to
+        ("auxiliary_current_a", float),
+        ("no_traction_voltage_v", float),
+        ("full_current_voltage_v", float),
         ("highest_acceleration_m_s2", float),  # infinite without such a limit
         ("highest_retardation_m_s2", float),
         ("highest_speed_m_s", float),
@@ -107,6 +107,7 @@ DEMAND = np.dtype(
         ("resistance_n", float),
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
+        ("driven_share", float),  # share of the step in which the motors give the force, mostly 1
         ("efficiency", float),
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
         ("taken_speed_m_s", float),  # speed to which all that `take_speed` writes belongs
@@ -153,7 +154,7 @@ def machine_force(
     return (motor_force_n + ratio * resistance_n) / (1.0 + ratio)
 
 
-@kernel
+@fused
 def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> float:
     """Acceleration of a driving train. [m/s²]
 
@@ -196,7 +197,8 @@ def prove_free_band(kind: TrainType, train: Demand) -> None:
     """Find how far from `free_voltage_v` the machine cannot be what limits the force.
 
     The slope of the force is bounded (`take_effort`), so a margin in force is a margin in voltage;
-    within it the machine need not be evaluated again, and nothing is approximated.
+    within it the machine need not be evaluated again, and nothing is approximated.  Of a limit of the
+    line current nothing is proven.
     """
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = train.force_cap_n * (1.0 + ratio) - ratio * train.resistance_n
@@ -205,10 +207,12 @@ def prove_free_band(kind: TrainType, train: Demand) -> None:
         train.free_band_v = margin / train.steepest_n_per_v
     else:  # no voltage changes the force
         train.free_band_v = math.inf if margin >= 0.0 else -1.0
+    if kind.highest_line_current_a < math.inf:
+        train.free_band_v = -1.0
     train.machine_force_n = train.free_force_n
 
 
-@kernel
+@fused
 def wheel_force(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float]:
@@ -225,6 +229,8 @@ def wheel_force(
         return cap, 0.0
     force, slope = highest_force(voltage_v, kind, train, machine)
     train.machine_force_n = force
+    if kind.highest_line_current_a < math.inf:
+        force, slope = within_line_current(voltage_v, force, slope, kind, train, machine)
     if force < 0.0:
         force, slope = 0.0, 0.0
     limit = machine_force(force, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
@@ -235,7 +241,7 @@ def wheel_force(
     return limit, slope / (1.0 + kind.rotor_mass_kg / kind.inertia_kg)
 
 
-@kernel
+@fused
 def billed_speed(force_n: float, kind: TrainType, train: Demand) -> tuple[float, float]:
     """Speed with which motor power is billed, and its slope over the force. [m/s], [m/s/N]
 
@@ -258,13 +264,15 @@ def billed_speed(force_n: float, kind: TrainType, train: Demand) -> tuple[float,
     return max(0.0, train.speed_m_s + weight * a), slope
 
 
-@kernel
+@fused
 def motor_state(
     force_n: float, kind: TrainType, train: Demand
 ) -> tuple[float, float, float, float]:
     r"""Motor force, billed speed, motor power, and the power's slope over the force at the wheel rim.
 
     .. math:: P_{motor} = F_{motor} \, v \, (\kappa + 1)
+
+    The power is the mean over the step, if the motors work for a share of it only.
 
     References
     ----------
@@ -275,7 +283,7 @@ def motor_state(
     speed, speed_slope = billed_speed(force_n, kind, train)
     if force_n <= 0.0 or motor <= 0.0:
         return 0.0, speed, 0.0, 0.0
-    slip = kind.slip_factor
+    slip = kind.slip_factor * train.driven_share
     slope = slip * ((1.0 + kind.rotor_mass_kg / kind.inertia_kg) * speed + motor * speed_slope)
     return motor, speed, motor * speed * slip, slope
 
@@ -284,10 +292,13 @@ def motor_state(
 def train_armature_current(
     motor_force_n: float, speed_m_s: float, kind: TrainType, train: Demand
 ) -> float:
-    """Sum of the four motors' currents at full line voltage. [A] See `armature_current`."""
+    """Sum of the four motors' currents at full line voltage, mean of the step. [A]
+
+    See `armature_current`.
+    """
     return armature_current(
         motor_force_n,
-        kind.slip_factor,
+        kind.slip_factor * train.driven_share,
         speed_m_s,
         kind.base_speed_m_s,
         kind.highest_motor_voltage_v,
@@ -333,32 +344,6 @@ def armature_demand(
     return current, current * relative * slope_n_per_v
 
 
-@inlined
-def train_bridge_sine(
-    voltage_v: float, kind: TrainType, train: Demand, machine: Machine
-) -> tuple[float, float]:
-    """β, clipped to 0 ≤ β ≤ 1, and its slope over the line voltage. [1], [1/V]"""
-    motor_v = motor_voltage(
-        train.speed_m_s,
-        voltage_v,
-        kind.base_speed_m_s,
-        kind.highest_motor_voltage_v,
-        kind.voltage_model,
-    )
-    sine, by_motor, by_locomotive = bridge_sine(
-        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine, train.neurons
-    )
-    train.bridge_sine = sine
-    if sine <= 0.0:
-        return 0.0, 0.0
-    if sine >= 1.0:
-        return 1.0, 0.0
-    slope = by_locomotive * TRANSFORMER_RATIO
-    if kind.voltage_model != NEW and line_voltage_factor(voltage_v, kind.voltage_model) < 1.0:
-        slope += by_motor * motor_v / voltage_v
-    return sine, slope
-
-
 @kernel
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
@@ -373,17 +358,11 @@ def bridge_demand(
     current, current_slope = armature_demand(force_n, slope_n_per_v, kind, train)
     if current <= 0.0:
         return 0.0, 0.0
-    factor = line_voltage_factor(voltage_v, kind.voltage_model)
-    sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
-    inner_v = voltage_v * TRANSFORMER_RATIO
-    unit = bridge_reactive_power(inner_v, current / factor, 1.0)
-    slope = unit * sine_slope + bridge_reactive_power(inner_v, current_slope / factor, sine)
-    if factor == 1.0:  # below the knee of the former voltage, current times voltage is constant
-        slope += unit * sine / voltage_v
-    return unit * sine, slope
+    ratio, ratio_slope = bridge_ratio(voltage_v, kind, train, machine)
+    return ratio * current, ratio_slope * current + ratio * current_slope
 
 
-@kernel
+@fused
 def electrical_demand(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine
 ) -> tuple[float, float, float, float]:
@@ -400,18 +379,19 @@ def electrical_demand(
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24) and (F.23)-(F.28).
+    [Boullanger2009]_, eq. (2.13), (2.14), (2.20)-(2.24), (F.23b) and (F.24)-(F.28).
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)
-    active = power / train.efficiency + kind.auxiliary_power_w
+    per_motor_power = 1.0 / train.efficiency
+    active = power * per_motor_power + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
         reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)
     else:
         reactive = power * train.reactive_ratio
         reactive_slope = power_slope * train.reactive_ratio
-    filtered = filter_reactive_power(voltage_v * TRANSFORMER_RATIO, kind.filter_reactance_ohm)
+    filtered, filtered_slope = filter_reactive_power(voltage_v, kind.filter_reactance_ohm)
     reactive += kind.auxiliary_reactive_power_var + filtered
-    reactive_slope += 2.0 * filtered / voltage_v
+    reactive_slope += filtered_slope
     train.active_power_w, train.reactive_power_var = active, reactive
-    return active, reactive, power_slope / train.efficiency, reactive_slope
+    return active, reactive, power_slope * per_motor_power, reactive_slope

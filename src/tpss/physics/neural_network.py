@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import blank_records, inlined, kernel
+from tpss.kernel import blank_records, fused, inlined
 from tpss.physics.exponential import exponential
 
 Array = npt.NDArray[np.float64]
@@ -131,7 +131,7 @@ def build_network(coefficients: Mapping[str, Any], input_to_si: Sequence[float])
     return network
 
 
-@kernel
+@fused
 def logsig(neurons: Array) -> None:
     """Put the logistic function of each value, 1 / (1 + e^{-y}), in its place, shape (NEURONS,).
 
@@ -143,7 +143,7 @@ def logsig(neurons: Array) -> None:
         neurons[n] = 1.0 / (1.0 + exponential(-neurons[n]))
 
 
-@kernel
+@fused
 def logsig_slope(neurons: Array) -> None:
     """Put the derivative in the place of each value of `logsig`, s (1 - s), shape (NEURONS,).
 
@@ -155,7 +155,7 @@ def logsig_slope(neurons: Array) -> None:
         neurons[n] = neurons[n] * (1.0 - neurons[n])
 
 
-@kernel
+@fused
 def weigh(weight: Array, neurons: Array) -> float:
     """Sum of weighted neurons, both of shape (NEURONS,), in four sums that do not wait for each other.
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
 from tpss.physics.neural_network import (
     NEURONS,
@@ -29,7 +29,7 @@ TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
 """In-locomotive voltage over line voltage, U_locoRc / U = 487 V / 15 kV. [Boullanger2009]_, (F.32)."""
 
 
-@kernel
+@fused
 def bridge_sine(
     motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork, neurons: Array
 ) -> tuple[float, float, float]:
@@ -120,19 +120,23 @@ def reactive_ratio(factor: float) -> float:
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.21), (2.24), (F.23) and (F.27).
+    [Boullanger2009]_, eq. (2.21), (2.24), (F.23b) and (F.27).
     """
     return math.sqrt(1.0 - factor * factor) / factor
 
 
 @inlined
-def filter_reactive_power(locomotive_voltage_v: float, reactance_ohm: float) -> float:
-    r"""Reactive power drawn by the locomotive's filter; negative: it feeds. [var]
+def filter_reactive_power(voltage_v: float, reactance_ohm: float) -> tuple[float, float]:
+    r"""Reactive power drawn by the locomotive's filter, and its slope. [var], [var/V]
+
+    Negative: the filter feeds.
 
     .. math:: Q_f = U_{locoRc}^2 / X_f
 
     Parameters
     ----------
+    voltage_v : float
+        Voltage at the pantograph. [V]
     reactance_ohm : float
         Reactance on the transformer's secondary side, negative. [Ω]
 
@@ -140,4 +144,5 @@ def filter_reactive_power(locomotive_voltage_v: float, reactance_ohm: float) -> 
     ----------
     [Boullanger2009]_, eq. (2.20).
     """
-    return locomotive_voltage_v * locomotive_voltage_v / reactance_ohm
+    current = voltage_v * (TRANSFORMER_RATIO * TRANSFORMER_RATIO / reactance_ohm)
+    return voltage_v * current, 2.0 * current

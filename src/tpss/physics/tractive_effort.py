@@ -7,7 +7,7 @@ a step into a bias for each neuron.
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined
 from tpss.physics.neural_network import (
     NEURONS,
     FeedForwardNetwork,
@@ -44,7 +44,7 @@ def speed_and_current_bias(
         bias[n] = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
 
 
-@kernel
+@fused
 def maximum_motor_force(
     voltage_v: float, bias: Array, network: FeedForwardNetwork, neurons: Array
 ) -> tuple[float, float]:

@@ -114,11 +114,12 @@ def train_current(
     p, q, p_slope, q_slope = electrical_demand(
         magnitude, loads.types[train.train_type], train, loads.machine[0]
     )
-    reciprocal = scaled(voltage, 1.0 / square)  # 1 / conj(V)
+    per_square = 1.0 / square
+    reciprocal = scaled(voltage, per_square)  # 1 / conj(V)
     current = complex(scale * p, -scale * q) * reciprocal
     if start == FLAT:
         return current, 0j, 0j
-    half = scale / (2.0 * magnitude)
+    half = 0.5 * scale * magnitude * per_square
     y1 = complex(half * p_slope, -half * q_slope)
     y2 = (y1 * voltage - current) * reciprocal
     return current, y1, y2

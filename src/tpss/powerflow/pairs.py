@@ -11,16 +11,16 @@ composition (p₁p₂ + q₁q̄₂, p₁q₂ + q₁p̄₂), determinant |p|² - 
 
 import math
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined
 
 
-@kernel
+@fused
 def squared(z: complex) -> float:
     """|z|²."""
     return z.real * z.real + z.imag * z.imag
 
 
-@kernel
+@fused
 def magnitude(z: complex) -> float:
     """|z|, without the care for overflow that makes `abs` five times slower."""
     return math.sqrt(squared(z))
@@ -36,25 +36,25 @@ def scaled(z: complex, factor: float) -> complex:
     return complex(z.real * factor, z.imag * factor)
 
 
-@kernel
+@fused
 def apply(p: complex, q: complex, delta: complex) -> complex:
     """The map (p, q) of a change."""
     return p * delta + q * delta.conjugate()
 
 
-@kernel
+@fused
 def compose(p1: complex, q1: complex, p2: complex, q2: complex) -> tuple[complex, complex]:
     """The map (p1, q1) after (p2, q2)."""
     return p1 * p2 + q1 * q2.conjugate(), p1 * q2 + q1 * p2.conjugate()
 
 
-@kernel
+@fused
 def determinant(p: complex, q: complex) -> float:
     """Determinant of the map as a 2 × 2 real matrix."""
     return squared(p) - squared(q)
 
 
-@kernel
+@fused
 def inverse(p: complex, q: complex) -> tuple[complex, complex]:
     """Inverse of the map; infinite or NaN if it is singular."""
     scale = 1.0 / determinant(p, q)

@@ -21,15 +21,11 @@ from plotly.offline import get_plotlyjs
 from tpss.errors import ResultError
 from tpss.report import plots, sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.report.validity import limits_of_validity
 from tpss.results.audit import LIMITS
+from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result
-
-GENERATOR = "TPSS report"
-"""By this the page says what it is, so that nothing else is ever replaced."""
-
-HEAD_BYTES = 2_000
-"""Within these first bytes of the file it says so."""
 
 NAMES = {
     "finished": "The run finished.",
@@ -83,16 +79,8 @@ def check_target(file: Path, force: bool) -> None:
         return
     if not force:
         raise ResultError(f"{file} exists already; give another --out, or --force to replace it")
-    if not _is_a_report(file):
+    if not is_report(file):
         raise ResultError(f"{file} is not a report, so it is not replaced; give another --out")
-
-
-def _is_a_report(file: Path) -> bool:
-    try:
-        with file.open("rb") as opened:
-            return GENERATOR.encode() in opened.read(HEAD_BYTES)
-    except OSError:
-        return False
 
 
 def report(result: Result) -> str:
@@ -115,7 +103,7 @@ def report(result: Result) -> str:
         data=data,
         tables=shown if trusted else [],
         key_figures=tables.of_figures({"value": result}) if trusted else None,
-        notes=_notes(result, voltage, bool(data) and data["thinned"]),
+        notes=_notes(result, voltage, data),
     )
 
 
@@ -125,7 +113,7 @@ def comparison(results: Mapping[str, Result]) -> str:
     found = {label: (result, line_voltage(result.dataset)) for label, result in trusted.items()}
     drawn = {label: (result, line) for label, (result, line) in found.items() if line is not None}
     runs = {label: result for label, (result, _) in drawn.items()}
-    figures = {}
+    figures, data = {}, {}
     if drawn:
         figures = {
             "envelopes": plots.envelopes(drawn),
@@ -134,23 +122,24 @@ def comparison(results: Mapping[str, Result]) -> str:
             "converters": plots.converters(runs),
             "losses": plots.losses(runs),
         }
+        data = _moving(runs, "envelopes")
     left_out = [f"{label}: nothing to draw" for label in results if label not in drawn]
     return _page(
         title=" / ".join(results),
         results=results,
         figures=figures,
-        data={},
+        data=data,
         tables=[],
         key_figures=tables.of_figures(trusted) if trusted else None,
-        notes=[*left_out, *_about_curves(runs)],
+        notes=[*left_out, *_about_trains(data), *_about_curves(runs)],
     )
 
 
 def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], dict[str, Any]]:
     """Figures of a result, and what the page needs to move trains and to show any journey."""
     runs = {"": result}
-    samples = sampling.sample_trains(result.dataset)
-    names = [train["name"] for train in samples.trains]
+    data = _moving(runs, "moment")
+    names = [train["name"] for train in data["runs"][0]["trains"]]
     studied = result.summary["studied_train"]
     chosen = studied if studied in names else next(iter(names), None)
     figures = {
@@ -162,19 +151,40 @@ def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], d
     }
     if chosen is not None:
         figures["journey"] = plots.journey(runs, chosen)
-    limits = result.scenario.standards.voltage_limits
-    return figures, {
-        "step_min": result.dataset.attrs["time_step_s"] / 60.0,
-        "steps": result.dataset.sizes["time"] - 1,
-        "trains": samples.trains,
-        "chosen": chosen,
-        "low_kv": limits.umin1_kv,
-        "high_kv": limits.umax1_kv,
-        "thinned": samples.thinned,
+    return figures, {**data, "chosen": chosen}
+
+
+def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
+    """What the page needs to move the trains of all runs in a plot; time goes in the finest steps."""
+    most = sampling.MOST_OF_TRAINS // len(runs)
+    found, thinned = [], False
+    for label, result in runs.items():
+        samples = sampling.sample_trains(result.dataset, most)
+        thinned = thinned or samples.thinned
+        limits, gradients = result.scenario.standards.voltage_limits, result.scenario.line.gradients
+        found.append(
+            {
+                "label": label,
+                "step_min": result.dataset.attrs["time_step_s"] / 60.0,
+                "steps": result.dataset.sizes["time"] - 1,
+                "trains": samples.trains,
+                "low_kv": limits.umin1_kv,
+                "high_kv": limits.umax1_kv,
+                "gradients": [[each.from_km, each.permille] for each in gradients],
+            }
+        )
+    finest = min(run["step_min"] for run in found)
+    return {
+        "plot": plot,
+        "step_min": finest,
+        "steps": max(round(run["steps"] * run["step_min"] / finest) for run in found),
+        "runs": found,
+        "chosen": None,
+        "thinned": thinned,
     }
 
 
-def _notes(result: Result, voltage: LineVoltage | None, trains_thinned: bool) -> list[str]:
+def _notes(result: Result, voltage: LineVoltage | None, data: Mapping[str, Any]) -> list[str]:
     """What was limited in the run, and what the plots leave out."""
     notes = [*warnings(result.summary), *result.standards.notes]
     if result.dataset.sizes["time"] < 2:
@@ -186,12 +196,16 @@ def _notes(result: Result, voltage: LineVoltage | None, trains_thinned: bool) ->
             f"a column of the time-distance graph shows the lowest voltage of {voltage.steps_a_column} "
             "time steps"
         )
-    if trains_thinned:
-        notes.append(
-            "the journeys and the moving trains are drawn from a part of the time steps, which holds "
-            "the lowest and highest speeds and voltages; between them trains move evenly"
-        )
-    return [*notes, *_about_curves({"": result})]
+    return [*notes, *_about_trains(data), *_about_curves({"": result})]
+
+
+def _about_trains(data: Mapping[str, Any]) -> list[str]:
+    if not data or not data["thinned"]:
+        return []
+    return [
+        "the journeys and the moving trains are drawn from a part of the time steps, which holds the "
+        "lowest and highest speeds and voltages; between them trains move evenly"
+    ]
 
 
 def _about_curves(runs: Mapping[str, Result]) -> list[str]:
@@ -221,7 +235,7 @@ def _page(
         lstrip_blocks=True,
     )
     return environment.get_template("report.html").render(
-        generator=GENERATOR,
+        generator=REPORT_MARK,
         version=version("tpss"),
         title=title,
         results=results,
@@ -234,6 +248,7 @@ def _page(
         key_figures=key_figures,
         notes=notes,
         limits=LIMITS,
+        validity=limits_of_validity(results.values()),
         violations=_violations(results),
         scenarios={label: _as_toml(result) for label, result in results.items()},
         style=_part("report.css"),

@@ -13,20 +13,16 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from tpss.report.contact_line import LineVoltage
+from tpss.report.gradients import inclination
+from tpss.report.palette import COLOURS, LEAST_SPAN_KV, VOLTAGE_SCALE
 from tpss.report.sampling import MOST_OF_CURVES, Floats, kept, share
 from tpss.results.result import Result
-
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
 
 DASHES = ("solid", "dash", "dashdot", "dot")
 """Line styles, so that curves differ in black and white too."""
 
-VOLTAGE_SCALE = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
-"""From a low voltage, dark, to a high one: in black and white too."""
-
-LEAST_SPAN_KV = 2.0
-"""Span of that scale at least, so that a voltage that hardly falls does not look like one that does."""
+SYMBOLS = ("circle", "square", "diamond", "star")
+"""Marks of the trains of a run; a train beyond a limit is a triangle."""
 
 TIME, POSITION = "time [min]", "position [km]"
 
@@ -91,16 +87,7 @@ def line_at_a_moment(result: Result, voltage: LineVoltage) -> go.Figure:
     """
     figure = _figure(["voltage [kV]"], POSITION, "position", height=460)
     _add_envelope(figure, voltage, "", 0)
-    first = result.dataset.isel(time=0)
-    figure.add_scatter(
-        x=_single(first.position.to_numpy() / 1e3),
-        y=_single(first.pantograph_voltage.to_numpy() / 1e3),
-        text=[str(name) for name in result.dataset.train.to_numpy()],
-        mode="markers",
-        marker={"size": 11, "color": COLOURS[0], "line": {"color": "#FFFFFF", "width": 1}},
-        hovertemplate="%{text}<extra></extra>",
-        name="trains now",
-    )
+    _add_trains(figure, result, "trains now", 0)
     _mark_feeding_points(figure, [result])
     shown_kv = [float(voltage.lowest_kv.min()), float(voltage.highest_kv.max())]
     _mark_limits(figure, result, shown_kv)
@@ -109,7 +96,9 @@ def line_at_a_moment(result: Result, voltage: LineVoltage) -> go.Figure:
 
 
 def envelopes(runs: Mapping[str, tuple[Result, LineVoltage]]) -> go.Figure:
-    """Lowest voltage along the line of each run, with the limits.
+    """Lowest voltage along the line of each run, with the limits and the trains at a moment.
+
+    The last traces hold the trains, one a run: the page moves them.
 
     Parameters
     ----------
@@ -122,13 +111,16 @@ def envelopes(runs: Mapping[str, tuple[Result, LineVoltage]]) -> go.Figure:
     lowest = [float(voltage.lowest_kv.min()) for _, voltage in runs.values()]
     _mark_feeding_points(figure, [result for result, _ in runs.values()])
     _mark_limits(figure, next(result for result, _ in runs.values()), lowest)
-    return figure.update_xaxes(range=_with_margin(*(v.position_km for _, v in runs.values())))
+    for k, (label, (result, _)) in enumerate(runs.items()):
+        _add_trains(figure, result, f"trains now, {label}", k)
+    figure.update_xaxes(range=_with_margin(*(v.position_km for _, v in runs.values())))
+    return figure.update_layout(hovermode="closest")
 
 
 def journey(
     runs: Mapping[str, Result], train: str | None = None, against: str = "position"
 ) -> go.Figure:
-    """Speed of a train, and the voltage at its pantograph.
+    """Speed of a train, the voltage at its pantograph, and the gradient below it.
 
     Parameters
     ----------
@@ -140,7 +132,8 @@ def journey(
         What the horizontal axis carries.
     """
     axis = POSITION if against == "position" else TIME
-    figure = _figure(["speed [km/h]", "voltage [kV]"], axis, against, height=440)
+    labels = ["speed [km/h]", "voltage [kV]", "gradient [‰]"]
+    figure = _figure(labels, axis, against, height=560)
     for k, (label, result) in enumerate(runs.items()):
         name = train or result.summary["studied_train"] or str(result.dataset.train.to_numpy()[0])
         data = result.dataset.sel(train=name)
@@ -151,6 +144,8 @@ def journey(
         kmh, kv = data.speed.to_numpy() * 3.6, data.pantograph_voltage.to_numpy() / 1e3
         _add_line(figure, 1, x[there], kmh[there], text, k, "km/h")
         _add_held(figure, 2, x[there], kv[there], text, (k, k), "kV", show_legend=False)
+        permille = inclination(result, data.position.to_numpy()) * 1e3
+        _add_held(figure, 3, x[there], permille[there], text, (k, k), "‰", show_legend=False)
     return figure
 
 
@@ -309,6 +304,25 @@ def _add_envelope(figure: go.Figure, voltage: LineVoltage, label: str, k: int) -
             fillcolor="rgba(86,180,233,0.18)",
             hovertemplate=f"{name} at %{{x:.1f}} km: %{{y:.2f}} kV<extra></extra>",
         )
+
+
+def _add_trains(figure: go.Figure, result: Result, name: str, k: int) -> None:
+    """Trains of a run at their places and voltages in its first time step."""
+    first = result.dataset.isel(time=0)
+    figure.add_scatter(
+        x=_single(first.position.to_numpy() / 1e3),
+        y=_single(first.pantograph_voltage.to_numpy() / 1e3),
+        text=[str(train) for train in result.dataset.train.to_numpy()],
+        mode="markers",
+        marker={
+            "size": 11,
+            "color": COLOURS[k % len(COLOURS)],
+            "symbol": SYMBOLS[k % len(SYMBOLS)],
+            "line": {"color": "#FFFFFF", "width": 1},
+        },
+        hovertemplate="%{text}<extra></extra>",
+        name=name,
+    )
 
 
 def _mark_limits(figure: go.Figure, result: Result, shown_kv: Sequence[float]) -> None:

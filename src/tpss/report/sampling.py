@@ -72,13 +72,13 @@ class TrainSamples:
     thinned: bool
 
 
-def sample_trains(dataset: xr.Dataset) -> TrainSamples:
-    """Samples of all trains of a run that were on the line."""
+def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> TrainSamples:
+    """Samples of all trains of a run that were on the line, about so many of all of them."""
     km, kmh = dataset.position.to_numpy() / 1e3, dataset.speed.to_numpy() * 3.6
     kv = dataset.pantograph_voltage.to_numpy() / 1e3
     on_line = np.isfinite(km)
     seen = np.flatnonzero(on_line.any(axis=0))
-    most = max(FEWEST, MOST_OF_TRAINS // max(len(seen), 1))
+    most = max(FEWEST, most_of_all // max(len(seen), 1))
     trains, thinned = [], False
     for i in seen:
         steps = np.flatnonzero(on_line[:, i])

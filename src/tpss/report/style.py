@@ -8,10 +8,9 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-Floats = npt.NDArray[np.float64]
+from tpss.report.palette import COLOURS
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+Floats = npt.NDArray[np.float64]
 
 LINES = ("-", "--", "-.", ":")
 """Line styles, so that curves differ in black and white too."""
@@ -30,6 +29,11 @@ STYLE: Any = {
     "figure.dpi": 110.0,
 }
 """Settings for ``matplotlib.rc_context``; how it types their names depends on its version."""
+
+
+def as_text(name: object) -> str:
+    """A name in which matplotlib finds no formula."""
+    return str(name).replace("$", r"\$")
 
 
 def colour(k: int) -> str:
@@ -71,11 +75,11 @@ def panels(
     return figure, axes
 
 
-def legend(figure: Figure, panel: Axes) -> None:
-    """Legend of a panel's curves above the figure, if there is more than one."""
+def legend(figure: Figure, panel: Axes, columns: int = 4) -> None:
+    """Legend of a panel's curves below the figure, if there is more than one."""
     handles, names = panel.get_legend_handles_labels()
     if len(handles) > 1:
-        figure.legend(handles, names, loc="outside upper center", ncols=min(4, len(handles)))
+        figure.legend(handles, names, loc="outside lower center", ncols=min(columns, len(handles)))
 
 
 def held(panel: Axes, x: Floats, y: Floats, look: tuple[str, str], label: str = "") -> None:

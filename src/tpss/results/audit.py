@@ -14,6 +14,7 @@ import numpy.typing as npt
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V, GRAVITY_M_S2
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network, resolution_va
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
+from tpss.results.audit_of_braking import braking_motion_error_m, braking_work
 from tpss.simulation.run import Outcome
 from tpss.simulation.state import (
     AGGRESSIVE,
@@ -21,6 +22,7 @@ from tpss.simulation.state import (
     STATE_BRAKING,
     STATE_COASTING,
     STATE_MOTORING,
+    WITHIN_STEP,
     Model,
 )
 
@@ -111,7 +113,7 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
         "network_balance": network_balance(outcome, model.options.step_s),
         "traction_balance": traction_balance(outcome, model),
         "force_balance": force_balance(outcome, model),
-        "motion_error_m": motion_error_m(outcome, model.options.step_s),
+        "motion_error_m": motion_error_m(outcome, model),
         "stop_error_m": float(outcome.state.clock[0].stop_error_m),
     }
     lowest = float(voltages.min()) if voltages.size else None
@@ -134,13 +136,14 @@ def limits_of(model: Model) -> dict[str, float]:
     """Limits of the figures that are judged in a run of this model.
 
     Over impedances of some microohms, a few metres of line, rounding alone is a visible mismatch; the
-    limits of what it touches follow it.  A traction balance billed at the start of a step, or with
-    what slip wastes, does not close, and is not judged.
+    limits of what it touches follow it, and a train between two pieces of line meets the roundings of
+    both.  A traction balance billed at the start of a step, or with what slip wastes, does not close,
+    and is not judged.
     """
     limits = dict(LIMITS)
     blurred = model.network.tolerance / TOLERANCE
     shortest_ohm = np.abs(model.network.sections.impedance_ohm_per_m).min() * SHORTEST_PIECE_M
-    limits["power_mismatch_va"] *= max(blurred, resolution_va(shortest_ohm) / JUDGED_VA)
+    limits["power_mismatch_va"] *= max(blurred, 2.0 * resolution_va(shortest_ohm) / JUDGED_VA)
     limits["converter_residual"] *= blurred
     limits["network_balance"] *= blurred
     if not model.options.mean_power or model.options.driver == AGGRESSIVE:
@@ -170,6 +173,11 @@ def _phasors(magnitude: Floats, angle: Floats) -> Complexes:
 def _largest(values: npt.NDArray[Any]) -> float:
     """Largest magnitude; NaN, which no limit admits, if one of the values is NaN."""
     return float(np.abs(values).max(initial=0.0))
+
+
+def _kinds(outcome: Outcome, model: Model) -> Any:
+    """Kind of each train."""
+    return model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
 
 
 def _nan_is_largest(value: float) -> float:
@@ -295,7 +303,7 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     resistance, climb, kinetic energy and brakes.
     """
     trains, h = outcome.recording.trains, model.options.step_s
-    kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
+    kind = _kinds(outcome, model)
     before, after = trains[:-1], trains[1:]
     # Not the difference of positions, which would round a short way of a train far along the line.
     way_m = h * (before["speed"] + after["speed"]) / 2.0
@@ -308,6 +316,7 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
     )
     opposing = before["running_resistance"] + before["gradient_force"] + before["braking_force"]
     moving = np.where(way_m > 0.0, (rotor + opposing) * way_m, 0.0)
+    moving = np.where(before["holding_time"] > 0.0, braking_work(before, after, kind, h), moving)
     kinetic = kind.inertia_kg / 2.0 * (after["speed"] ** 2 - before["speed"] ** 2)
     difference = np.nansum(work) - np.nansum(moving) - np.nansum(kinetic)
     # Where the motors do no work, gravity and the trains' own motion turn over the energy.
@@ -346,7 +355,7 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     """
     rows = slice(0, outcome.steps)
     trains, state = outcome.recording.trains[rows], outcome.recording.train_state[rows]
-    kind = model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
+    kind = _kinds(outcome, model)
     rest = trains["tractive_force"] - trains["braking_force"]
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
     inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
@@ -357,14 +366,16 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     return _largest((rest / (kind.mass_kg * GRAVITY_M_S2))[driven])
 
 
-def motion_error_m(outcome: Outcome, step_s: float) -> float:
+def motion_error_m(outcome: Outcome, model: Model) -> float:
     """Largest |x' - x - h (v + v')/2|, and |v' - v - a h| h, of a train. [m]
+
+    Braking within steps has `braking_motion_error_m` in place of the first.
 
     References
     ----------
     [Boullanger2009]_, implied by eq. (2.29) and (2.30).
     """
-    trains = outcome.recording.trains
+    trains, step_s = outcome.recording.trains, model.options.step_s
     before, after = trains[:-1], trains[1:]
     # Present at both instants; positions that are not numbers stay, and fail.
     both = (outcome.recording.train_state[:-1] >= 0) & (
@@ -372,5 +383,7 @@ def motion_error_m(outcome: Outcome, step_s: float) -> float:
     )
     way = after["position"] - before["position"]
     way = way - step_s * (before["speed"] + after["speed"]) / 2.0
+    if model.options.braking == WITHIN_STEP:
+        way = braking_motion_error_m(before, after, _kinds(outcome, model), step_s)
     speed = after["speed"] - before["speed"] - step_s * before["acceleration"]
     return max(_largest(way[both]), _largest(speed[both]) * step_s, key=_nan_is_largest)

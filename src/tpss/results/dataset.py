@@ -79,7 +79,8 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[np.float6
 
 def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, object]:
     h, plan, trains = model.options.step_s, layout.supply, outcome.trains
-    arrival_s = np.where(outcome.arrival_step >= 0, outcome.arrival_step * h, np.nan)
+    arrival_s = outcome.arrival_step * h - outcome.stood_s
+    arrival_s = np.where(outcome.arrival_step >= 0, arrival_s, np.nan)
     # A train that was on the line at the start has no departure.
     placed = np.array([train.phase != PENDING for train in trains], dtype=bool)
     departure_s = np.array([train.departure_step * h for train in trains], dtype=float)

@@ -5,9 +5,21 @@ from typing import Any
 import numpy as np
 
 from tpss.physics.constants import BASE_VOLTAGE_V
-from tpss.powerflow.newton import LOWEST_VOLTAGE
+from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.simulation.run import INTERRUPTED, Outcome
 from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
+
+ALMOST = 0.99
+"""Of the highest plausible voltage: from here on, the voltages ended the search by being too high."""
+
+_STRENGTHEN = (
+    "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or converter "
+    "stations), or lighten the traffic (longer headway, lower speed or current limit)."
+)
+_FEED_LESS = (
+    "Let less reactive power be fed into the line: by the trains' filters (a filter_reactance_ohm "
+    "further from zero) or the catenary's capacitance."
+)
 
 _LIMITED = {
     "effort_extrapolated": "the tractive-effort network was used outside its training range, or a table "
@@ -18,6 +30,7 @@ _LIMITED = {
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
+    "current_limited": "the current limitation at low voltage kept a train below the force it wanted",
     "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 
@@ -42,24 +55,25 @@ def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
     drawing = state.trains[places.train]
     active_mw = drawing.active_power_w.sum() / 1e6
     reactive_mvar = drawing.reactive_power_var.sum() / 1e6
-    lowest_kv = LOWEST_VOLTAGE * BASE_VOLTAGE_V / 1e3
+    lowest_kv, highest_kv = (b * BASE_VOLTAGE_V / 1e3 for b in (LOWEST_VOLTAGE, HIGHEST_VOLTAGE))
     problem = (
         f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains ask for "
         f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and beyond {100 * share:.1f} % of that the "
-        f"load flow has no stable solution with all voltages above {lowest_kv:.2f} kV."
+        f"load flow has no stable solution with all voltages between {lowest_kv:.2f} and "
+        f"{highest_kv:.2f} kV."
     )
-    advice = (
-        "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or "
-        "converter stations), or lighten the traffic (longer headway, lower speed or current "
-        "limit)."
-    )
+    advice = _STRENGTHEN
     if len(places) and share > 0.0:
-        k = int(np.argmin(np.abs(places.voltage_v)))
-        train, voltage = int(places[k].train), abs(places[k].voltage_v)
+        voltage_kv = np.abs(places.voltage_v) / 1e3
+        too_high = voltage_kv.max() > ALMOST * highest_kv
+        k = int(np.argmax(voltage_kv) if too_high else np.argmin(voltage_kv))
+        train, which = int(places[k].train), "highest" if too_high else "lowest"
         place_km = state.trains[train].position_m / 1e3
         name = outcome.trains[train].name
-        problem += f" There, {name} at {place_km:.2f} km has {voltage / 1e3:.2f} kV, the lowest."
-        advice += f" The weakest place is near {place_km:.0f} km."
+        problem += f" There, {name} at {place_km:.2f} km has {voltage_kv[k]:.2f} kV, the {which}."
+        advice = (
+            _FEED_LESS if too_high else f"{advice} The weakest place is near {place_km:.0f} km."
+        )
     return {"problem": problem, "advice": advice}
 
 

@@ -7,12 +7,14 @@ import io
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
 from tpss.results import store
+from tpss.results.contents import WORKBOOK
 from tpss.results.file_kinds import Kind
 from tpss.results.result import Result
 
@@ -70,7 +72,7 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
         A file exists, the folder cannot be written, a package is missing, or a table is too long.
     """
     _demand_package(kind)
-    names = ["result.xlsx"] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
+    names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
     store.check_files(folder, names, force)
     tables = {name: with_units(table(result)) for name, table in TABLES.items()}
     contents = (
@@ -99,6 +101,17 @@ def _bytes(table: pd.DataFrame, kind: Kind) -> bytes:
     return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
 
 
+def _cell(value: Any, sheet: Any) -> Any:
+    """A value as it is: of a name that begins with "=" openpyxl would make a formula."""
+    if not (isinstance(value, str) and value.startswith("=")):
+        return value
+    from openpyxl.cell import WriteOnlyCell
+
+    cell = WriteOnlyCell(sheet, value)
+    cell.data_type = "s"
+    return cell
+
+
 def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
     """A workbook with a sheet a table; headings stay in sight."""
     import openpyxl  # a tenth of a second to load
@@ -119,7 +132,7 @@ def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
         sheet.append(list(table.columns))
         known = table.astype(object).where(table.notna(), None)
         for row in known.itertuples(index=False, name=None):
-            sheet.append(row)
+            sheet.append([_cell(value, sheet) for value in row])
     file = io.BytesIO()
     book.save(file)
     return file.getvalue()

@@ -207,10 +207,11 @@ def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
 
 def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
     h, trips_min = start.model.options.step_s, [list[float]() for _ in start.services]
-    arrivals = run.state.trains["arrival_step"].tolist()
-    for train, arrival in zip(run.trains, arrivals, strict=True):
-        if arrival >= 0 and train.phase == PENDING:
-            trips_min[train.route].append(arrival * h / 60.0 - train.departure_step * h / 60.0)
+    state = run.state.trains
+    arrivals_s = (state["arrival_step"] * h - state["stood_s"]).tolist()
+    for train, arrival_s in zip(run.trains, arrivals_s, strict=True):
+        if arrival_s >= 0 and train.phase == PENDING:
+            trips_min[train.route].append(arrival_s / 60.0 - train.departure_step * h / 60.0)
     return tuple(
         ServiceFigures(
             name=service.name,
@@ -228,6 +229,7 @@ def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, floa
     if arrival < 0:
         return math.nan, math.nan
     trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
+    trip_s -= float(run.state.trains["stood_s"][studied])
     way_m = figures.trains["last_m"][studied] - figures.trains["first_m"][studied]
     return trip_s / 60.0, float(way_m) / trip_s * 3.6
 

@@ -4,20 +4,21 @@ import json
 import os
 import shutil
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import tomli_w
 import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
+from tpss.results.contents import DATASET, SCENARIO, SUMMARY, carry_over
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
-
-DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
 
 FORMAT_KEY, FORMAT = "result_format", 1
 """Name and value of what a result says of the way in which it is written.
@@ -27,6 +28,15 @@ It grows when something is renamed, taken away or newly relied upon, not when so
 
 TRIAL_BYTES = 2**16
 """A disk without room for so much is full."""
+
+FIRST_BYTES = 2**16
+"""Room for a dataset at first; it grows."""
+
+ONE_AT_A_TIME = threading.Lock()
+"""The netCDF library is not safe in several threads at once."""
+
+DAMAGE = (OSError, ValueError, KeyError, RuntimeError, AttributeError)
+"""What netCDF raises where a file is damaged, an attribute's by the last one."""
 
 PARENT = Path("results")
 """Folder of results that nobody has named."""
@@ -64,7 +74,7 @@ def save(
             new.mkdir()
             # In memory first: on a full disk HDF5 cannot close its file, and brings the process down.
             # The simulation has needed more memory than this.
-            _write(new / DATASET, dataset.to_netcdf(engine="h5netcdf"))
+            _write(new / DATASET, _as_netcdf(dataset))
             _write(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
             text = json.dumps(summary, indent=2, ensure_ascii=False)
             _write(new / SUMMARY, f"{text}\n".encode())
@@ -187,7 +197,9 @@ def _move(new: Path, target: Path, old: Path) -> None:
     finally:
         if old.exists() and not target.exists():
             old.rename(target)
-    shutil.rmtree(old, ignore_errors=True)
+    if old.exists():
+        carry_over(old, target)
+        shutil.rmtree(old, ignore_errors=True)
 
 
 def _move_files(new: Path, target: Path, old: Path) -> None:
@@ -238,24 +250,28 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         _demand_this_format(folder, summary)
-        _read_attributes(folder / DATASET)
-        with xr.open_dataset(folder / DATASET, engine="h5netcdf") as stored:
-            dataset = stored.load()
+        dataset = _read_netcdf(folder / DATASET)
         scenario = load_scenario(folder / SCENARIO)
         _demand_a_result(dataset)
         # An attribute of one number comes back as that number.
         dataset.attrs["station_energy_mwh"] = np.atleast_1d(dataset.attrs["station_energy_mwh"])
-    except (OSError, ValueError, KeyError, RuntimeError, ScenarioError) as error:
+    except (*DAMAGE, ScenarioError) as error:
         raise ResultError(f"{folder} is damaged ({error}); run the scenario again") from error
     return scenario, dataset, summary
 
 
-def _read_attributes(file: Path) -> None:
-    """Raise what HDF5 raises where the attributes are damaged; h5netcdf prints a traceback there."""
-    import h5py  # whoever only writes has no need of it yet
+def _as_netcdf(dataset: xr.Dataset) -> memoryview:
+    """A dataset as the content of a netCDF 4 file."""
+    with ONE_AT_A_TIME:
+        file = netCDF4.Dataset(DATASET, "w", memory=FIRST_BYTES)
+        dataset.dump_to_store(xr.backends.NetCDF4DataStore(file))
+        content: memoryview = file.close()
+    return content
 
-    with h5py.File(file) as opened:
-        dict(opened.attrs)
+
+def _read_netcdf(path: Path) -> xr.Dataset:
+    with ONE_AT_A_TIME, xr.open_dataset(path, engine="netcdf4") as stored:
+        return stored.load()
 
 
 def _demand_this_format(folder: Path, summary: Any) -> None:

@@ -54,7 +54,7 @@ def _studied_trip(outcome: Outcome, step_s: float) -> dict[str, Any]:
         return {"studied_train": None, "trip_time_min": None}
     arrival = int(outcome.arrival_step[i])
     steps = arrival - outcome.trains[i].departure_step
-    trip = steps * step_s / 60.0 if arrival >= 0 else None
+    trip = (steps * step_s - float(outcome.stood_s[i])) / 60.0 if arrival >= 0 else None
     return {"studied_train": outcome.trains[i].name, "trip_time_min": trip}
 
 

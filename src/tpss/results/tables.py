@@ -22,7 +22,10 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     drawn = np.isfinite(voltage_kv).any(axis=0)
     departure_min = dataset.departure_time.to_numpy() / 60.0
     arrival_min = dataset.arrival_time.to_numpy() / 60.0
-    moving_min = np.isfinite(voltage_kv).sum(axis=0) * h / 60.0
+    # A train that braked within a step has arrived before the first instant at which it stands.
+    seen = np.isfinite(position_km)
+    stood_min = np.where(seen, time_min[:, None], -np.inf).max(axis=0) - arrival_min
+    moving_min = np.isfinite(voltage_kv).sum(axis=0) * h / 60.0 - np.nan_to_num(stood_min)
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),

@@ -1,12 +1,28 @@
 """Read the files of a scenario: TOML, and CSV profiles beside it."""
 
+import re
 import tomllib
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from tpss.errors import Finding, ScenarioError
 
-PROFILE_COLUMNS = ("position_km", "gradient_permille")
+PROFILE_COLUMNS = {"from_km": "position_km", "permille": "gradient_permille"}
+"""Columns of a gradient profile, by the keys that they stand for in a scenario."""
+
+
+class Profile(NamedTuple):
+    """Gradients of a CSV file, as they would stand in a scenario, and where they came from."""
+
+    path: Path
+    rows: list[dict[str, float]]
+    lines: list[int]
+    """Number of each row's line in the file, counted from 1."""
+
+    def place(self, row: int, key: str) -> str:
+        """Place in the file of a row's value."""
+        return f"line {self.lines[row]}, {PROFILE_COLUMNS[key]}"
 
 
 def read_text(path: Path, named_by: str = "") -> str:
@@ -15,8 +31,11 @@ def read_text(path: Path, named_by: str = "") -> str:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         problem, remedy = "there is no such file", _remedy_for_missing(path)
-    except UnicodeDecodeError:
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        byte = f"byte 0x{error.object[error.start]:02x}"
         problem, remedy = "the file is not text in UTF-8", "save it as UTF-8"
+        raise ScenarioError([Finding(str(path), f"line {line}", byte, problem, remedy)]) from error
     except ValueError:
         problem, remedy = "not a file name", "name a file"
     except OSError as error:
@@ -44,11 +63,21 @@ def read_toml(path: Path, named_by: str = "") -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
+        at_line = re.search(r"at line (\d+)", str(error))
+        place, value = shown_line(text, int(at_line[1])) if at_line else ("", "")
         remedy = "mend the file at that place; https://toml.io describes the format"
-        raise ScenarioError([Finding(str(path), "", "", f"not TOML: {error}", remedy)]) from error
+        finding = Finding(str(path), place, value, f"not TOML: {error}", remedy)
+        raise ScenarioError([finding]) from error
 
 
-def read_gradients(path: Path) -> list[dict[str, float]]:
+def shown_line(text: str, number: int) -> tuple[str, str]:
+    """Name of a line, counted from 1, and its text, as a finding shows them."""
+    lines = text.split("\n")
+    line = lines[number - 1].strip() if number <= len(lines) else ""
+    return f"line {number}", line if len(line) <= 60 else f"{line[:57]}..."
+
+
+def read_gradients(path: Path) -> Profile:
     """Rows of a gradient profile: CSV with a header; lines that begin with # are comments.
 
     Raises
@@ -62,19 +91,36 @@ def read_gradients(path: Path) -> list[dict[str, float]]:
         if text.strip() and not text.lstrip().startswith("#")
     ]
     rows = [(number, [cell.strip() for cell in text.split(",")]) for number, text in lines]
-    if not rows or tuple(rows[0][1]) != PROFILE_COLUMNS:
+    header = list(PROFILE_COLUMNS.values())
+    if not rows or rows[0][1] != header:
         found = ",".join(rows[0][1]) if rows else ""
-        remedy = f"begin with the line {','.join(PROFILE_COLUMNS)}"
-        key = f"line {rows[0][0]}" if rows else ""
+        remedy = f"begin with the line {','.join(header)}"
+        key = f"line {rows[0][0]}" if rows else "line 1"
         raise ScenarioError([Finding(str(path), key, found, "not the expected header", remedy)])
     findings: list[Finding] = []
-    profile = [_read_row(path, number, cells, findings) for number, cells in rows[1:]]
-    if not profile and not findings:
+    gradients = [_read_row(path, number, cells, findings) for number, cells in rows[1:]]
+    if not gradients:
         remedy = "add rows of a position and a gradient"
-        findings.append(Finding(str(path), "", "", "the profile has no rows", remedy))
+        place, value = f"line {rows[0][0]}", ",".join(header)
+        findings.append(Finding(str(path), place, value, "no rows follow the header", remedy))
+    profile = Profile(path, gradients, [number for number, _ in rows[1:]])
+    if not findings:
+        findings = _check_order(profile)
     if findings:
         raise ScenarioError(findings)
     return profile
+
+
+def _check_order(profile: Profile) -> list[Finding]:
+    """Rows whose position does not grow."""
+    findings = []
+    for i, (before, after) in enumerate(pairwise(row["from_km"] for row in profile.rows)):
+        if after <= before:
+            problem = f"the position does not grow: {after:g} follows {before:g}"
+            remedy = "put the rows in ascending order, each place once"
+            place = profile.place(i + 1, "from_km")
+            findings.append(Finding(str(profile.path), place, f"{after:g}", problem, remedy))
+    return findings
 
 
 def _read_row(
@@ -87,11 +133,11 @@ def _read_row(
         findings.append(Finding(str(path), f"line {number}", row, problem, remedy))
         return {}
     values = []
-    for column, cell in zip(PROFILE_COLUMNS, cells, strict=True):
+    for column, cell in zip(PROFILE_COLUMNS.values(), cells, strict=True):
         try:
             values.append(float(cell))
         except ValueError:
             place = f"line {number}, {column}"
             remedy = "write a number with a decimal point and no unit"
             findings.append(Finding(str(path), place, cell, "not a number", remedy))
-    return dict(zip(("from_km", "permille"), values, strict=False))
+    return dict(zip(PROFILE_COLUMNS, values, strict=False))

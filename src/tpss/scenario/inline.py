@@ -13,7 +13,7 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.files import read_gradients, read_toml
+from tpss.scenario.files import Profile, read_gradients, read_toml
 
 Location = tuple[int | str, ...]
 
@@ -44,9 +44,14 @@ class Inlined:
     """Keys of such a table that the scenario itself gives."""
     unread: set[Location] = field(default_factory=set)
     """Tables whose file could not be read."""
+    profile: Profile | None = None
+    """The line's gradients, if they came from a CSV file."""
 
     def origin(self, location: Location) -> tuple[Path, Location]:
         """File that holds a value, and the value's place in it."""
+        if self.profile is not None and location[:2] == ("line", "gradients") and location[3:]:
+            row, key = location[2:4]
+            return self.profile.path, (self.profile.place(int(row), str(key)),)
         for table, file in self.files.items():
             below = location[len(table) :]
             if below and location[: len(table)] == table and below[0] not in self.own[table]:
@@ -148,7 +153,8 @@ def _insert_profile(found: Inlined) -> None:
         return
     del line["gradients_file"]
     try:
-        line["gradients"] = read_gradients(file.parent / name)
+        found.profile = read_gradients(file.parent / name)
+        line["gradients"] = found.profile.rows
     except ScenarioError as error:
         # A level line lets the rest of the document be judged.
         line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]

@@ -175,6 +175,40 @@ class EffortLimits(Part):
         return self
 
 
+class CurrentLimitation(Part):
+    """Current that a train may draw at most: full from a · Un on, that of its auxiliaries at Umin2."""
+
+    max_current_a: Real = Field(
+        gt=0,
+        le=10_000,
+        description="Highest current at the pantograph, motors and auxiliaries together.",
+    )
+    knee_factor: Real = Field(
+        default=0.95,
+        gt=0,
+        le=1,
+        description="a, the share of Un from which the current is whole.",
+    )
+    un_kv: Real = Field(default=15.0, gt=0, le=100, description="Nominal voltage, Un.")
+    umin2_kv: Real = Field(
+        default=11.0,
+        gt=0,
+        le=100,
+        description="Lowest non-permanent voltage, Umin2, at which there is no traction; in between "
+        "the current falls linearly.",
+    )
+
+    @model_validator(mode="after")
+    def _knee_lies_above_the_end(self) -> Self:
+        knee_kv = self.knee_factor * self.un_kv
+        if self.umin2_kv >= knee_kv:
+            raise fault(
+                f"umin2_kv ({self.umin2_kv:g} kV) is not below knee_factor · un_kv ({knee_kv:g} kV)",
+                "lower umin2_kv, or raise knee_factor or un_kv",
+            )
+        return self
+
+
 _OF_A_TABLE = {"speed_kmh", "force_kn", "voltage_kv", "motor_current_a"}
 
 

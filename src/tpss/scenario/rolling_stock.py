@@ -7,7 +7,12 @@ from pydantic_core import PydanticCustomError
 
 from tpss import library
 from tpss.scenario.fields import Name, Part, Real, fault
-from tpss.scenario.machine import EffortTable, RatioOverSpeed, TractiveEffort
+from tpss.scenario.machine import (
+    CurrentLimitation,
+    EffortTable,
+    RatioOverSpeed,
+    TractiveEffort,
+)
 
 
 def _is_a_library_model(name: str) -> str:
@@ -117,6 +122,11 @@ class Train(Part):
         "Rc4; leave it out: no filter.",
     )
 
+    current_limitation: CurrentLimitation | None = Field(
+        default=None,
+        description="Current limitation at low voltage, as in EN 50388; leave it out: no such limit.",
+    )
+
     @field_validator("max_motor_current_a")
     @classmethod
     def _current_of_the_machine(cls, current: float | None, info: ValidationInfo) -> float | None:
@@ -158,6 +168,25 @@ class Train(Part):
             raise fault(
                 "base_speed_kmh and max_motor_voltage_v belong together",
                 "give both, or leave both out",
+            )
+        return self
+
+    @property
+    def auxiliary_current_a(self) -> float:
+        """Current of the auxiliaries at the voltage at which the limitation leaves nothing else. [A]"""
+        limit = self.current_limitation
+        if limit is None:
+            return 0.0
+        return self.auxiliary_power_kw / self.auxiliary_power_factor / limit.umin2_kv
+
+    @model_validator(mode="after")
+    def _auxiliaries_draw_less_than_the_train_may(self) -> Self:
+        limit, auxiliaries_a = self.current_limitation, self.auxiliary_current_a
+        if limit is not None and auxiliaries_a >= limit.max_current_a:
+            raise fault(
+                f"the auxiliaries draw {auxiliaries_a:.4g} A at {limit.umin2_kv:g} kV, and "
+                f"current_limitation.max_current_a allows {limit.max_current_a:g} A",
+                "raise max_current_a, or lower auxiliary_power_kw",
             )
         return self
 

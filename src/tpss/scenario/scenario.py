@@ -4,11 +4,11 @@ import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr
 
-from tpss.scenario.fields import Name, Part, unique
+from tpss.scenario.fields import Name, Part, Version, unique
 from tpss.scenario.line import Line
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
@@ -26,7 +26,7 @@ class Scenario(Part):
     other too.  `with_` gives a changed copy.
     """
 
-    format: Literal[1] = Field(description="Version of the file format.")
+    format: Version = Field(description="Version of the file format.")
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")] = Field(
         description="Short name; result folders take theirs from it."
     )

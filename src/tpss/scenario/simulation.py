@@ -46,6 +46,12 @@ class Simulation(Part):
         "effort below the limit, coasting up to 5 km/h above it, braking beyond.",
     )
 
+    braking: Literal["whole-steps", "within-step"] = Field(
+        default="whole-steps",
+        description="Braking to a stop in whole steps (the thesis), or at the last moment, which may "
+        "lie within a step, as may the stop: that makes long steps accurate.",
+    )
+
     @model_validator(mode="after")
     def _one_way_to_end(self) -> Self:
         if self.until is not None and self.duration_min is not None:

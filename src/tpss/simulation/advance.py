@@ -7,7 +7,17 @@ from tpss.simulation.converter_control import control_converters, note_loading
 from tpss.simulation.coupling import solve_step
 from tpss.simulation.driver import prepare
 from tpss.simulation.record import record_instant, record_network, record_train
-from tpss.simulation.state import DWELLING, Counter, Model, Recording, State, Status
+from tpss.simulation.state import (
+    DWELLING,
+    EVEN,
+    LATEST,
+    Counter,
+    Model,
+    Recording,
+    State,
+    Status,
+)
+from tpss.simulation.stopping import move_on_course
 from tpss.simulation.traffic import depart, list_trains, move, remove_arrived
 
 
@@ -87,7 +97,11 @@ def end_step(
         record_network(step, model, state, recording)
         note_loading(model, state)
     for k in range(count):
-        move(step, state.trains[state.flow.standing[k].train], model, state)
+        train = state.trains[state.flow.standing[k].train]
+        if train.course == LATEST or train.course == EVEN:
+            move_on_course(step, train, model, state)
+        else:
+            move(step, train, model, state)
     studied = model.options.studied_train
     if studied >= 0 and state.trains[studied].arrival_step == step + 1:
         return Status.FINISHED

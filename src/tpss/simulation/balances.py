@@ -22,6 +22,7 @@ from tpss.simulation.state import (
     STATE_BRAKING,
     STATE_COASTING,
     STATE_MOTORING,
+    WITHIN_STEP,
     Model,
     Recording,
 )
@@ -272,7 +273,9 @@ def _audit_train(
     if force > 0.0:
         rotor = max(-force, kind.rotor_mass_kg * before.acceleration)
     opposing = before.running_resistance + before.gradient_force + before.braking_force
-    if way_m > 0.0:
+    if before.holding_time > 0.0:
+        figures.moving_j += _braking_work(before, after.speed, kind, h)
+    elif way_m > 0.0:
         figures.moving_j += (rotor + opposing) * way_m
     kinetic = kind.inertia_kg / 2.0 * (after.speed * after.speed - before.speed * before.speed)
     figures.kinetic_j += kinetic
@@ -282,13 +285,52 @@ def _audit_train(
 
 
 @inlined
+def _braking_work(before: Any, next_speed_m_s: float, kind: Any, step_s: float) -> float:
+    """Work of resistances and brakes in a step that holds the speed, then brakes. [J]
+
+    As `tpss.results.audit_of_braking.braking_work`.
+    """
+    v, hold_s = before.speed, before.holding_time
+    brake_s = (v - next_speed_m_s) / kind.highest_retardation_m_s2
+    impulse_ns = step_s * (before.running_resistance + before.gradient_force)
+    resistance_n = impulse_ns / (hold_s + brake_s)
+    holding_ns = max(0.0, -resistance_n) * hold_s
+    stopping_ns = before.braking_force * step_s - holding_ns
+    while_holding = (resistance_n * hold_s + holding_ns) * v
+    return while_holding + (resistance_n * brake_s + stopping_ns) * (v + next_speed_m_s) / 2.0
+
+
+@inlined
+def _braking_motion_error(before: Any, after: Any, kind: Any, step_s: float) -> float:
+    """Difference between a step's way and that of its speeds, where trains brake within steps. [m]
+
+    As `tpss.results.audit_of_braking.braking_motion_error_m`.
+    """
+    v, w, hold_s = before.speed, after.speed, before.holding_time
+    way_m = after.position - before.position
+    brake_s = (v - w) / kind.highest_retardation_m_s2
+    uniform_m = step_s * (v + w) / 2.0
+    if hold_s > 0.0:
+        over_s = hold_s + brake_s - step_s
+        over_s = abs(over_s) if w > 0.0 else max(0.0, over_s)
+        return abs(way_m - v * hold_s - (v + w) / 2.0 * brake_s) + v * over_s
+    if w == 0.0 and v > 0.0:
+        shortest_m = min(uniform_m, v / 2.0 * brake_s)
+        return way_m - min(max(way_m, shortest_m), uniform_m)
+    return way_m - uniform_m
+
+
+@inlined
 def _audit_motion(
     step: int, i: int, kind: Any, model: Model, recording: Recording, figures: Any
 ) -> None:
     """Note how far a train is off the equations of force and motion in a step."""
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = model.options.step_s
-    way = after.position - before.position - h * (before.speed + after.speed) / 2.0
+    if model.options.braking == WITHIN_STEP:
+        way = _braking_motion_error(before, after, kind, h)
+    else:
+        way = after.position - before.position - h * (before.speed + after.speed) / 2.0
     figures.motion_error_m = worst(figures.motion_error_m, way)
     change = after.speed - before.speed - h * before.acceleration
     figures.motion_error_m = worst(figures.motion_error_m, change * h)

@@ -13,7 +13,8 @@ from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
-from tpss.simulation.state import DWELLING, Model, State
+from tpss.simulation.state import DWELLING, EVEN, LATEST, Model, State
+from tpss.simulation.stopping import settle_course
 from tpss.simulation.traffic import begin_plan, must_plan
 
 
@@ -97,6 +98,8 @@ def settle(train: Any, model: Model) -> None:
     train.braking_force_n = 0.0
     if train.phase == DWELLING:
         train.next_speed_m_s = 0.0
+    elif train.course == LATEST or train.course == EVEN:
+        settle_course(train, kind, model.options.step_s)
     elif force >= wanted or wanted <= 0.0:
         train.next_speed_m_s = train.target_speed_m_s
         train.braking_force_n = max(0.0, -wanted)

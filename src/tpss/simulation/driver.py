@@ -6,6 +6,7 @@ from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
 from tpss.driving.speed_limits import heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
+from tpss.driving.within_step import highest_speed_that_stops_within
 from tpss.kernel import inlined, kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
@@ -21,7 +22,16 @@ from tpss.physics.running_resistance import (
     gradient_force,
     running_resistance,
 )
-from tpss.simulation.state import AGGRESSIVE, DRIVING, DWELLING, PLANNED, Model
+from tpss.simulation.state import (
+    AGGRESSIVE,
+    DRIVING,
+    DWELLING,
+    PLANNED,
+    USUAL,
+    WITHIN_STEP,
+    Model,
+)
+from tpss.simulation.stopping import steer_to_stop
 from tpss.simulation.traffic import distance_to_stop
 
 
@@ -64,7 +74,10 @@ def target_speed(train: Any, kind: Any, model: Model) -> float:
             target = aggressive_speed(train.speed_m_s, target, fastest, coasting, slowest)
         if train.speed_m_s < target / 2.0:
             room_m = distance_to_stop(train, model)
-            most = highest_speed_that_stops(train.speed_m_s, room_m, retardation, h)
+            if model.options.braking == WITHIN_STEP:
+                most = highest_speed_that_stops_within(train.speed_m_s, room_m, retardation, h)
+            else:
+                most = highest_speed_that_stops(train.speed_m_s, room_m, retardation, h)
             if most >= 2.0 * train.speed_m_s:
                 target = min(target, most)
         target = min(target, train.speed_m_s + kind.highest_acceleration_m_s2 * h)
@@ -111,6 +124,23 @@ def oppose(train: Any, kind: Any, model: Model) -> None:
     train.resistance_n = train.running_resistance_n + train.gradient_force_n
 
 
+@inlined
+def aim_uniformly(train: Any, kind: Any, model: Model) -> None:
+    """Set the target of a train for a step of constant acceleration, and the force that it takes."""
+    options = model.options
+    by_rule = options.driver == AGGRESSIVE and train.phase == DRIVING
+    target = target_speed(train, kind, model)
+    a = wanted_acceleration(train.speed_m_s, target, options.step_s)
+    wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
+    if by_rule:
+        fastest, coasting = fastest_and_coasting(train, kind, options.step_s)
+        wanted = aggressive_force(target, fastest, coasting, wanted, FULL_EFFORT_N)
+    allowed = wanted if wanted == FULL_EFFORT_N else min(wanted, train.adhesion_n)
+    train.force_cap_n = max(0.0, allowed)
+    train.target_speed_m_s = target
+    train.wanted_force_n = wanted
+
+
 @kernel
 def aim(train: Any, model: Model) -> None:
     """Set the target of a train, and the force that adhesion and driver allow at most.
@@ -126,17 +156,11 @@ def aim(train: Any, model: Model) -> None:
     if train.phase != DWELLING:
         speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
         train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
-        by_rule = options.driver == AGGRESSIVE and train.phase == DRIVING
-        target = target_speed(train, kind, model)
-        a = wanted_acceleration(train.speed_m_s, target, options.step_s)
-        wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
-        if by_rule:
-            fastest, coasting = fastest_and_coasting(train, kind, options.step_s)
-            wanted = aggressive_force(target, fastest, coasting, wanted, FULL_EFFORT_N)
-        allowed = wanted if wanted == FULL_EFFORT_N else min(wanted, train.adhesion_n)
-        train.force_cap_n = max(0.0, allowed)
-        train.target_speed_m_s = target
-        train.wanted_force_n = wanted
+        on_course = False
+        if train.phase == PLANNED and options.braking == WITHIN_STEP:
+            on_course = steer_to_stop(train, kind, model)
+        if not on_course:
+            aim_uniformly(train, kind, model)
     prove_free_band(kind, train)
     note_cap(kind, train)
 
@@ -151,6 +175,9 @@ def prepare(train: Any, model: Model) -> None:
     """
     kind, options = model.types[train.train_type], model.options
     train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
+    train.driven_share = train.moving_share = 1.0
+    train.hold_s = 0.0
+    train.course = USUAL
     take_speed(train.voltage_v, kind, train, model.machine[0], model.points)
     oppose(train, kind, model)
     aim(train, model)

@@ -7,6 +7,7 @@ from typing import Any
 from tpss.kernel import inlined, kernel
 from tpss.physics.curve import outside_curve
 from tpss.physics.locomotive import (
+    machine_force,
     motor_state,
     train_armature_current,
 )
@@ -57,9 +58,9 @@ def state_code(train: Any) -> int:
     """Code of `train_state` of a train on the line."""
     if train.phase == DWELLING:
         return STATE_DWELLING
-    if train.force_n > 0.0:
-        return STATE_MOTORING
-    return STATE_BRAKING if train.braking_force_n > 0.0 else STATE_COASTING
+    if train.braking_force_n > 0.0:  # in a step that holds the speed first there is both
+        return STATE_BRAKING
+    return STATE_MOTORING if train.force_n > 0.0 else STATE_COASTING
 
 
 @inlined
@@ -75,15 +76,24 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n
     row.braking_force = train.braking_force_n
-    row.running_resistance = train.running_resistance_n
-    row.gradient_force = train.gradient_force_n
+    row.running_resistance = train.running_resistance_n * train.moving_share
+    row.gradient_force = train.gradient_force_n * train.moving_share
     row.motor_current = motor_current(current, kind.current_model)
     row.pantograph_voltage = train.voltage_v
     row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
     row.active_power = train.active_power_w
     row.reactive_power = train.reactive_power_var
+    row.holding_time = train.hold_s
     if train.force_cap_n > 0.0:
         count_limits(train, kind, model, recording.counters)
+
+
+@inlined
+def current_limits(train: Any, kind: Any) -> bool:
+    """Whether a limit of the line current is what keeps a train below wish and machine."""
+    machine_n = max(0.0, train.machine_force_n)
+    rim_n = machine_force(machine_n, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
+    return bool(train.wheel_force_n < min(train.force_cap_n, max(0.0, rim_n)))
 
 
 @inlined
@@ -94,6 +104,8 @@ def count_limits(train: Any, kind: Any, model: Model, counters: Indices) -> None
         counters[Counter.EFFORT_EXTRAPOLATED] += 1
     if train.machine_force_n < 0.0:
         counters[Counter.EFFORT_CLIPPED] += 1
+    if kind.highest_line_current_a < math.inf and current_limits(train, kind):
+        counters[Counter.CURRENT_LIMITED] += 1
     if train.force_n <= 0.0:
         return
     if outside_curve(speed, kind.efficiency, model.points):

@@ -78,6 +78,8 @@ class Outcome:
     trains: tuple[Train, ...]
     studied_train: int
     arrival_step: np.ndarray
+    stood_s: np.ndarray
+    """Time that each train stood at its destination before the instant of its arrival. [s]"""
     recording: Recording
     state: State
 
@@ -422,6 +424,7 @@ def _outcome(run: Run, status: str, studied: int) -> Outcome:
         trains=tuple(run.trains[:count]),
         studied_train=studied if studied < count else -1,
         arrival_step=run.state.trains.arrival_step[:count].copy(),
+        stood_s=run.state.trains.stood_s[:count].copy(),
         recording=recording,
         state=run.state,
     )

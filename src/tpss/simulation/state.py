@@ -39,6 +39,16 @@ GONE = 5
 REGULATED = 0
 AGGRESSIVE = 1
 
+# Braking to stops.
+WHOLE_STEPS = 0
+WITHIN_STEP = 1
+
+# Course of a train in a step, where it brakes within steps.
+USUAL = 0
+LATEST = 1
+EVEN = 2
+LIMIT_FIRST = 3
+
 # Codes of `train_state` in the result.
 ABSENT = -1
 STATE_WAITING = 0
@@ -69,6 +79,11 @@ TRAIN = np.dtype(
         ("plan_first", float),
         ("plan_full", np.int64),
         ("plan_last", float),
+        ("course", np.int64),  # braking within steps; the next three are of the present step
+        ("hold_s", float),  # at constant speed
+        ("brake_s", float),  # then braking
+        ("moving_share", float),  # of the step; the train stands for the rest
+        ("stood_s", float),  # at its destination, before the instant of its arrival
         ("voltage_v", float),  # at the pantograph, in this step or the one before
         ("target_speed_m_s", float),  # what the driver wants after this step
         ("wanted_force_n", float),
@@ -108,6 +123,7 @@ class Counter(IntEnum):
     POWER_FACTOR_EXTRAPOLATED = 4
     SHORT_PIECE = 5
     EFFICIENCY_EXTRAPOLATED = 6
+    CURRENT_LIMITED = 7
 
 
 class Profile(NamedTuple):
@@ -127,6 +143,8 @@ class Options(NamedTuple):
     rail: int
     driver: int
     """`REGULATED`, or `AGGRESSIVE` as in the original program."""
+    braking: int
+    """To stops: `WHOLE_STEPS`, or `WITHIN_STEP`."""
     fixed_voltage_v: float
     """Voltage at every pantograph without a load flow, or 0 for the coupled simulation."""
     studied_train: int
@@ -168,12 +186,16 @@ TRAIN_ROW = np.dtype(
         for name in (
             "position", "speed", "acceleration", "tractive_force", "braking_force",
             "running_resistance", "gradient_force", "motor_current", "pantograph_voltage",
-            "pantograph_angle", "active_power", "reactive_power",
+            "pantograph_angle", "active_power", "reactive_power", "holding_time",
         )
     ],
     align=True,
 )  # fmt: skip
-"""What is recorded of a train at an instant and over the interval that follows."""
+"""What is recorded of a train at an instant and over the interval that follows.
+
+Of an interval in which forces change these are the means; `holding_time` [s], at constant speed before
+the brakes, is there for the audit.
+"""
 
 NODE_ROW = np.dtype([("node_voltage", float), ("node_angle", float)], align=True)
 

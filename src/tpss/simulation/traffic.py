@@ -4,16 +4,23 @@ from typing import Any
 
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
 from tpss.driving.speed_limits import SLACK_M
+from tpss.driving.within_step import braking_distance
 from tpss.kernel import inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
     ARRIVED,
     DRIVING,
     DWELLING,
+    EVEN,
     GONE,
+    LATEST,
+    LIMIT_FIRST,
     PENDING,
     PLANNED,
+    USUAL,
+    WITHIN_STEP,
     Model,
+    Options,
     State,
 )
 
@@ -40,7 +47,7 @@ def is_on_line(phase: int) -> bool:
     return phase in (DRIVING, PLANNED, DWELLING)
 
 
-@inlined
+@kernel
 def list_trains(trains: Any, flow: Flow) -> int:
     """Bring the trains on the line to the front of `flow.standing`, in the order in which they stood
     there; return their number.
@@ -62,25 +69,47 @@ def distance_to_stop(train: Any, model: Model) -> float:
 
 
 @inlined
+def least_room(speed_m_s: float, retardation_m_s2: float, options: Options) -> float:
+    """Shortest way in which a train stops, by the choice of `Options.braking`. [m]
+
+    A plan in whole steps makes up for a rounding; braking within steps begins in time for any.
+    """
+    if options.braking == WITHIN_STEP:
+        return braking_distance(speed_m_s, retardation_m_s2)
+    return shortest_stop(speed_m_s, retardation_m_s2, options.step_s) - SLACK_M
+
+
+@inlined
 def must_plan(train: Any, model: Model) -> bool:
     """Whether this step, driven as it is, would leave a train too little way to stop.
+
+    Or whether a train that is to hold its speed before it brakes cannot do so.
 
     References
     ----------
     [Boullanger2009]_, ``final_brake`` of figure 3-7.
     """
-    if train.phase != DRIVING or train.speed_m_s <= 0.0:
+    if train.course == LATEST:
+        return train.force_n < train.wanted_force_n * train.driven_share  # it cannot hold its speed
+    if train.phase != DRIVING or train.course == LIMIT_FIRST or train.speed_m_s <= 0.0:
         return False
-    h = model.options.step_s
+    h, speed = model.options.step_s, max(train.next_speed_m_s, 0.0)
     way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
     retardation = model.types[train.train_type].highest_retardation_m_s2
-    needed_m = shortest_stop(max(train.next_speed_m_s, 0.0), retardation, h)
-    return distance_to_stop(train, model) - way_m < needed_m - SLACK_M
+    needed_m = least_room(speed, retardation, model.options)
+    return distance_to_stop(train, model) - way_m < needed_m
 
 
 @kernel
 def begin_plan(train: Any, model: Model) -> None:
-    """Put a train on its braking plan, from its present speed and position."""
+    """Put a train on its braking plan, from its present speed and position.
+
+    Within steps, one that cannot hold its speed before it brakes is to brake evenly.
+    """
+    if model.options.braking == WITHIN_STEP:
+        train.course = EVEN if train.course == LATEST else USUAL
+        train.phase = PLANNED
+        return
     hold, first, full, last = braking_plan(
         train.speed_m_s,
         distance_to_stop(train, model),
@@ -122,7 +151,7 @@ def move(step: int, train: Any, model: Model, state: State) -> None:
         stand_at_stop(step + 1, train, model)
 
 
-@inlined
+@kernel
 def stand_at_stop(step: int, train: Any, model: Model) -> None:
     """A train has come to its stop: it has arrived, dwells, or goes on at once."""
     stop = model.stops[train.route, train.next_stop]

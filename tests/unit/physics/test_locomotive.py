@@ -34,6 +34,7 @@ from tpss.kernel import blank_records, records
 from tpss.model.curves import CurveBook
 from tpss.model.trains import build_machine
 from tpss.physics.adhesion import WET, adhesion_limit
+from tpss.physics.bridge import train_bridge_sine
 from tpss.physics.locomotive import (
     DEMAND,
     FULL_EFFORT_N,
@@ -48,7 +49,6 @@ from tpss.physics.locomotive import (
     prove_free_band,
     take_speed,
     train_armature_current,
-    train_bridge_sine,
     wheel_force,
 )
 from tpss.physics.machine import NETWORK
@@ -72,6 +72,7 @@ FREIGHT = {
     "rotor_mass_kg": 10_750.0,
     "slip_factor": 1.0,
     "highest_current_a": 1250.0,
+    "highest_line_current_a": math.inf,
     "effort_model": NETWORK,
     "efficiency": EFFICIENCY,
     "auxiliary_power_w": 151_500.0,
@@ -90,12 +91,13 @@ def freight(**changes):
     return records([tuple(values.get(name, 0.0) for name in names)], TRAIN_TYPE)[0]
 
 
-def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, kind=None):
+def demand(cap_n, speed_kmh=60.0, mean_over_s=0.0, resistance_n=RESISTANCE_N, kind=None, share=1.0):
     """A train in a step; the machine's limit is evaluated at every voltage."""
     train = blank_records(1, DEMAND)[0]
     train.force_cap_n, train.resistance_n, train.adhesion_n = cap_n, resistance_n, NO_LIMIT_N
     train.speed_m_s, train.mean_speed_weight_s = speed_kmh / 3.6, mean_over_s / 2.0
     train.taken_speed_m_s = train.free_band_v = -1.0
+    train.driven_share = share
     take_speed(15e3, kind or freight(), train, MACHINE, POINTS)
     note_cap(kind or freight(), train)
     return train
@@ -287,6 +289,19 @@ def test_slopes_of_the_demand_are_those_over_voltage(
     reactive = central_difference(lambda v: drawn(v)[1], voltage_v, 0.1)
     assert active_slope == pytest.approx(active, rel=1e-6, abs=1e-6)
     assert reactive_slope == pytest.approx(reactive, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("cap_n", [6e4, NO_LIMIT_N], ids=["wanted", "limit"])
+@pytest.mark.parametrize("reactive_model", [POWER_FACTOR, DOUBLE_BRIDGE], ids=["factor", "bridge"])
+def test_motors_that_work_for_a_third_of_the_step_draw_a_third(as_run, reactive_model, cap_n):
+    """Of power, of reactive power by power factor or current, and of their slopes over voltage."""
+    kind = freight(reactive_model=reactive_model)
+    whole, third = (
+        np.array(as_run(electrical_demand)(14.2e3, kind, demand(cap_n, share=share), MACHINE))
+        for share in (1.0, 1.0 / 3.0)
+    )
+    idle = np.array([151_500.0, 113_625.0, 0.0, 0.0])
+    assert third - idle == pytest.approx((whole - idle) / 3.0, rel=1e-9)
 
 
 @pytest.mark.parametrize(("mean_over_s", "power_w"), [(0.0, 2_819_503), (60.0, 3_210_607)])

@@ -11,7 +11,6 @@ import pytest
 from tpss.model.trains import build_machine
 from tpss.physics.neural_network import NEURONS
 from tpss.physics.reactive_power import (
-    TRANSFORMER_RATIO,
     bridge_outside_training,
     bridge_reactive_power,
     bridge_sine,
@@ -116,9 +115,11 @@ def test_auxiliaries_draw_113_6_kilovar(as_run):
 
 
 def test_filter_feeds_600_kilovar_at_16_kilovolt(as_run):
-    reactive = as_run(filter_reactive_power)(16e3 * TRANSFORMER_RATIO, -0.45)
+    """(16 kV · 487/15000)² / 0.45 Ω, and twice that over 16 kV for each volt."""
+    reactive, slope = as_run(filter_reactive_power)(16e3, -0.45)
     assert reactive == pytest.approx(-599_657, abs=1.0)
+    assert slope == pytest.approx(2 * reactive / 16e3)
 
 
 def test_an_infinite_reactance_is_no_filter(as_run):
-    assert as_run(filter_reactive_power)(487.0, np.inf) == 0.0
+    assert as_run(filter_reactive_power)(15e3, np.inf) == (0.0, 0.0)

@@ -12,7 +12,7 @@
     modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
   };
   const PRINTED = { width: 680, height: 370 }; // two plots a page
-  const BLUE = "#0072B2", RED = "#D55E00";
+  const RED = "#D55E00";
 
   // ---- plots, and a cursor of time in all that are drawn over time
 
@@ -28,6 +28,11 @@
     layout.shapes.push({
       type: "line", xref: "x", yref: "paper", x0: 0, x1: 0, y0: 0, y1: 1,
       line: { color: "#000000", width: 1.5, dash: "dot" }, visible: false,
+    });
+    const skipped = div.id === "graph"; // black paths over the map of voltages
+    colours.set(div, {
+      layout: coloursIn(layout, "", []),
+      traces: data.map(({ line, marker }) => (skipped ? [] : coloursIn({ line, marker }, "", []))),
     });
     return Plotly.newPlot(div, data, layout, CONFIG).then(() => {
       div.classList.add("drawn");
@@ -85,25 +90,48 @@
     return { name: train.name, km: between(train.km), kmh: between(train.kmh), kv: train.kv[k] };
   }
 
-  function showMoment(step) {
-    const minutes = step * run.step_min;
-    const there = run.trains.map((train) => trainAt(train, step)).filter((t) => t && t.kv !== null);
-    const beyond = there.map((t) => t.kv < run.low_kv || t.kv > run.high_kv);
+  const shown = (colour) => (isDark && DARK[colour]) || colour;
+
+  // Trains of a run at a time: what its traces show, and what is said of them.
+  function momentOf(each, minutes, single, colour, symbol) {
+    const step = Math.floor(minutes / each.step_min + 1e-6);
+    const there = each.trains.map((train) => trainAt(train, step)).filter((t) => t && t.kv !== null);
+    const beyond = there.map((t) => t.kv < each.low_kv || t.kv > each.high_kv);
     const label = (t) =>
       `${t.name}<br>${t.km.toFixed(2)} km, ${t.kmh.toFixed(1)} km/h<br>${t.kv.toFixed(2)} kV`;
-    const points = {
-      x: [there.map((t) => t.km)], y: [there.map((t) => t.kv)], text: [there.map(label)],
-      "marker.symbol": [beyond.map((b) => (b ? "triangle-down" : "circle"))],
-      "marker.color": [beyond.map((b) => (b ? RED : BLUE))],
+    const lowest = there.reduce((a, b) => (a && a.kv <= b.kv ? a : b), null);
+    const said = !lowest ? "No train is on the line." :
+      `${there.length} train${there.length > 1 ? "s" : ""} on the line; lowest voltage ` +
+      `${lowest.kv.toFixed(2)} kV, ${lowest.name} at ${lowest.km.toFixed(1)} km.`;
+    return {
+      x: there.map((t) => t.km), y: there.map((t) => t.kv), text: there.map(label),
+      symbol: beyond.map((b) => (b ? "triangle-down" : symbol)),
+      color: beyond.map((b) => (b && single ? RED : colour)),
+      said: single ? said : `${each.label}: ${said}`,
     };
-    Plotly.restyle("moment", points, [plots.moment.data.length - 1]);
+  }
+
+  // The last traces of the plot hold the trains, one a run; plotly changes what they say.
+  const traces = slider ? plots[run.plot].data.length - run.runs.length : 0;
+  const marks = slider ? plots[run.plot].data.slice(traces).map(({ marker }) => ({ ...marker })) : [];
+
+  function showMoment(step) {
+    const minutes = step * run.step_min, single = run.runs.length === 1;
+    const moments = run.runs.map((each, k) =>
+      momentOf(each, minutes, single, shown(marks[k].color), marks[k].symbol));
+    const all = (name) => moments.map((moment) => moment[name]);
+    Plotly.restyle(run.plot, {
+      x: all("x"), y: all("y"), text: all("text"),
+      "marker.symbol": all("symbol"), "marker.color": all("color"),
+    }, moments.map((_, k) => traces + k));
     const text = `${minutes.toFixed(2)} min`;
     element("now").textContent = text;
     slider.setAttribute("aria-valuetext", text);
-    const lowest = there.reduce((a, b) => (a && a.kv <= b.kv ? a : b), null);
-    element("state").textContent = !lowest ? "No train is on the line." :
-      `${there.length} train${there.length > 1 ? "s" : ""} on the line; lowest voltage ` +
-      `${lowest.kv.toFixed(2)} kV, ${lowest.name} at ${lowest.km.toFixed(1)} km.`;
+    element("state").replaceChildren(...moments.map((moment) => {
+      const line = document.createElement("p");
+      line.textContent = moment.said;
+      return line;
+    }));
     const chosen = chosenTrain();
     if (chosen) {
       const now = trainAt(chosen, step);
@@ -128,11 +156,46 @@
     button.setAttribute("aria-pressed", String(Boolean(playing)));
   }
 
+  // ---- dark pages
+
+  // Light colours of plots by their dark ones.  The map of voltages has a scale of its own.
+  const DARK = {
+    "#FFFFFF": "#15181D", "#1a1a1a": "#E6E6E6", "#DDDDDD": "#33383F", "#666666": "#9AA0A8",
+    "#999999": "#6B7178", "#444444": "#C0C4CA", "#000000": "#E6E6E6", "#0072B2": "#4BA3DB",
+  };
+
+  // Every colour of a figure that has a dark one, as the path by which plotly changes it.
+  function coloursIn(part, path, found) {
+    for (const [key, value] of Object.entries(part || {})) {
+      const place = Array.isArray(part) ? `${path}[${key}]` : path ? `${path}.${key}` : key;
+      if (typeof value === "string" && DARK[value]) found.push([place, value]);
+      else if (value && typeof value === "object" && !ArrayBuffer.isView(value))
+        coloursIn(value, place, found);
+    }
+    return found;
+  }
+
+  const colours = new Map(); // plot -> colours of its layout, and of each trace
+  let isDark = false;
+
+  function paint(dark) {
+    if (dark === isDark) return;
+    isDark = dark;
+    const shade = (pairs) =>
+      Object.fromEntries(pairs.map(([path, light]) => [path, dark ? DARK[light] : light]));
+    for (const div of divs) {
+      const { layout, traces: each } = colours.get(div);
+      each.forEach((pairs, k) => { if (pairs.length) Plotly.restyle(div, shade(pairs), [k]); });
+      Plotly.relayout(div, shade(layout));
+    }
+    if (slider) showMoment(+slider.value);
+  }
+
   // ---- the journey of a train
 
   function chosenTrain() {
     const select = element("train");
-    return select && run.trains[select.selectedIndex];
+    return select && run.runs[0].trains[select.selectedIndex];
   }
 
   function timeAt(km) {
@@ -142,15 +205,22 @@
     return k < 0 ? null : train.step[k] * run.step_min;
   }
 
+  // The gradient holds from its place to the next one's; before the first, the first.
+  function gradientAt(km) {
+    const profile = run.runs[0].gradients;
+    return profile[Math.max(0, profile.findLastIndex(([from]) => from <= km))][1];
+  }
+
   function showJourney() {
     const train = chosenTrain(), against = element("against").value;
     const x = against === "time" ? train.step.map((k) => k * run.step_min) : train.km;
     const div = element("journey");
-    Plotly.restyle(div, { x: [x, x], y: [train.kmh, train.kv], name: train.name }, [0, 1]);
+    const y = [train.kmh, train.kv, train.km.map(gradientAt)];
+    Plotly.restyle(div, { x: [x, x, x], y, name: train.name }, [0, 1, 2]);
     Plotly.relayout(div, {
       meta: against,
-      "xaxis2.title.text": against === "time" ? "time [min]" : "position [km]",
-      "xaxis.autorange": true, "xaxis2.autorange": true,
+      "xaxis3.title.text": against === "time" ? "time [min]" : "position [km]",
+      "xaxis.autorange": true, "xaxis2.autorange": true, "xaxis3.autorange": true,
     });
     showMoment(+slider.value);
   }
@@ -189,15 +259,20 @@
   for (const button of document.querySelectorAll(".csv"))
     button.addEventListener("click", () => download(button));
 
-  // ---- on paper every plot has the width of the page
+  // ---- on paper every plot is light, and has the width of the page
+
+  const wishes = matchMedia("(prefers-color-scheme: dark)");
+  wishes.addEventListener("change", () => paint(wishes.matches));
 
   addEventListener("beforeprint", () => {
+    paint(false);
     for (const div of divs) {
       const height = Math.min(PRINTED.height, heights.get(div));
       Plotly.relayout(div, { width: PRINTED.width, height });
     }
   });
   addEventListener("afterprint", () => {
+    paint(wishes.matches);
     for (const div of divs)
       Plotly.relayout(div, { width: null, autosize: true, height: heights.get(div) });
   });
@@ -210,6 +285,7 @@
         element(id).addEventListener("change", showJourney);
       setTime(0);
     }
+    paint(wishes.matches);
     document.body.dataset.ready = "true";
   });
 })();

@@ -86,7 +86,7 @@ def find_excursions(dataset: xr.Dataset, limits: VoltageLimits) -> list[Excursio
 
 def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
     voltage, h = step_values(dataset, "pantograph_voltage"), step_s(dataset) / 60.0
-    position_km, names = dataset.position.to_numpy() / 1e3, dataset.train.to_numpy()
+    position_m, names = dataset.position.to_numpy(), dataset.train.to_numpy()
     for train, begin, end in _spells(bound.is_beyond(voltage)):
         within = voltage[begin:end, train]
         worst = begin + int(within.argmin() if bound.side == "below" else within.argmax())
@@ -98,10 +98,10 @@ def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
             to_min=end * h,
             duration_min=(end - begin) * h,
             cut=begin == 0 or end == len(voltage),
-            from_km=float(position_km[begin, train]),
-            to_km=float(position_km[end, train]),
+            from_km=float(position_m[begin, train]) / 1e3,
+            to_km=float(position_m[end, train]) / 1e3,
             extreme_kv=float(voltage[worst, train]) / 1e3,
-            extreme_km=float(position_km[worst, train]),
+            extreme_km=float(position_m[worst, train]) / 1e3,
             extreme_min=worst * h,
             allowed_min=bound.allowed_min,
             violation=_is_too_long(end - begin, bound, h),
@@ -110,6 +110,8 @@ def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
 
 def _spells(beyond: npt.NDArray[np.bool_]) -> list[tuple[int, int, int]]:
     """Column, first row and row after the last of every unbroken run of true values."""
+    if not beyond.any():  # as on most lines
+        return []
     change = np.diff(np.pad(beyond, ((1, 1), (0, 0))).astype(np.int8), axis=0).T
     begins, ends = np.argwhere(change == 1), np.argwhere(change == -1)
     return [

@@ -71,12 +71,16 @@ def highest_means(values: Floats, width: float) -> tuple[Floats, Floats]:
     steps, columns = values.shape
     if steps == 0 or width > steps + TOLERANCE:
         return np.full(columns, np.nan), np.full(columns, np.nan)
+    integral, whole = integrals(values), round(width)
+    if abs(width - whole) <= TOLERANCE:  # both ends meet instants together
+        areas = integral[whole:] - integral[:-whole]
+        first = areas.argmax(axis=0)
+        return areas[first, np.arange(columns)] / whole, first.astype(float)
     width = min(width, float(steps))
     instants = np.arange(steps + 1.0)
     begins = np.concatenate([instants, instants - width])
     begins = np.unique(begins[(begins >= -TOLERANCE) & (begins + width <= steps + TOLERANCE)])
     begins = np.clip(begins, 0.0, steps - width)
-    integral = integrals(values)
     areas = between_instants(integral, begins + width) - between_instants(integral, begins)
     first = areas.argmax(axis=0)
     return areas[first, np.arange(columns)] / width, begins[first]

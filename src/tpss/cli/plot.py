@@ -1,0 +1,93 @@
+"""The command ``tpss plot``."""
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from tpss.errors import ResultError
+from tpss.results.contents import FIGURE_NAMES, FIGURES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALL = "all"
+FORMATS = ("png", "svg", "pdf")
+
+DOTS_PER_INCH = 200
+"""Of png files; the others have no dots."""
+
+
+def plot_result(
+    folder: Path,
+    figure: str,
+    train: str | None,
+    against: Literal["time", "distance"],
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Write a figure of a result, or all of them, and say where they are.
+
+    Raises
+    ------
+    ResultError
+        The folder holds no result, there is no such figure or train, or nothing to draw, or the file
+        cannot be written.
+    """
+    from tpss.report.figures import catalogue
+    from tpss.results import store
+    from tpss.results.result import load_result
+
+    if figure != ALL:
+        catalogue.demand_figure(figure)
+    place, names = _target(folder, figure, out)
+    result = load_result(folder)
+    store.check_files(place, names.values(), force)
+    contents: dict[str, bytes] = {}
+    left_out: list[tuple[str, str]] = []
+    for name, file in names.items():
+        try:
+            drawn = catalogue.draw(name, result, train, against)
+        except catalogue.NothingToDrawError as error:
+            left_out.append((name, str(error)))
+            continue
+        contents[file] = _bytes(drawn, Path(file).suffix.removeprefix("."))
+    if not contents:
+        reasons = ", ".join(dict.fromkeys(reason for _, reason in left_out))
+        raise ResultError(f"{folder} ({result.status}) holds nothing to draw: {reasons}")
+    files = store.save_files(place, contents, force)
+    print(_said(place, files, figure))
+    for name, reason in left_out:
+        print(f"Left out {name}: {reason}")
+
+
+def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str, str]]:
+    """Folder to write into, and files in it by the names of their figures."""
+    if figure == ALL:
+        if out is not None and out.suffix.removeprefix(".").lower() in FORMATS:
+            raise ResultError(
+                f"{out} is one file, and all figures need a folder; give another --out"
+            )
+        return out or folder / FIGURES, {name: f"{name}.png" for name in FIGURE_NAMES}
+    file = out or folder / FIGURES / f"{figure}.png"
+    if file.suffix.removeprefix(".").lower() not in FORMATS:
+        raise ResultError(
+            f"{file} does not say its format; let it end in {', '.join(f'.{f}' for f in FORMATS)}"
+        )
+    if not file.parent.is_dir() and out is not None:
+        raise ResultError(f"{file} cannot be written: there is no folder {file.parent}")
+    return file.parent, {figure: file.name}
+
+
+def _bytes(figure: "Figure", kind: str) -> bytes:
+    file = io.BytesIO()
+    # Without its date the same result gives the same file.
+    undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind.lower()]
+    figure.savefig(file, format=kind.lower(), dpi=DOTS_PER_INCH, metadata=undated)
+    return file.getvalue()
+
+
+def _said(place: Path, files: Sequence[Path], figure: str) -> str:
+    if figure != ALL:
+        return f"Wrote {files[0]}"
+    return f"Wrote into {place}: {', '.join(file.name for file in files)}"

@@ -1,0 +1,55 @@
+"""The double bridges of a locomotive at a line voltage: reactive power for each ampere of the motors."""
+
+from typing import Any
+
+from tpss.kernel import inlined, kernel
+from tpss.physics.motor import NEW, line_voltage_factor, motor_voltage
+from tpss.physics.reactive_power import TRANSFORMER_RATIO, bridge_reactive_power, bridge_sine
+
+
+@inlined
+def train_bridge_sine(voltage_v: float, kind: Any, train: Any, machine: Any) -> tuple[float, float]:
+    """β, clipped to 0 ≤ β ≤ 1, and its slope over the line voltage. [1], [1/V]"""
+    motor_v = motor_voltage(
+        train.speed_m_s,
+        voltage_v,
+        kind.base_speed_m_s,
+        kind.highest_motor_voltage_v,
+        kind.voltage_model,
+    )
+    sine, by_motor, by_locomotive = bridge_sine(
+        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine, train.neurons
+    )
+    train.bridge_sine = sine
+    if sine <= 0.0:
+        return 0.0, 0.0
+    if sine >= 1.0:
+        return 1.0, 0.0
+    slope = by_locomotive * TRANSFORMER_RATIO
+    if kind.voltage_model != NEW and line_voltage_factor(voltage_v, kind.voltage_model) < 1.0:
+        slope += by_motor * motor_v / voltage_v
+    return sine, slope
+
+
+@kernel
+def bridge_ratio(voltage_v: float, kind: Any, train: Any, machine: Any) -> tuple[float, float]:
+    """Reactive power of the bridges over the motors' current at full line voltage, and its slope.
+
+    [var/A], [var/A/V]
+
+    Parameters
+    ----------
+    voltage_v : float
+        Voltage at the pantograph. [V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.19) and (F.24).
+    """
+    factor = line_voltage_factor(voltage_v, kind.voltage_model)
+    sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
+    unit = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, 1.0 / factor, 1.0)
+    slope = unit * sine_slope
+    if factor == 1.0:  # below the knee of the former voltage, current times voltage is constant
+        slope += unit * sine / voltage_v
+    return unit * sine, slope

@@ -1,0 +1,62 @@
+"""What TPSS writes into a result folder, and what others have put there."""
+
+from pathlib import Path
+
+from tpss.results.file_kinds import Kind
+
+DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
+
+REPORT = "report.html"
+REPORT_MARK, HEAD_BYTES = "TPSS report", 2_000
+"""What a report says of itself, within so many first bytes."""
+
+TABLES = "tables"
+"""Folder of exported tables, within that of the result."""
+
+TABLE_NAMES = (
+    "trips", "stations", "violations", "voltage", "excursions", "useful_voltage_zones",
+    "useful_voltage_trains", "energy", "energy_blocks", "station_power", "load_duration", "converters",
+    "losses", "branch_current", "trains",
+)  # fmt: skip
+WORKBOOK = "result.xlsx"
+
+FIGURES = "figures"
+"""Folder of figures, within that of the result."""
+
+FIGURE_NAMES = (
+    "time-distance", "journey", "voltage", "train-voltage", "stations", "converters", "energy",
+    "effort",
+)  # fmt: skip
+
+
+def carry_over(old: Path, new: Path) -> None:
+    """Move what others have put into a replaced result folder into the one in its place."""
+    for path in sorted(old.iterdir()):
+        if path.name in (TABLES, FIGURES) and path.is_dir() and not path.is_symlink():
+            for file in sorted(path.iterdir()):
+                if not is_ours(file, path.name):
+                    (new / path.name).mkdir(exist_ok=True)
+                    file.rename(new / path.name / file.name)
+        elif not is_ours(path):
+            path.rename(new / path.name)
+
+
+def is_ours(path: Path, folder: str = "") -> bool:
+    """Whether TPSS has written a file of a result folder, or of the folder of that name within it."""
+    if not path.is_file() or path.is_symlink():
+        return False
+    if folder == TABLES:
+        written = {WORKBOOK} | {f"{n}.{kind}" for n in TABLE_NAMES for kind in Kind}
+        return path.name in written
+    if folder == FIGURES:
+        return path.name in {f"{name}.png" for name in FIGURE_NAMES}
+    return path.name in (DATASET, SUMMARY, SCENARIO) or (path.name == REPORT and is_report(path))
+
+
+def is_report(file: Path) -> bool:
+    """Whether a file says of itself that it is a report."""
+    try:
+        with file.open("rb") as opened:
+            return REPORT_MARK.encode() in opened.read(HEAD_BYTES)
+    except OSError:
+        return False

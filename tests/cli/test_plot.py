@@ -1,0 +1,95 @@
+"""The command ``tpss plot``: files of figures, and requests that are refused."""
+
+import pytest
+
+from tpss.report.figures import FIGURES
+
+SHORT = ("--set", "simulation.duration_min=3", "--out", "demo", "--quiet")
+BEGINS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+
+
+@pytest.fixture
+def demo(tpss_command, short_file, tmp_path):
+    """A saved result."""
+    assert tpss_command("run", short_file, *SHORT).code == 0
+    return tmp_path / "demo"
+
+
+def test_all_figures_go_into_a_folder_of_the_result(tpss_command, demo):
+    said = tpss_command("plot", "demo")
+    assert (said.code, said.err) == (0, "")
+    assert said.out.startswith("Wrote into demo/figures: time-distance.png, journey.png")
+    written = {file.name for file in (demo / "figures").iterdir()}
+    assert written == {f"{name}.png" for name in FIGURES}
+
+
+@pytest.mark.parametrize("kind", BEGINS)
+def test_the_name_of_the_file_decides_its_format(tpss_command, demo, tmp_path, kind):
+    said = tpss_command("plot", "demo", "--figure", "journey", "--out", f"a.{kind}")
+    assert (said.code, said.out) == (0, f"Wrote a.{kind}")
+    assert (tmp_path / f"a.{kind}").read_bytes().startswith(BEGINS[kind])
+
+
+def test_the_same_result_gives_the_same_file(tpss_command, demo, tmp_path):
+    for name in ("a.pdf", "b.pdf"):
+        tpss_command("plot", "demo", "--figure", "energy", "--out", name)
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+
+
+def test_a_journey_against_time_differs_from_one_against_distance(tpss_command, demo, tmp_path):
+    for axis in ("time", "distance"):
+        said = tpss_command("plot", "demo", "--figure", "journey", "--against", axis,
+                            "--train", "eastbound 1", "--out", f"{axis}.svg")  # fmt: skip
+        assert said.code == 0
+    assert (tmp_path / "time.svg").read_bytes() != (tmp_path / "distance.svg").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (("--figure", "jurney"), "there is no figure 'jurney'; figures: time-distance, journey"),
+        (
+            ("--figure", "journey", "--train", "x"),
+            "there is no train 'x' on the line; trains: east",
+        ),
+        (("--figure", "energy", "--out", "a.jpg"), "a.jpg does not say its format; let it end in"),
+        (("--figure", "energy", "--out", "no/a.png"), "there is no folder no"),
+        (("--out", "a.png"), "a.png is one file, and all figures need a folder"),
+        (("--figure", "energy", "--out", "demo.svg"), "demo.svg exists already"),
+        (("--out", "demo.svg/x"), "demo.svg/x cannot be written"),
+    ],
+    ids=["figure", "train", "format", "folder", "one file", "there", "below a file"],
+)
+def test_what_cannot_be_done_is_said_and_nothing_is_written(
+    tpss_command, demo, tmp_path, asked, words
+):
+    (tmp_path / "demo.svg").write_text("mine")
+    before = sorted(tmp_path.iterdir())
+    said = tpss_command("plot", "demo", *asked)
+    assert (said.code, said.out) == (2, "")
+    assert words in said.err
+    assert sorted(tmp_path.iterdir()) == before
+    assert (tmp_path / "demo.svg").read_text() == "mine"
+
+
+def test_existing_figures_need_force(tpss_command, demo):
+    tpss_command("plot", "demo", "--figure", "energy")
+    assert tpss_command("plot", "demo", "--figure", "energy").code == 2
+    assert tpss_command("plot", "demo", "--figure", "energy", "--force").code == 0
+
+
+def test_where_no_train_runs_the_others_are_drawn_and_it_is_said(tpss_command, short_file):
+    late = ("--set", "traffic.0.first_departure_min=9")
+    assert tpss_command("run", short_file, *late, *SHORT).code == 0
+    said = tpss_command("plot", "demo")
+    assert said.code == 0
+    assert "Left out journey: no train was on the line" in said.out
+    refused = tpss_command("plot", "demo", "--figure", "journey")
+    assert refused.code == 2
+    assert "demo (finished) holds nothing to draw: no train was on the line" in refused.err
+
+
+def test_a_folder_without_a_result_is_refused(tpss_command):
+    said = tpss_command("plot", "nowhere")
+    assert said.code == 2
+    assert "nowhere is not a result folder" in said.err

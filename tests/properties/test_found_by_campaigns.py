@@ -1,0 +1,65 @@
+"""What campaigns of random scenarios have found, cut down to a small case that shows it."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tpss
+
+from properties.judge import judge_result
+from scenarios import short_line
+
+
+def standing(*kms: float) -> dict[str, Any]:
+    """Trains at rest, from the start."""
+    return {"traffic.0.initial_trains": [{"position_km": km, "speed_kmh": 0.0} for km in kms]}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_trains_a_metre_apart_on_a_line_of_ten_microohms_a_metre_pass_the_audit(seed):
+    """Voltages are rounded by 2⁻⁵² of them: through 10 µΩ that is 0.006 VA, and a train between two
+    such pieces is judged by four voltages."""
+    rng = np.random.default_rng(seed)
+    places = np.full(rng.integers(5, 20), rng.uniform(5.0, 9.0))
+    changes = {
+        "supply.catenary": {"r_ohm_per_km": 0.01, "x_ohm_per_km": 0.0},
+        "simulation.time_step_min": 0.01,
+        "simulation.duration_min": 1.0,
+        "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 5.0}],
+    }
+    judge_result(tpss.simulate(short_line({**changes, **standing(*places)})))
+
+
+def filtering_trains(share: float) -> tpss.Scenario:
+    """Eight idle trains with large filters, 130 km from the only converter, at a share of their load."""
+    converters = [{"name": "C", "position_km": 130.34, "type": "Q48/Q49", "converters": 1}]
+    return short_line(
+        {
+            "simulation.time_step_min": 0.01,
+            "simulation.duration_min": 0.01,
+            "line.length_km": 266.0,
+            "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 5.0}],
+            "supply.converter_stations": converters,
+            "simulation.power_sampling": "start",
+            "trains.freight.filter_reactance_ohm": -0.44 / share,
+            "trains.freight.auxiliary_power_kw": 151.5 * share,
+            **standing(*[0.0] * 7),
+        }
+    )
+
+
+def test_too_high_a_voltage_at_a_part_of_the_load_does_not_forbid_the_whole():
+    """On the path from zero load the voltage rises to 1.21 of its base, and falls again to 1.1996.
+
+    The other load flow follows it there without a turn: the root is no false one.
+    """
+    result = tpss.simulate(filtering_trains(1.0))
+    judge_result(result)
+    highest_v = float(result.dataset.pantograph_voltage[0].max())
+    assert highest_v == pytest.approx(19_792.7, abs=0.1)
+    part = tpss.simulate(filtering_trains(0.85))
+    assert part.status == "collapsed"
+    judge_result(part)
+    assert " at 0.00 km has 19.80 kV, the highest." in part.summary["problem"]
+    assert "filter_reactance_ohm" in part.summary["advice"]

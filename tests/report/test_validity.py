@@ -1,0 +1,36 @@
+"""A report says how far the trains that ran can be trusted, and nothing of others."""
+
+from tpss.report.validity import limits_of_validity
+
+from scenarios import run
+
+SHORT = {"simulation.duration_min": 1.0}
+LIMITS = {"trains.freight.tractive_effort": {"max_force_kn": 200.0, "max_power_kw": 2600.0},
+          "trains.freight.power_factor": 0.95}  # fmt: skip
+TABLE = {**LIMITS, "trains.freight.tractive_effort": {
+    "speed_kmh": [0, 120], "voltage_kv": [12, 16], "force_kn": [[200, 40], [220, 60]]}}  # fmt: skip
+
+
+def said(*changes):
+    return " ".join(limits_of_validity([run({**SHORT, **each}) for each in changes]))
+
+
+def test_networks_are_told_of_trains_that_have_them():
+    assert said({}).count("Rc4") == 1
+    assert "Rc4" not in said(LIMITS)
+    assert said({}, LIMITS).count("Rc4") == 1
+
+
+def test_a_table_has_its_own_range():
+    assert "a table for 0 to 120 km/h and 12 to 16 kV; beyond it the outer" in said(TABLE)
+
+
+def test_force_and_power_depend_on_the_voltage_or_do_not():
+    limited = {**LIMITS, "trains.freight.current_limitation": {"max_current_a": 300.0}}
+    assert "does not depend on the voltage" in said(LIMITS)
+    assert "does not depend on the voltage" not in said(limited)
+    assert "auxiliaries are never shed" in said(limited)
+
+
+def test_the_method_is_told_of_every_run():
+    assert "No transients" in said(LIMITS)

@@ -1,0 +1,82 @@
+"""Whole runs of trains whose current is limited at low voltage, on a line that sags."""
+
+import numpy as np
+import pytest
+
+from tpss.results.explain import warnings
+
+from scenarios import run
+
+WEAK = {
+    "traffic.0.headway_min": 3.0,
+    "simulation.duration_min": 25.0,
+    "supply.catenary": {"r_ohm_per_km": 0.3, "x_ohm_per_km": 0.35},
+    "supply.converter_stations": [
+        {"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 1}
+    ],
+    "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 100.0}],
+    "line.gradients": [{"from_km": 0.0, "permille": 5.0}],
+}
+MAX_A = 350.0
+LIMIT = {"trains.freight.current_limitation": {"max_current_a": MAX_A}}
+TRAINS = {
+    "network": {},
+    "table": {"tractive_effort": {"speed_kmh": [0, 40, 80, 160],
+                                  "force_kn": [240, 200, 120, 60]}, "power_factor": 0.9},
+    "limits": {"tractive_effort": {"max_force_kn": 240.0, "max_power_kw": 4000.0},
+               "power_factor": 0.95},
+    "bridge": {"reactive_power": "double-bridge"},
+}  # fmt: skip
+
+
+def on_weak_line(train, **more):
+    changes = {f"trains.freight.{name}": value for name, value in TRAINS[train].items()}
+    return run({**WEAK, **changes, **more})
+
+
+def allowed_a(voltage_v):
+    """The characteristic once more: 151.5 kW at 0.8 are 17.2 A at 11 kV, 14.25 kV the knee."""
+    auxiliaries_a = 151.5 / 0.8 / 11.0
+    return np.interp(voltage_v, [11e3, 14.25e3], [auxiliaries_a, MAX_A])
+
+
+@pytest.mark.parametrize("train", TRAINS)
+@pytest.mark.parametrize("sampling", ["mean", "start"])
+def test_the_limit_is_kept_at_every_step_and_met_where_it_holds(train, sampling):
+    """`run` asserts the audit and the rules of every run besides."""
+    result = on_weak_line(train, **LIMIT, **{"simulation.power_sampling": sampling})
+    data = result.dataset.isel(time=slice(0, -1))
+    power_va = np.hypot(data.active_power, data.reactive_power)
+    current_a = (power_va / data.pantograph_voltage).to_numpy()
+    limit_a = allowed_a(data.pantograph_voltage.to_numpy())
+    motoring = data.tractive_force.to_numpy() > 0.0
+    assert np.nanmin(data.pantograph_voltage) < 13.5e3
+    assert (current_a[motoring] <= limit_a[motoring] * (1.0 + 1e-9)).all()
+    met = motoring & (current_a > limit_a * (1.0 - 1e-9))
+    assert 0 < met.sum() == result.summary["limited"]["current_limited"]
+
+
+@pytest.mark.parametrize("train", TRAINS)
+def test_a_limit_that_is_never_met_changes_nothing(train):
+    """10 kA at a knee of 9 kV: above anything that these trains draw."""
+    generous = {"max_current_a": 10e3, "knee_factor": 0.6, "umin2_kv": 5.0}
+    free = on_weak_line(train)
+    limited = on_weak_line(train, **{"trains.freight.current_limitation": generous})
+    assert limited.summary["limited"]["current_limited"] == 0
+    for name in ("position", "pantograph_voltage", "active_power"):
+        np.testing.assert_allclose(limited.dataset[name], free.dataset[name], rtol=1e-9)
+
+
+def test_limited_trains_are_slower_and_keep_the_line_from_collapse():
+    free, limited = on_weak_line("network"), on_weak_line("network", **LIMIT)
+    assert (free.status, limited.status) == ("collapsed", "finished")
+    last = free.dataset.time[-1]
+    assert limited.dataset.pantograph_voltage.min() > free.dataset.pantograph_voltage.min()
+    assert float(limited.dataset.position.sel(time=last).sum()) < float(
+        free.dataset.position.sel(time=last).sum()
+    )
+
+
+def test_the_run_says_in_how_many_steps_the_current_held_trains_back():
+    said = warnings(on_weak_line("network", **LIMIT).summary)
+    assert any(line.startswith("the current limitation") for line in said)
