@@ -11,6 +11,7 @@ import evidence_page
 import library_page
 import result_page
 import scenario_page
+import study_page
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not this page. -->"
@@ -20,6 +21,7 @@ PAGES = {
     "library.md": library_page.page,
     "result.md": result_page.page,
     "scenario.md": scenario_page.page,
+    "study.md": study_page.page,
 }
 
 

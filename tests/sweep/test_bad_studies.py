@@ -7,6 +7,10 @@ import pytest
 import tpss
 from sweep.studies import study, write_study
 from tpss.sweep.campaign import estimate
+from tpss.sweep.check import check
+from tpss.sweep.design import design_of
+
+from conftest import EXAMPLES
 
 SOBOL = {"design": "sobol", "cases": 8}
 
@@ -128,6 +132,12 @@ def test_all_faults_of_the_base_scenario_are_told(tmp_path):
     assert "scenario = 'short_line.toml'" in message
     assert "the base scenario has 1 fault(s), listed below" in message
     assert "line.speed_limits.0.speed_kmh = 6000.0" in message
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("study_*.toml")), ids=lambda file: file.stem)
+def test_studies_of_the_examples_are_sound(file):
+    names = check(design_of(tpss.load_study(file)))
+    assert names.stations == ("West", "East")
 
 
 def test_a_study_that_is_no_toml_is_told(tmp_path):

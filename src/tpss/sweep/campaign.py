@@ -148,8 +148,7 @@ def _results(
     case_s = time_per_case(design)
     with _client(scheduler, workers) as client:
         threads = sum(client.nthreads().values())
-        if scheduler is not None:
-            _prepare_workers(client, plan)
+        _prepare_workers(client, plan)
         left = sum(end - first for first, end in todo)
         size = max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-left // (4 * threads))))
         yield from _in_turn(client, plan, batches(todo, size), BATCHES_AHEAD * threads)
@@ -224,7 +223,10 @@ def _local_cluster(workers: int | None) -> distributed.LocalCluster:
 
 
 def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
-    """See to it that the workers of a cluster are of this version; compile once on each machine."""
+    """See to it that workers are of this version and have loaded the kernels.
+
+    They are compiled once on each machine, by one worker, as many at once would all compile them.
+    """
     try:
         found: dict[str, Any] = client.run(versions)
     except Exception as error:
@@ -235,6 +237,7 @@ def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
     demand_version(found)
     hosts = {urlsplit(address).hostname: address for address in found}
     client.run(warm_up, plan, workers=list(hosts.values()))
+    client.run(warm_up, plan)
 
 
 def demand_version(found: Mapping[str, Mapping[str, str]]) -> None:

@@ -1,0 +1,180 @@
+"""The page of the study file: its keys, and the columns of the table that comes of it."""
+
+import inspect
+from pathlib import Path
+from typing import Any
+
+from markdown_pieces import code, described, prose, table
+from pydantic.fields import FieldInfo
+
+from tpss.sweep.columns import MADE_BY, OUTPUTS, TIMINGS
+from tpss.sweep.inputs import Inputs
+from tpss.sweep.settings import INSTEAD_OF, PLACES
+from tpss.sweep.study import Gradients, StudyFile
+from tpss.sweep.variation import Variation
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "study_converters.toml"
+
+INTRODUCTION = """# Study file and table
+
+A study is a file in [TOML](https://toml.io): a [scenario](scenario.md) that all cases start from, what
+varies, and how cases are drawn. `tpss sweep` runs it; [Run a study](../how-to/run-a-study.md) shows
+how. It needs `pip install "tpss[study]"`: Dask's `distributed`, SciPy and PyArrow."""
+
+PATHS = """## Key paths
+
+Tables are named by their keys, list items by their number from 0 or all of them by `*`, as in
+`traffic.0.headway_min` or `supply.converter_stations.*.converters`. In TOML a `*` stands in quotes, of
+the whole path or of itself. The text `"none"` leaves a key out, as in `"supply.high_voltage_line" =
+"none"`.
+
+A new `line.length_km` moves what stands along the line in proportion: {places}. The ground, that is the
+gradients, stays. Other values are put in after that, so a position is one on the new line.
+
+A key takes the place of the one that must not stand beside it: {instead}."""
+
+GRADIENTS = """A profile has exactly the mean and the standard deviation that are asked for, over the
+line of its case. Before they are shifted and stretched, the gradients of neighbouring pieces are
+numbers of a normal distribution, correlated by $\\rho = e^{-\\text{piece}/\\text{correlation}}$.
+`profile` decides between profiles of the same statistics: cases with the same number draw from the same
+numbers."""
+
+TABLE = """## The table
+
+A row a case, in files of [Parquet](https://parquet.apache.org) in the folder's `cases/`;
+`tpss.load_table(folder)` gives it as one table of pandas, by case. What a case does not have is null: a
+train that did not arrive has no trip time. Of a run that ended early, energies are those until then.
+
+| status | the case |
+|---|---|
+| `finished` | ran to its end |
+| `collapsed` | ended where the line could not carry its load: a result |
+| `stalled` | ended where a train could not go on: a result |
+| `invalid` | makes no scenario; `problem` says why |
+| `failed` | met a fault of the program; `problem` names it |
+
+Parameters of the study are columns by their key paths behind `set.`, such as
+`set.traffic.0.headway_min`."""
+
+INPUTS = {
+    "length_km": "length of the line",
+    "route_km": "way of the studied train",
+    "stops": "stops of the studied train",
+    "converter_stations": "number of converter stations",
+    "station_distance_km": "mean distance between neighbouring converter stations; null of one",
+    "longest_station_distance_km": "the longest of them",
+    "converters": "converters installed in all stations",
+    "converters_per_station": "their mean number",
+    "converter_rating_mva": "rating of all of them together",
+    "catenary": "name in the library, or `own`",
+    "catenary_r_ohm_per_km": "resistance of the contact line",
+    "catenary_x_ohm_per_km": "its reactance",
+    "connection_x_ohm": "reactance between a feeding point and the line; 0 of a BT system",
+    "high_voltage_line": "whether there is one",
+    "transformers": "transformers between the converter stations",
+    "feeding_distance_km": "mean distance between neighbouring stations and transformers",
+    "headway_min": "time between departures of the first service; null if they are listed",
+    "trains_per_h": "departures of all services with a headway",
+    "speed_limit_kmh": "highest on the studied train's way, of the line and of the train",
+    "mean_speed_limit_kmh": "mean over that way",
+    "train_mass_t": "mass of the studied train",
+    "max_motor_current_a": "its current limit; null if it has none",
+    "gradient_mean_permille": "mean gradient over the line",
+    "gradient_std_permille": "standard deviation of the gradient over the line",
+    "steepest_permille": "steepest rise",
+    "time_step_min": "time step",
+}
+
+MEANINGS = {
+    "status": "how the case ended",
+    "problem": "why it could not be run, or why its audit failed",
+    "collapsed": "whether the line could not carry its load",
+    "stalled": "whether a train could not go on",
+    "duration_min": "simulated time; when it collapsed or stalled",
+    "steps": "steps carried out",
+    "carried_share": "share of the load that a collapsing line could carry, otherwise 1",
+    "trip_time_min": "trip time of the studied train",
+    "mean_speed_kmh": "its mean speed",
+    "total_energy_mwh": "energy of all converter stations",
+    "losses_mwh": "losses of the network",
+    "lowest_voltage_kv": "lowest voltage at a pantograph",
+    "lowest_voltage_km": "where it was",
+    "lowest_voltage_min": "when it was",
+    "mean_useful_voltage_kv": "lowest mean useful voltage of a zone, EN 50388",
+    "dimensioning_train_kv": "mean useful voltage of the dimensioning train",
+    "peak_power_mw": "highest active power of a station",
+    "peak_loading": "highest loading of the running converters of a station",
+    "mean_passes": "evaluations of the network in a step, on average",
+    "most_passes": "and at most",
+    "audit_passed": "whether all figures of the audit are within their limits",
+}
+
+EACH = """Each converter station has `station.NAME.` and each service `service.NAME.` with these:
+
+| column | meaning |
+|---|---|
+| `station.NAME.energy_mwh`, `.reactive_energy_mvarh` | energy fed into the railway |
+| `station.NAME.peak_power_mw` | highest active power |
+| `station.NAME.mean_loading`, `.peak_loading` | loading of the running converters |
+| `service.NAME.arrived` | trains that departed and arrived |
+| `service.NAME.mean_trip_min`, `.longest_trip_min` | their trip times |
+| `audit.FIGURE` | the [audit's](result.md) figures |
+| `limited.WHAT` | what was limited or left its range, in train-steps |"""
+
+MADE = {
+    "scenario_hash": "digest of all that the case's scenario says but its name",
+    "study_hash": "digest of all that decides what a case is",
+    "tpss_version": "version of TPSS",
+    "kernel_hash": "digest of the kernels' sources and of numba's version",
+    "timing.build_s": "time for scenario and model",
+    "timing.run_s": "time for the run and its key figures",
+    "timing.ended": "when the case was done",
+}
+
+
+def page() -> str:
+    """Text of the page."""
+    outputs = [name for name in OUTPUTS if not name.startswith(("audit.", "limited."))]
+    instead = ", ".join(f"`{a}` that of `{b}`" for a, b in list(INSTEAD_OF.items())[::2])
+    places = ", ".join(code(place).replace('"', "") for place in PLACES)
+    return "\n\n".join(
+        [
+            INTRODUCTION,
+            f"One such file is `examples/{EXAMPLE.name}`:",
+            f"```toml\n{EXAMPLE.read_text('utf-8')}```",
+            "## The whole file",
+            _keys(StudyFile),
+            PATHS.format(places=places, instead=instead),
+            "## What may vary",
+            prose(inspect.getdoc(Variation) or ""),
+            "A list stands for its values: `[2, 3, 4]` is the same as `{ values = [2, 3, 4] }`.",
+            _keys(Variation),
+            "## `[gradients]`",
+            _keys(Gradients),
+            GRADIENTS,
+            TABLE,
+            "### What the case is",
+            described(INPUTS, Inputs._fields, "column"),
+            "### What came of it",
+            described(MEANINGS, outputs, "column"),
+            EACH,
+            "### What made it",
+            described(MADE, [*MADE_BY, *TIMINGS], "column"),
+            "Timings differ from run to run; all else is the same whenever and wherever a case is run.",
+        ]
+    )
+
+
+def _keys(part: type[Any]) -> str:
+    """Table of a part's keys."""
+    rows = [
+        (f"`{name}`", _default(field), field.description or "")
+        for name, field in part.model_fields.items()
+    ]
+    return table(("key", "default", "meaning"), rows)
+
+
+def _default(field: FieldInfo) -> str:
+    if field.is_required():
+        return "**required**"
+    return "" if field.default in (None, "") or field.default == {} else code(field.default)
