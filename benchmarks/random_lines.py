@@ -176,6 +176,7 @@ def drive(rng: Random, train: Any, kind: Any) -> None:
     adhesion = adhesion_limit(kind.adhesive_mass_kg, train.speed_m_s, DRY)
     train.adhesion_n = adhesion
     train.force_cap_n = adhesion * min(1.0, rng.uniform(0.0, 2.0))
+    train.driven_share = 1.0
 
 
 @kernel
