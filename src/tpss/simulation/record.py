@@ -39,6 +39,21 @@ from tpss.simulation.state import (
 from tpss.simulation.traffic import is_on_line
 
 
+@inlined
+def note_journey(train: Any, row: Any) -> None:
+    """Keep how a train would go on; a whole record at once takes seconds to compile."""
+    row.phase = train.phase
+    row.position_m = train.position_m
+    row.speed_m_s = train.speed_m_s
+    row.next_stop = train.next_stop
+    row.dwell_left = train.dwell_left
+    row.plan_step = train.plan_step
+    row.plan_hold = train.plan_hold
+    row.plan_first = train.plan_first
+    row.plan_full = train.plan_full
+    row.plan_last = train.plan_last
+
+
 @kernel
 def record_instant(step: int, trains: Any, recording: Recording) -> None:
     """Position and speed of every train on the line, those that have just arrived included."""
@@ -49,8 +64,8 @@ def record_instant(step: int, trains: Any, recording: Recording) -> None:
             recording.trains[step, i].speed = train.speed_m_s
             if train.phase == ARRIVED:
                 recording.train_state[step, i] = STATE_ARRIVED
-            if recording.states.size > 0:
-                recording.states[step, i] = train
+            if recording.journeys.size > 0:
+                note_journey(train, recording.journeys[step, i])
 
 
 @inlined

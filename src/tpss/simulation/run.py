@@ -157,7 +157,7 @@ class Run:
         clock: Clock = advance,
         records: Any = None,
         memory: Memory = np.empty,
-        with_states: bool = False,
+        with_journeys: bool = False,
     ) -> None:
         self.model = model
         self.clock = clock
@@ -169,8 +169,8 @@ class Run:
         if records is None:
             records = train_records(trains, NOMINAL_VOLTAGE_V)
         self.state = new_state(model, records.copy())
-        self.with_states = with_states
-        self.recording = new_recording(model, capacity, len(trains), memory, with_states)
+        self.with_journeys = with_journeys
+        self.recording = new_recording(model, capacity, len(trains), memory, with_journeys)
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""
@@ -208,7 +208,7 @@ class Run:
         ):
             new[:] = old
         self.recording = new_recording(
-            self.model, capacity, len(self.trains), with_states=self.with_states
+            self.model, capacity, len(self.trains), with_journeys=self.with_journeys
         )
         for row, kept in zip(self.recording, before, strict=True):
             row[tuple(slice(n) for n in kept.shape)] = kept
@@ -225,7 +225,7 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
     options = model.options._replace(fixed_voltage_v=NOMINAL_VOLTAGE_V, studied_train=0)
     lone = departing_trains([replace(service, first_s=0.0)], h, 0, 1)
     capacity = foreseen_steps(model, service)
-    run = Run(model._replace(options=options), lone, capacity, with_states=True)
+    run = Run(model._replace(options=options), lone, capacity, with_journeys=True)
     run.advance_to(capacity)
     while run.status == Status.RUNNING and run.step * h < LONGEST_RUN_S:
         run.grow(2 * run.capacity, [])
@@ -234,7 +234,7 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
     most = math.ceil((last * h + service.first_s) / service.headway_s) + 1
     times_s = np.arange(1, most + 1) * service.headway_s - service.first_s
     steps = np.rint(times_s / h).astype(int)
-    return trains_at(run.recording.states[steps[(steps >= 1) & (steps <= last)], 0], lone[0])
+    return trains_at(run.recording.journeys[steps[(steps >= 1) & (steps <= last)], 0], lone[0])
 
 
 def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
@@ -416,7 +416,7 @@ def _outcome(run: Run, status: str, studied: int) -> Outcome:
         network_losses=kept.network_losses[:rows],
         passes=kept.passes[:rows],
         counters=kept.counters,
-        states=kept.states,
+        journeys=kept.journeys,
     )
     return Outcome(
         status=status,

@@ -98,6 +98,18 @@ TRAIN = np.dtype(
 )
 """State of a train, and its forces in the present step."""
 
+JOURNEY = np.dtype(
+    [
+        (name, TRAIN[name])
+        for name in (
+            "phase", "position_m", "speed_m_s", "next_stop", "dwell_left",
+            "plan_step", "plan_hold", "plan_first", "plan_full", "plan_last",
+        )
+    ],
+    align=True,
+)  # fmt: skip
+"""What a train has to know to go on from an instant."""
+
 CLOCK = np.dtype(
     [
         ("loading_steps", np.int64),  # since the last action of the converter control
@@ -246,8 +258,8 @@ class Recording(NamedTuple):
     """Evaluations of the network."""
     counters: Indices
     """By `Counter`."""
-    states: Any
-    """Records of `TRAIN`, shape (instants, trains); empty unless they are asked for."""
+    journeys: Any
+    """Records of `JOURNEY`, shape (instants, trains); empty unless they are asked for."""
 
 
 def new_state(model: Model, trains: Any) -> State:
@@ -278,7 +290,7 @@ Memory = Callable[[int], Floats]
 
 
 def new_recording(
-    model: Model, steps: int, trains: int, memory: Memory = np.empty, with_states: bool = False
+    model: Model, steps: int, trains: int, memory: Memory = np.empty, with_journeys: bool = False
 ) -> Recording:
     """Recording with room for `steps` steps and one instant more.
 
@@ -286,8 +298,8 @@ def new_recording(
     ----------
     memory : callable
         What gives the room.
-    with_states : bool
-        Whether the whole state of every train is kept too.
+    with_journeys : bool
+        Whether it is also kept how each train would go on.
     """
     network, rows = model.network, steps + 1
 
@@ -301,7 +313,7 @@ def new_recording(
         return unknown(size).view(record_type(dtype)).reshape(rows, columns).view(np.recarray)
 
     ends = network.branches.size + 2 * network.sections.size
-    kept = rows if with_states else 0
+    kept = rows if with_journeys else 0
 
     return Recording(
         trains=blank(trains, TRAIN_ROW),
@@ -312,5 +324,5 @@ def new_recording(
         network_losses=unknown(rows),
         passes=np.zeros(rows, dtype=np.int64),
         counters=np.zeros(len(Counter), dtype=np.int64),
-        states=blank_records(kept * trains, TRAIN).reshape(kept, trains),
+        journeys=blank_records(kept * trains, JOURNEY).reshape(kept, trains),
     )

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from tpss.kernel import blank_records
-from tpss.simulation.state import DRIVING, PENDING, TRAIN
+from tpss.simulation.state import DRIVING, JOURNEY, PENDING, TRAIN
 
 DEPARTURE_ROUNDING_S = 1e-6
 """A train departs at the first instant that is no more than this before its time. [s]"""
@@ -121,13 +121,15 @@ def train_records(trains: list[Train], voltage_v: float) -> Any:
     return rows
 
 
-def trains_at(states: Any, train: Train) -> list[Train]:
-    """A train in each of its states, records of `TRAIN`, ready to enter another run at its start."""
+def trains_at(journeys: Any, train: Train) -> list[Train]:
+    """A train where it once was, by records of `JOURNEY`, ready to enter another run at its start."""
+    names = JOURNEY.names or ()
     return [
-        Train(
+        replace(
+            train,
             name=f"{train.service} initial {number}",
-            service=train.service,
-            **{**dict(zip(_STATE_FIELDS, state, strict=True)), "departure_step": 0},
+            departure_step=0,
+            **dict(zip(names, journey, strict=True)),
         )
-        for number, state in enumerate(states[_STATE_FIELDS].tolist(), 1)
+        for number, journey in enumerate(journeys.tolist(), 1)
     ]
