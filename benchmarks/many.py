@@ -3,6 +3,7 @@
 Usage: python benchmarks/many.py [--cases N] [--publish]
 """
 
+import os
 import resource
 import tempfile
 import time
@@ -76,28 +77,28 @@ def in_threads(cases: int) -> dict[str, dict[str, float]]:
 
 
 def as_study(cases: int) -> dict[str, float]:
-    """Cases a second of a study, its overhead, and the memory of scheduler and client."""
+    """Cases a second of a study in its middle part, overhead there, memory of scheduler and client."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "study.toml"
         file.write_text(tomli_w.dumps({**STUDY, "cases": cases}), "utf-8")
-        moments = []
-
-        def note(state: Any) -> None:
-            moments.append((time.perf_counter(), state.done, peak_mib()))
-
-        ended = tpss.run_study(tpss.load_study(file), Path(folder) / "out", report=note)
+        memory_mib: list[float] = []
+        ended = tpss.run_study(
+            tpss.load_study(file),
+            Path(folder) / "out",
+            report=lambda _: memory_mib.append(peak_mib()),
+        )
         rows = tpss.load_table(Path(folder) / "out")
-    (first_s, first, before), (last_s, last, after) = moments[0], moments[-1]
-    found = (last - first) / (last_s - first_s)
-    work_s = (rows["timing.build_s"] + rows["timing.run_s"]).mean()
-    trains = (rows.trip_time_min / rows.headway_min).mean()
+    when = rows["timing.ended"]
+    inner = rows[(when > when.quantile(0.2)) & (when <= when.quantile(0.8))]
+    span_s = (inner["timing.ended"].max() - inner["timing.ended"].min()).total_seconds()
+    busy_s = (inner["timing.build_s"] + inner["timing.run_s"]).sum()
     return {
         "cases": cases,
-        "trains on the line": trains,
-        "cases a second": found,
+        "trains on the line": (rows.trip_time_min / rows.headway_min).mean(),
+        "cases a second": len(inner) / span_s,
         "with the start of the cluster": cases / ended.elapsed_s,
-        "overhead [%]": 100.0 * (1.0 - found * work_s / tpss.sweep.campaign.default_workers()),
-        "memory grew [MiB]": after - before,
+        "overhead [%]": 100.0 * (1.0 - busy_s / (span_s * os.cpu_count())),
+        "memory grew [MiB]": memory_mib[-1] - memory_mib[0],
     }
 
 
