@@ -19,6 +19,7 @@ from tpss.results.key_figures import Frame, frame_of
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.scenario.scenario import Scenario
+from tpss.simulation.interrupt import interruptible
 from tpss.simulation.run import (
     Clock,
     Outcome,
@@ -26,7 +27,6 @@ from tpss.simulation.run import (
     Start,
     begin,
     compile_kernels,
-    interruptible,
     run_on,
 )
 from tpss.simulation.state import Model

@@ -79,7 +79,7 @@ def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quie
     """Simulate and save; from the first step on, a Ctrl-C ends the run and saves what there is."""
     from tpss.api import prepare
     from tpss.kernel import kernels_are_compiled
-    from tpss.simulation.run import interruptible
+    from tpss.simulation.interrupt import interruptible
 
     console = Console(stderr=True, quiet=quiet)
     last = "advance" if scenario.simulation.load_flow == "equations" else "end_step"

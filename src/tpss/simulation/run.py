@@ -5,11 +5,8 @@ recording grows when a run is longer than was foreseen.
 """
 
 import math
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -86,38 +83,6 @@ class Outcome:
 
 Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
 """What runs steps, as `advance` does; a clock with another load flow may take its place."""
-
-
-@contextmanager
-def interruptible(notice: Callable[[], None] | None = None) -> Iterator[list[int]]:
-    """Give a list that a Ctrl-C fills, in place of an exception in the midst of a kernel.
-
-    A second Ctrl-C interrupts as usual.  Nothing is changed outside the main thread, nor where a
-    Ctrl-C is ignored, as in the background of a shell script.
-
-    Parameters
-    ----------
-    notice : callable, optional
-        Called at the first Ctrl-C, between any two instructions of the program.
-    """
-    received: list[int] = []
-    usual = signal.getsignal(signal.SIGINT)
-    in_main = threading.current_thread() is threading.main_thread()
-    if not in_main or usual in (signal.SIG_IGN, None):
-        yield received
-        return
-
-    def note(number: int, _: object) -> None:
-        received.append(number)
-        signal.signal(signal.SIGINT, usual)
-        if notice is not None:
-            notice()
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield received
-    finally:
-        signal.signal(signal.SIGINT, usual)
 
 
 def compile_kernels(model: Model, clock: Clock = advance) -> None:
@@ -339,7 +304,7 @@ def run_on(
     report : callable, optional
         Called with the `Progress` after every stretch of steps.
     interrupted : sequence, optional
-        Ends the run, once it is filled, with the status "interrupted"; see `interruptible`.
+        Ends the run, once it is filled, with the status "interrupted"; see `interrupt.interruptible`.
     clock : callable, optional
         Runs the steps.
 
