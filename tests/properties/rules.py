@@ -178,7 +178,8 @@ class Journey:
                 continue
             well_m = limit * (8.0 * self.step_s + 2.0 * limit / self.train.max_retardation_m_s2)
             ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + well_m)
-            to_stop_m = min(end for end in ends if end > self.x[k]) - self.x[k]
+            # A train may begin within a rounding of its last stop.
+            to_stop_m = min((end for end in ends if end > self.x[k]), default=self.x[k]) - self.x[k]
             if to_stop_m < well_m or (self.limit[ahead] < limit).any():
                 continue
             most = self.largest_force_n(k)
