@@ -63,3 +63,33 @@ def test_too_high_a_voltage_at_a_part_of_the_load_does_not_forbid_the_whole():
     judge_result(part)
     assert " at 0.00 km has 19.80 kV, the highest." in part.summary["problem"]
     assert "filter_reactance_ohm" in part.summary["advice"]
+
+
+def test_a_train_just_above_the_voltage_without_traction_gives_the_force_that_its_power_belongs_to():
+    """At 11 000.05 V the limited current leaves a little force, which a rounding of 1e-7 V
+    changes by 2e-6 of itself: force and power have to belong to one voltage."""
+    changes = {
+        "simulation.time_step_min": 5.0,
+        "simulation.duration_min": None,
+        "simulation.until": "first-departure-arrives",
+        "line.length_km": 212.87128712871288,
+        "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 9.4}],
+        "line.stations": [
+            {"name": "S0", "position_km": 70.247524752},
+            {"name": "S1", "position_km": 168.168316832},
+        ],
+        "supply.converter_stations": [
+            {"name": "C", "position_km": 0.0, "type": "Q48/Q49", "converters": 1}
+        ],
+        "trains.freight": {
+            "model": "Rc4-freight-1470t", "auxiliary_power_kw": 1000.0, "mass_t": 80.0,
+            "filter_reactance_ohm": -5.0, "base_speed_kmh": 20.0, "max_motor_current_a": 150.0,
+            "resistance_b_n_s_per_m": 0.0, "resistance_c_n_s2_per_m2": 0.0, "slip": 0.0,
+            "current_limitation": {"max_current_a": 900.0},
+        },
+        "traffic": [{"name": "eastbound", "train": "freight", "from": "S0", "to": "S1",
+                     "headway_min": 2737.5057931325046, "already_running": True}],
+    }  # fmt: skip
+    result = tpss.simulate(short_line(changes))
+    assert float(result.dataset.pantograph_voltage.min()) == pytest.approx(11_000.05, abs=0.01)
+    assert result.audit["traction_balance"] < 1e-13

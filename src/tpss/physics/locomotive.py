@@ -118,7 +118,8 @@ DEMAND = np.dtype(
         ("row_slope_n_per_v", float, (MOST_VOLTAGES,)),
         ("cap_power_w", float),  # of the motors at the force cap
         ("cap_current_a", float),
-        ("active_power_w", float),  # what came of it at the voltage last tried
+        ("wheel_force_n", float),  # what the motors give at the voltage last tried
+        ("active_power_w", float),  # and what the train draws
         ("reactive_power_var", float),
         ("machine_force_n", float),  # of all motors at most, before clipping
         ("bridge_sine", float),  # β, before clipping
@@ -367,7 +368,7 @@ def electrical_demand(
 
     .. math:: P_D = P_{motor} / \eta_{loco} + P_{aux}, \quad Q_D = Q_{motor} + Q_{aux} + Q_f
 
-    The powers are noted in the train's record too.
+    Force and powers are noted in the train's record too.
 
     Parameters
     ----------
@@ -390,5 +391,6 @@ def electrical_demand(
     filtered, filtered_slope = filter_reactive_power(voltage_v, kind.filter_reactance_ohm)
     reactive += kind.auxiliary_reactive_power_var + filtered
     reactive_slope += filtered_slope
+    train.wheel_force_n = force
     train.active_power_w, train.reactive_power_var = active, reactive
     return active, reactive, power_slope * per_motor_power, reactive_slope

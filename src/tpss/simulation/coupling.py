@@ -8,7 +8,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 from typing import Any
 
 from tpss.kernel import inlined
-from tpss.physics.locomotive import acceleration, electrical_demand, wheel_force
+from tpss.physics.locomotive import acceleration, electrical_demand
 from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
@@ -91,9 +91,8 @@ def settle(train: Any, model: Model) -> None:
     [Boullanger2009]_, eq. (2.7), (2.11), (F.19), (F.20).
     """
     kind = model.types[train.train_type]
-    given, _ = wheel_force(train.voltage_v, kind, train, model.machine[0])
-    force, wanted = min(given, train.adhesion_n), train.wanted_force_n
-    train.wheel_force_n = given
+    # Of the load flow's last pass, as the powers: near a knee the last roundings of the voltage count.
+    force, wanted = min(train.wheel_force_n, train.adhesion_n), train.wanted_force_n
     train.force_n = force
     train.braking_force_n = 0.0
     if train.phase == DWELLING:

@@ -89,8 +89,7 @@ TRAIN = np.dtype(
         ("wanted_force_n", float),
         ("running_resistance_n", float),
         ("gradient_force_n", float),
-        ("wheel_force_n", float),  # what came of it: given by the motors,
-        ("force_n", float),  # and passed on by the rails
+        ("force_n", float),  # what came of it: passed on by the rails
         ("braking_force_n", float),
         ("next_speed_m_s", float),
     ],
