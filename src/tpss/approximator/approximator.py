@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import pandas as pd
 
+from tpss.approximator.calibrate import deviation
 from tpss.approximator.model_file import (
     ModelFile,
     Output,
@@ -52,6 +53,10 @@ class Approximator:
     @cached_property
     def _figures(self) -> Ensemble:
         return self.file.figures.ensemble()
+
+    @cached_property
+    def _noise(self) -> Ensemble:
+        return self.file.noise.ensemble()
 
     @cached_property
     def _collapse(self) -> Ensemble | None:
@@ -104,10 +109,12 @@ class Approximator:
     def figures(self, x: Array) -> dict[str, Array]:
         """Outputs and the ends of their intervals, of scaled inputs, as if no line collapsed."""
         members = self._figures.evaluate(x)
-        mean, spread = members.mean(axis=0), members.std(axis=0)
+        mean = members.mean(axis=0)
+        log_noise = self._noise.evaluate(x).mean(axis=0)
+        deviations = deviation(log_noise, members.std(axis=0))
         found = {}
         for k, output in enumerate(self.file.outputs):
-            half = output.factor * deviation(spread[:, k], output.noise)
+            half = output.factor * deviations[:, k]
             found[output.name] = unscaled(mean[:, k], output)
             found[f"{output.name}.low"] = unscaled(mean[:, k] - half, output)
             found[f"{output.name}.high"] = unscaled(mean[:, k] + half, output)
@@ -147,12 +154,6 @@ def load_approximator(path: str | Path) -> Approximator:
         It cannot be read, is no such file, or is damaged.
     """
     return Approximator(read_model(Path(path)))
-
-
-def deviation(spread: Array, noise: float) -> Array:
-    """Standard deviation of a prediction: what the inputs leave open, and what the members do."""
-    found: Array = np.hypot(spread, noise)
-    return found
 
 
 def scaled(values: Any, scale: str, low: float, high: float) -> Array:

@@ -23,10 +23,10 @@ ROUNDS = 2
 MOST_STEPS = 800
 """Steps of L-BFGS; what comes later moves errors by less than the members differ."""
 
-PENALTY = {"figures": 1e-2, "collapse": 1e-1}
+PENALTY = {"figures": 1e-2, "noise": 1.0, "collapse": 1e-1}
 """Weight of the squared weights in what is minimised (alpha of scikit-learn)."""
 
-NEURONS = {"figures": (8, 16, 32, 48), "collapse": (4, 8, 16)}
+NEURONS = {"figures": (8, 16, 32, 48), "noise": (4, 8), "collapse": (4, 8, 16)}
 """Numbers of neurons that are tried."""
 
 Tick = Callable[[], None]
@@ -58,21 +58,22 @@ def fit(kind: str, x: Array, y: Array, seed: int, tick: Tick) -> Fitted:
     Parameters
     ----------
     kind : str
-        ``figures``: `y` are scaled outputs (cases, outputs); ``collapse``: 0 and 1, (cases, 1).
+        ``figures``: `y` are scaled outputs (cases, outputs); ``noise``: logarithms of the sizes of
+        their errors; ``collapse``: 0 and 1, (cases, 1).
     """
     folds = _folds(kind, y, seed)
     first: dict[int, list[Any]] = {}
     errors: dict[int, float] = {}
     for neurons in NEURONS[kind]:
         first[neurons] = [_fit_one(kind, neurons, x, y, fold, seed, tick) for fold in folds]
-        unseen = _unseen(_ensemble(first[neurons]), x, folds[:FOLDS])
+        unseen = _unseen(_ensemble(first[neurons]), x, folds)
         errors[neurons] = _error(kind, unseen, y)
     best = min(errors, key=errors.__getitem__)
-    more = [_folds(kind, y, seed + round_) for round_ in range(1, ROUNDS)]
     networks = list(first[best])
-    for round_, again in enumerate(more, start=1):
-        networks += [_fit_one(kind, best, x, y, fold, seed + round_, tick) for fold in again]
-        folds += again
+    for again in range(1, ROUNDS):
+        left_out = _folds(kind, y, seed + again)
+        networks += [_fit_one(kind, best, x, y, fold, seed + again, tick) for fold in left_out]
+        folds += left_out
     ensemble = _ensemble(networks)
     spread = ensemble.evaluate(x).std(axis=0)
     return Fitted(ensemble, _unseen(ensemble, x, folds), spread, errors)
@@ -82,7 +83,7 @@ def _folds(kind: str, y: Array, seed: int) -> list[Indices]:
     """Cases that each member leaves out; of both classes, if there are classes."""
     from sklearn.model_selection import KFold, StratifiedKFold
 
-    division = KFold if kind == "figures" else StratifiedKFold
+    division = StratifiedKFold if kind == "collapse" else KFold
     folds = division(FOLDS, shuffle=True, random_state=seed).split(y, y[:, 0])
     return [left_out for _, left_out in folds]
 
@@ -94,7 +95,7 @@ def _fit_one(
     from sklearn.neural_network import MLPClassifier, MLPRegressor
 
     taken = np.setdiff1d(np.arange(len(x)), left_out)
-    network = (MLPRegressor if kind == "figures" else MLPClassifier)(
+    network = (MLPClassifier if kind == "collapse" else MLPRegressor)(
         hidden_layer_sizes=(neurons,),
         activation="tanh",
         solver="lbfgs",
@@ -133,7 +134,7 @@ def _unseen(ensemble: Ensemble, x: Array, folds: Sequence[Indices]) -> Array:
 
 
 def _error(kind: str, unseen: Array, y: Array) -> float:
-    if kind == "figures":
+    if kind != "collapse":
         return float(np.sqrt(np.mean((unseen - y) ** 2)))
     # The logarithm of what the logistic function gives, without its overflow.
     return float(np.mean(np.logaddexp(0.0, unseen) - y * unseen))

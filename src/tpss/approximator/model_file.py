@@ -60,10 +60,8 @@ class Output(Part):
     low: Real
     high: Real
     """What is scaled to -1 and 1, after the logarithm."""
-    noise: Annotated[Real, Field(ge=0)]
-    """Standard deviation of what the inputs do not determine, scaled."""
     factor: Annotated[Real, Field(ge=0)]
-    """Half the interval, in standard deviations."""
+    """Half the interval, in deviations."""
 
 
 class Score(Part):
@@ -127,7 +125,11 @@ class ModelFile(Part):
     inputs: Inputs
     domain: Domain
     outputs: Annotated[tuple[Output, ...], Field(min_length=1)]
+    tried: dict[Name, dict[Name, Real]]
+    """Errors for cases not seen, by what the networks tell and by their number of neurons."""
     figures: Weights
+    noise: Weights
+    """Networks that tell the logarithm of the size of the figures' errors."""
     collapse: Weights | None
     """None if the line carried its load in every case."""
     scores: tuple[Score, ...]
@@ -146,7 +148,8 @@ class ModelFile(Part):
             raise fault("an input without a range", REMEDY)
         if not fits(self.domain, self.inputs):
             raise fault("a domain of other inputs", REMEDY)
-        for weights, outputs in ((self.figures, len(self.outputs)), (self.collapse, 1)):
+        count = len(self.outputs)
+        for weights, outputs in ((self.figures, count), (self.noise, count), (self.collapse, 1)):
             shape = None if weights is None else (len(weights.w1[0]), len(weights.b2[0]))
             if shape not in (None, (self.inputs.width, outputs)):
                 raise fault("networks of other inputs or outputs", REMEDY)

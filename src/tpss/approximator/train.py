@@ -11,7 +11,7 @@ import pandas as pd
 
 from tpss.approximator import fit as fitting
 from tpss.approximator.approximator import Approximator, scaled
-from tpss.approximator.calibrate import noise_and_factor
+from tpss.approximator.calibrate import deviation, factor_of, log_sizes
 from tpss.approximator.domain import Domain, domain_of
 from tpss.approximator.forms import FORMS, with_traffic
 from tpss.approximator.inputs import Inputs, inputs_of_table
@@ -147,14 +147,13 @@ def _train(
     outputs = [_scaling(name, carried.y[name]) for name in names]
     y = np.column_stack([scaled(carried.y[o.name], o.scale, o.low, o.high) for o in outputs])
     figures = fitting.fit("figures", carried.x, y, seed, tick)
-    outputs = [
-        _calibrated(output, figures.unseen[:, k] - y[:, k], figures.spread[:, k])
-        for k, output in enumerate(outputs)
-    ]
-    collapse = None
+    errors = figures.unseen - y
+    noise = fitting.fit("noise", carried.x, log_sizes(errors), seed, tick)
+    deviations = deviation(noise.unseen, figures.spread)
+    fitted = {"figures": figures, "noise": noise}
     if not trained.carried.all():
         classes = (~trained.carried[:, None]).astype(np.float64)
-        collapse = fitting.fit("collapse", trained.x, classes, seed, tick)
+        fitted["collapse"] = fitting.fit("collapse", trained.x, classes, seed, tick)
     file = ModelFile(
         format="tpss-approximator",
         version=VERSION,
@@ -163,13 +162,22 @@ def _train(
         data=_data(table, used, held_out, seed, origin),
         inputs=inputs,
         domain=_domain(inputs, given.inputs, kept),
-        outputs=tuple(outputs),
+        outputs=tuple(
+            output.model_copy(update={"factor": factor_of(errors[:, k], deviations[:, k])})
+            for k, output in enumerate(outputs)
+        ),
+        tried={kind: _by_neurons(each.errors) for kind, each in fitted.items()},
         figures=_weights(figures.ensemble),
-        collapse=None if collapse is None else _weights(collapse.ensemble),
+        noise=_weights(noise.ensemble),
+        collapse=_weights(fitted["collapse"].ensemble) if "collapse" in fitted else None,
         scores=(),
         collapse_score=None,
     )
     return _scored(file, trained, tested)
+
+
+def _by_neurons(errors: dict[int, float]) -> dict[str, float]:
+    return {str(neurons): error for neurons, error in errors.items()}
 
 
 def _scored(file: ModelFile, trained: Cases, tested: Cases) -> Approximator:
@@ -220,12 +228,7 @@ def _scaling(name: str, values: Array) -> Output:
     if not low < high:
         raise ApproximatorError(f"{name} is the same in all cases: there is nothing to learn")
     scale = "log" if is_log else "linear"
-    return Output(name=name, scale=scale, low=low, high=high, noise=0.0, factor=0.0)
-
-
-def _calibrated(output: Output, errors: Array, spread: Array) -> Output:
-    noise, factor = noise_and_factor(errors, spread)
-    return output.model_copy(update={"noise": noise, "factor": factor})
+    return Output(name=name, scale=scale, low=low, high=high, factor=0.0)
 
 
 def _domain(inputs: Inputs, values: dict[str, Array], kept: fitting.Indices) -> Domain:
@@ -239,7 +242,8 @@ def _weights(ensemble: Ensemble) -> Weights:
 
 def _counter(with_collapse: bool, report: Callable[[int, int], None]) -> Callable[[], None]:
     """Counts networks as they are fitted."""
-    whole = fitting.fits_of("figures") + (fitting.fits_of("collapse") if with_collapse else 0)
+    kinds = ("figures", "noise", *(["collapse"] if with_collapse else []))
+    whole = sum(fitting.fits_of(kind) for kind in kinds)
     done = 0
     report(0, whole)
 

@@ -148,7 +148,7 @@ def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
 
     described = pd.DataFrame([inputs_of(load_scenario(file))._asdict()])
     known = with_traffic(described).iloc[0].dropna()
-    return {name: value for name, value in known.items() if model.file.inputs.has(str(name))}
+    return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
 
 
 def _demand_kind(path: Path) -> None:
