@@ -10,6 +10,7 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 import tpss
@@ -26,7 +27,8 @@ FIRST_PROFILE = 1_000_000
 def twins(study: Path, cases: int, profiles: int) -> pd.DataFrame:
     """Figures of cases of a study with other gradient profiles, a row a case and profile."""
     design = design_of(study_of_json(read_manifest(study)["study"]))
-    chosen = [k * design.cases // cases for k in range(cases)]
+    # By chance: every sixteenth point of a Sobol sequence would lie in one corner of the space.
+    chosen = np.random.default_rng(0).choice(design.cases, cases, replace=False).tolist()
     pairs = [
         (case, FIRST_PROFILE + case * profiles + k) for case in chosen for k in range(profiles)
     ]

@@ -25,15 +25,15 @@ def test_rows_do_not_depend_on_the_blocks_that_they_are_evaluated_in():
     network = Ensemble(*(draw.standard_normal(shape) for shape in shapes))
     x = draw.uniform(-1.0, 1.0, (2 * BLOCK + 7, 4))
     single = np.concatenate([network.evaluate(row[None]) for row in x], axis=1)
-    # Products of matrices may be summed in another order.
-    assert network.evaluate(x) == pytest.approx(single, rel=0, abs=1e-12)
+    # Products of matrices may be summed in another order, in single precision.
+    assert network.evaluate(x) == pytest.approx(single, rel=0, abs=1e-5)
 
 
 def test_probabilities_are_those_of_scikit_learn():
-    """Both compute the logistic function of the same weights; rounding apart."""
+    """Both compute the logistic function of the same weights; rounding to single precision apart."""
     draw = np.random.default_rng(0)
     x = draw.uniform(-1.0, 1.0, (200, 2))
     network = MLPClassifier((4,), activation="tanh", solver="lbfgs", alpha=0.1, random_state=0)
     network.fit(x, x.sum(axis=1) > 0.2)
     found = logistic(_ensemble([network]).evaluate(x)[0, :, 0])
-    assert found == pytest.approx(network.predict_proba(x)[:, 1], abs=1e-12)
+    assert found == pytest.approx(network.predict_proba(x)[:, 1], abs=1e-5)

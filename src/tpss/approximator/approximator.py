@@ -111,10 +111,10 @@ class Approximator:
         members = self._figures.evaluate(x)
         mean = members.mean(axis=0)
         log_noise = self._noise.evaluate(x).mean(axis=0)
-        deviations = deviation(log_noise, members.std(axis=0))
+        spread = members.std(axis=0)
         found = {}
         for k, output in enumerate(self.file.outputs):
-            half = output.factor * deviations[:, k]
+            half = output.factor * deviation(log_noise[:, k], spread[:, k], output.usual)
             found[output.name] = unscaled(mean[:, k], output)
             found[f"{output.name}.low"] = unscaled(mean[:, k] - half, output)
             found[f"{output.name}.high"] = unscaled(mean[:, k] + half, output)

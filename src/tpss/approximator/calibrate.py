@@ -19,14 +19,23 @@ def log_sizes(errors: Array) -> Array:
     return found
 
 
-def deviation(log_noise: Array, spread: Array) -> Array:
+USUAL = 0.9
+"""Share of the trained cases in which the members disagree no more than usual."""
+
+
+def usual_spread(log_noise: Array, spread: Array) -> float:
+    """How far the members disagree at most in most cases, in sizes of the errors."""
+    return float(np.quantile(spread / np.exp(log_noise), USUAL))
+
+
+def deviation(log_noise: Array, spread: Array, usual: float) -> Array:
     """How far predictions may be off, up to a factor.
 
-    Two parts: what the inputs leave open, such as the order of the gradients, which is more on some
-    lines than on others; and what the members of the ensemble do not agree on, which grows where
-    cases are few.
+    That is the size of the errors for cases not seen: what the inputs leave open, such as the order
+    of the gradients, which is more on some lines than on others.  Where the members of the ensemble
+    disagree more than usual, as they do where cases are few, it grows with their disagreement.
     """
-    found: Array = np.hypot(np.exp(log_noise), spread)
+    found: Array = np.maximum(np.exp(log_noise), spread / usual)
     return found
 
 

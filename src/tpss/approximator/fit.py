@@ -26,7 +26,7 @@ MOST_STEPS = 800
 PENALTY = {"figures": 1e-2, "noise": 1.0, "collapse": 1e-1}
 """Weight of the squared weights in what is minimised (alpha of scikit-learn)."""
 
-NEURONS = {"figures": (8, 16, 32, 48), "noise": (4, 8), "collapse": (4, 8, 16)}
+NEURONS = {"figures": (16, 32, 48), "noise": (4, 8), "collapse": (4, 8)}
 """Numbers of neurons that are tried."""
 
 Tick = Callable[[], None]

@@ -60,6 +60,8 @@ class Output(Part):
     low: Real
     high: Real
     """What is scaled to -1 and 1, after the logarithm."""
+    usual: Annotated[Real, Field(gt=0)]
+    """How far the members disagree at most in most cases, in sizes of the errors."""
     factor: Annotated[Real, Field(ge=0)]
     """Half the interval, in deviations."""
 

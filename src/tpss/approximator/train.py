@@ -11,7 +11,7 @@ import pandas as pd
 
 from tpss.approximator import fit as fitting
 from tpss.approximator.approximator import Approximator, scaled
-from tpss.approximator.calibrate import deviation, factor_of, log_sizes
+from tpss.approximator.calibrate import deviation, factor_of, log_sizes, usual_spread
 from tpss.approximator.domain import Domain, domain_of
 from tpss.approximator.forms import FORMS, with_traffic
 from tpss.approximator.inputs import Inputs, inputs_of_table
@@ -149,7 +149,6 @@ def _train(
     figures = fitting.fit("figures", carried.x, y, seed, tick)
     errors = figures.unseen - y
     noise = fitting.fit("noise", carried.x, log_sizes(errors), seed, tick)
-    deviations = deviation(noise.unseen, figures.spread)
     fitted = {"figures": figures, "noise": noise}
     if not trained.carried.all():
         classes = (~trained.carried[:, None]).astype(np.float64)
@@ -163,7 +162,7 @@ def _train(
         inputs=inputs,
         domain=_domain(inputs, given.inputs, kept),
         outputs=tuple(
-            output.model_copy(update={"factor": factor_of(errors[:, k], deviations[:, k])})
+            _calibrated(output, errors[:, k], noise.unseen[:, k], figures.spread[:, k])
             for k, output in enumerate(outputs)
         ),
         tried={kind: _by_neurons(each.errors) for kind, each in fitted.items()},
@@ -174,6 +173,12 @@ def _train(
         collapse_score=None,
     )
     return _scored(file, trained, tested)
+
+
+def _calibrated(output: Output, errors: Array, log_noise: Array, spread: Array) -> Output:
+    usual = usual_spread(log_noise, spread)
+    factor = factor_of(errors, deviation(log_noise, spread, usual))
+    return output.model_copy(update={"usual": usual, "factor": factor})
 
 
 def _by_neurons(errors: dict[int, float]) -> dict[str, float]:
@@ -228,7 +233,7 @@ def _scaling(name: str, values: Array) -> Output:
     if not low < high:
         raise ApproximatorError(f"{name} is the same in all cases: there is nothing to learn")
     scale = "log" if is_log else "linear"
-    return Output(name=name, scale=scale, low=low, high=high, factor=0.0)
+    return Output(name=name, scale=scale, low=low, high=high, usual=1.0, factor=0.0)
 
 
 def _domain(inputs: Inputs, values: dict[str, Array], kept: fitting.Indices) -> Domain:
