@@ -64,6 +64,7 @@ def made_up_table(rows: int, seed: int = 1) -> pd.DataFrame:
             "total_energy_mwh": energy,
             "losses_mwh": 0.02 * energy,
             "lowest_voltage_kv": 16.4 - 0.2 * length / headway + 0.01 * noise,
+            "peak_loading": 1.5 * length / headway / converters / 10.0 * np.exp(0.01 * noise),
             "station.West.energy_mwh": 0.6 * energy,
             "station.East.energy_mwh": 0.4 * energy,
         }

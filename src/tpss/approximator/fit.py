@@ -34,9 +34,21 @@ Tick = Callable[[], None]
 Indices = npt.NDArray[np.int64]
 
 
-def fits_of(kind: str) -> int:
+KNOWN_PER_WEIGHT = 5
+"""Numbers that the cases tell for each weight of a network, at least, unless it is the smallest one."""
+
+
+def tried(kind: str, x: Array, y: Array) -> tuple[int, ...]:
+    """Numbers of neurons that are tried on cases: no more than these can teach."""
+    weights = x.shape[1] + 1 + y.shape[1]  # of a neuron
+    most = y.size // KNOWN_PER_WEIGHT // weights
+    smallest, *others = NEURONS[kind]
+    return (smallest, *(neurons for neurons in others if neurons <= most))
+
+
+def fits_of(kind: str, x: Array, y: Array) -> int:
     """How many networks are fitted for an ensemble."""
-    return len(NEURONS[kind]) * FOLDS + (ROUNDS - 1) * FOLDS
+    return len(tried(kind, x, y)) * FOLDS + (ROUNDS - 1) * FOLDS
 
 
 @dataclass(frozen=True)
@@ -64,7 +76,7 @@ def fit(kind: str, x: Array, y: Array, seed: int, tick: Tick) -> Fitted:
     folds = _folds(kind, y, seed)
     first: dict[int, list[Any]] = {}
     errors: dict[int, float] = {}
-    for neurons in NEURONS[kind]:
+    for neurons in tried(kind, x, y):
         first[neurons] = [_fit_one(kind, neurons, x, y, fold, seed, tick) for fold in folds]
         unseen = _unseen(_ensemble(first[neurons]), x, folds)
         errors[neurons] = _error(kind, unseen, y)
@@ -93,6 +105,7 @@ def _fit_one(
 ) -> Any:
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.neural_network import MLPClassifier, MLPRegressor
+    from threadpoolctl import threadpool_limits
 
     taken = np.setdiff1d(np.arange(len(x)), left_out)
     network = (MLPClassifier if kind == "collapse" else MLPRegressor)(
@@ -106,7 +119,8 @@ def _fit_one(
         random_state=seed * 1000 + int(left_out[0]),
     )
     targets = y[taken] if y.shape[1] > 1 else y[taken, 0]
-    with warnings.catch_warnings():
+    # Threads cost more than they save on matrices of this size.
+    with threadpool_limits(1), warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)  # to stop early is meant
         network.fit(x[taken], targets)
     tick()

@@ -57,6 +57,7 @@ FORMS = {
             "total_energy_mwh",
             "losses_mwh",
             "lowest_voltage_kv",
+            "peak_loading",
         ),
         with_stations=True,
     ),

@@ -221,6 +221,10 @@ class Conflict(NamedTuple):
 def _plain(column: Any, *, is_text: bool) -> Any:
     """A column as numbers or as text; a `ValueError` holds the first value that is no number."""
     values = np.asarray(column)
+    if is_text and values.dtype.kind == "U":
+        return values.astype(object)
+    if is_text and values.dtype.kind == "b":
+        return np.where(values, "true", "false").astype(object)
     if is_text:
         return np.array([text_of(value) for value in values.tolist()], dtype=object)
     try:

@@ -141,17 +141,19 @@ def _train(
     held_out = _held_out(len(used), seed)
     kept = np.setdiff1d(np.arange(len(used)), held_out)
     trained, tested = cases.of(kept), cases.of(held_out)
-    tick = _counter(not trained.carried.all(), report)
-
     carried = trained.of(np.flatnonzero(trained.carried))
     outputs = [_scaling(name, carried.y[name]) for name in names]
     y = np.column_stack([scaled(carried.y[o.name], o.scale, o.low, o.high) for o in outputs])
+    classes = (~trained.carried[:, None]).astype(np.float64)
+    tasks = {"figures": (carried.x, y), "noise": (carried.x, y)}
+    if not trained.carried.all():
+        tasks["collapse"] = (trained.x, classes)
+    tick = _counter(sum(fitting.fits_of(kind, *task) for kind, task in tasks.items()), report)
     figures = fitting.fit("figures", carried.x, y, seed, tick)
     errors = figures.unseen - y
     noise = fitting.fit("noise", carried.x, log_sizes(errors), seed, tick)
     fitted = {"figures": figures, "noise": noise}
-    if not trained.carried.all():
-        classes = (~trained.carried[:, None]).astype(np.float64)
+    if "collapse" in tasks:
         fitted["collapse"] = fitting.fit("collapse", trained.x, classes, seed, tick)
     file = ModelFile(
         format="tpss-approximator",
@@ -245,10 +247,8 @@ def _weights(ensemble: Ensemble) -> Weights:
     return Weights.model_validate(parts)
 
 
-def _counter(with_collapse: bool, report: Callable[[int, int], None]) -> Callable[[], None]:
+def _counter(whole: int, report: Callable[[int, int], None]) -> Callable[[], None]:
     """Counts networks as they are fitted."""
-    kinds = ("figures", "noise", *(["collapse"] if with_collapse else []))
-    whole = sum(fitting.fits_of(kind) for kind in kinds)
     done = 0
     report(0, whole)
 

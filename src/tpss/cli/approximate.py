@@ -200,23 +200,27 @@ def _print_prediction(model: "Approximator", row: Any) -> None:
 
 
 def _print_predictions(model: "Approximator", found: pd.DataFrame) -> None:
-    """Figures of several lines, a line a row."""
+    """Figures of several lines, a line a row; those of single stations are in files only."""
     from tpss.approximator.approximator import COLLAPSE
 
     names = [output.name for output in model.file.outputs if "station." not in output.name]
-    table = _table("row", *(_heading(name) for name in names), "collapse", "outside")
+    table = _table("row", *(_heading(name) for name in names))
+    if COLLAPSE in found:
+        table.add_column("collapse", justify="right")
     for number, (_, row) in enumerate(found.head(LINES_SHOWN).iterrows(), start=1):
-        figures = (
-            "-"
-            if pd.isna(row[name])
-            else f"{_number(row[name])} ±{_number((row[f'{name}.high'] - row[f'{name}.low']) / 2)}"
-            for name in names
-        )
-        chance = f"{row[COLLAPSE]:.3f}" if COLLAPSE in row else "-"
-        table.add_row(str(number), *figures, chance, "yes" if row["outside"] else "")
+        cells = [_with_interval(row, name) for name in names]
+        chance = [f"{row[COLLAPSE]:.3f}"] if COLLAPSE in found else []
+        table.add_row(str(number), *cells, *chance)
     Console().print(table)
     if len(found) > LINES_SHOWN:
         print(f"{len(found) - LINES_SHOWN:,} more rows; --out writes all of them into a file.")
+
+
+def _with_interval(row: Any, name: str) -> str:
+    if pd.isna(row[name]):
+        return "-"
+    half = (row[f"{name}.high"] - row[f"{name}.low"]) / 2.0
+    return f"{_number(row[name])} ±{half:.2g}"
 
 
 def check_model(file: Path, folder: Path | None) -> int:
@@ -290,7 +294,7 @@ def _words(name: str) -> str:
 
 
 def _heading(name: str) -> str:
-    return f"{_words(name)} [{units.label(name)}]"
+    return f"{_words(name)} [{units.label(name) or 1}]"
 
 
 def _number(value: float) -> str:
