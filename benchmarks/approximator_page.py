@@ -1,9 +1,10 @@
 """Write ``docs/approximator.md`` and its figures from a study, its approximator and its twins.
 
-Usage: python benchmarks/approximator_page.py STUDY MODEL.json TWINS.parquet [--speed N]
+Usage: python benchmarks/approximator_page.py STUDY MODEL.json ORIGINAL.json TWINS.parquet --speed N
 
-STUDY is the folder of examples/study_tpsa.toml, MODEL what ``tpss approximate train`` makes of it, TWINS
-what ``benchmarks/twins.py`` writes; see the page for the commands.
+STUDY is the folder of examples/study_tpsa.toml, MODEL what ``tpss approximate train`` makes of it,
+ORIGINAL the same with ``--form original``, TWINS what ``benchmarks/twins.py`` writes; see the page for the
+commands.
 """
 
 import argparse
@@ -19,6 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import tpss
+from tpss import units
 from tpss.approximator.approximator import Approximator
 from tpss.approximator.compare import given_by
 from tpss.approximator.train import read_table, usable
@@ -99,12 +101,7 @@ def collapse_floor(study: Path, twins: pd.DataFrame) -> float:
 
 
 def words(name: str) -> str:
-    return (
-        name.removesuffix(f"_{name.rpartition('_')[2]}")
-        .replace("station.", "")
-        .replace("_", " ")
-        .replace(".", " ")
-    )
+    return units.words(name).replace("station.", "").replace(".", " ")
 
 
 def score_table(model: Approximator, floor: pd.DataFrame) -> str:
@@ -211,7 +208,7 @@ def draw_calibration(axis: Any, held: Held) -> None:
         middle, [np.median(half[place == k]) for k in bins], color=COLOURS[0], label="half interval"
     )
     axis.set_title("trip time: error and interval [%]")
-    axis.set_xlabel("standard deviation of the gradients [‰]")
+    axis.set_xlabel("deviation of the gradients [‰]")
     axis.legend(fontsize=7.5)
 
 
@@ -250,8 +247,11 @@ def tried_table(model: Approximator) -> str:
     return "\n".join(lines)
 
 
-def page(model: Approximator, study: Path, twins: pd.DataFrame, held: Held, speed: int) -> str:
+def page(
+    model: Approximator, original: Approximator, study: Path, twins: pd.DataFrame, speed: int
+) -> str:
     data, collapse = model.file.data, model.file.collapse_score
+    held, added = held_of(model, study), original.file.scores[0]
     floor = noise_floor(model, study, twins)
     return Template(TEMPLATE.read_text("utf-8")).substitute(
         cases=f"{data.cases:,}",
@@ -276,6 +276,9 @@ def page(model: Approximator, study: Path, twins: pd.DataFrame, held: Held, spee
         nearest_accuracy=f"{collapse.nearest_accuracy:.1%}",
         collapse_floor=f"{collapse_floor(study, twins):.1%}",
         speed=f"{speed:,}",
+        original_error=f"{added.ninetieth:.3g} %",
+        original_coverage=f"{added.coverage:.1%}",
+        original_accuracy=f"{original.file.collapse_score.accuracy:.1%}",
     )
 
 
@@ -283,14 +286,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", type=Path)
     parser.add_argument("model", type=Path)
+    parser.add_argument("original", type=Path)
     parser.add_argument("twins", type=Path)
     parser.add_argument("--speed", type=int, required=True, help="what approximator.py has printed")
     given = parser.parse_args()
     model, twins = tpss.load_approximator(given.model), pd.read_parquet(given.twins)
-    held = held_of(model, given.study)
+    original = tpss.load_approximator(given.original)
     (DOCS / "approximator").mkdir(exist_ok=True)
-    draw_parity(held, DOCS / "approximator" / "parity.png")
-    text = page(model, given.study, twins, held, given.speed)
+    draw_parity(held_of(model, given.study), DOCS / "approximator" / "parity.png")
+    text = page(model, original, given.study, twins, given.speed)
     (DOCS / "approximator.md").write_text(text, "utf-8")
 
 
