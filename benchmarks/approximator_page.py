@@ -3,8 +3,8 @@
 Usage: python benchmarks/approximator_page.py STUDY MODEL.json ORIGINAL.json TWINS.parquet --speed N
 
 STUDY is the folder of examples/study_tpsa.toml, MODEL what ``tpss approximate train`` makes of it,
-ORIGINAL the same with ``--form original``, TWINS what ``benchmarks/twins.py`` writes; see the page for the
-commands.
+ORIGINAL the same with ``--form original``, TWINS what ``benchmarks/twins.py`` writes; see the page for
+the commands.
 """
 
 import argparse

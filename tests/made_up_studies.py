@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-SMALL = {"figures": (8,), "noise": (4,), "collapse": (4,)}
+SMALL = {"figures": (16,), "noise": (4,), "collapse": (4,)}
 """Neurons that suffice for the law."""
 
-NOISE = 0.01
+NOISE = 0.03
 """Standard deviation of the trip times' logarithms around the law, where the gradients vary most."""
 
 

@@ -15,7 +15,7 @@ def asked_of(model, table):
 
 
 def test_predictions_follow_the_law(model):
-    """The law is smooth; of 600 noisy cases its mean is known to better than their noise of 1 %."""
+    """The law is smooth: its mean is known to better than the noise of 3 % of single cases."""
     fresh = made_up_table(500, seed=2)
     found = model.predict(asked_of(model, fresh), outside="flag")
     known = law(fresh["length_km"], fresh["speed_limit_kmh"], fresh["gradient_mean_permille"])
@@ -58,7 +58,7 @@ def test_the_same_study_and_seed_give_the_same_approximator(study, model):
 def test_the_original_form_predicts_the_highest_mean_speed(study):
     model = train_approximator(study, form="original")
     assert [output.name for output in model.file.outputs] == ["mean_speed_kmh"]
-    assert model.file.scores[0].ninetieth < 3.0  # %; the noise alone is 1.6 % at most
+    assert model.file.scores[0].ninetieth < 6.0  # %; the noise alone is 4.9 % at most
 
 
 def test_half_the_interval_is_the_rank_of_conformal_prediction():
