@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tpss.api import Prepared, prepare, simulate
-    from tpss.errors import Finding, ResultError, ScenarioError, StudyError, TpssError
+    from tpss.approximator.approximator import Approximator, load_approximator
+    from tpss.approximator.train import train_approximator
+    from tpss.errors import (
+        ApproximatorError,
+        Finding,
+        ResultError,
+        ScenarioError,
+        StudyError,
+        TpssError,
+    )
     from tpss.many import simulate_many
     from tpss.report.html import write_report
     from tpss.results.key_figures import KeyFigures
@@ -25,6 +34,8 @@ if TYPE_CHECKING:
     from tpss.sweep.study import Study, load_study
 
 _HOME = {
+    "Approximator": "tpss.approximator.approximator",
+    "ApproximatorError": "tpss.errors",
     "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
     "KeyFigures": "tpss.results.key_figures",
@@ -37,6 +48,7 @@ _HOME = {
     "Study": "tpss.sweep.study",
     "StudyError": "tpss.errors",
     "TpssError": "tpss.errors",
+    "load_approximator": "tpss.approximator.approximator",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
     "load_study": "tpss.sweep.study",
@@ -45,10 +57,13 @@ _HOME = {
     "run_study": "tpss.sweep.campaign",
     "simulate": "tpss.api",
     "simulate_many": "tpss.many",
+    "train_approximator": "tpss.approximator.train",
     "write_report": "tpss.report.html",
 }
 
 __all__ = [
+    "Approximator",
+    "ApproximatorError",
     "Evidence",
     "Finding",
     "KeyFigures",
@@ -61,6 +76,7 @@ __all__ = [
     "Study",
     "StudyError",
     "TpssError",
+    "load_approximator",
     "load_result",
     "load_scenario",
     "load_study",
@@ -69,6 +85,7 @@ __all__ = [
     "run_study",
     "simulate",
     "simulate_many",
+    "train_approximator",
     "write_report",
 ]
 

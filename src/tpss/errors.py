@@ -57,3 +57,7 @@ class ResultError(TpssError):
 
 class StudyError(TpssError):
     """A study cannot be run, or its folder cannot be written or read."""
+
+
+class ApproximatorError(TpssError):
+    """An approximator cannot be trained, written or read."""

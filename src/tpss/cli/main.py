@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli import complete
+from tpss.cli import approximate_app, complete
 from tpss.results.file_kinds import Kind
 
 
@@ -353,6 +353,7 @@ def schema(
 
 imports = typer.Typer(help="Make scenario files from the files of others.", no_args_is_help=True)
 app.add_typer(imports, name="import")
+app.add_typer(approximate_app.app, name="approximate")
 
 
 @imports.callback()

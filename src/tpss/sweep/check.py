@@ -1,5 +1,6 @@
 """Faults of a study that show before the first case is run, and how long it will take."""
 
+import random
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -56,8 +57,11 @@ def _build(design: Design, case: int) -> Prepared:
 
 
 def _spread(cases: int, most: int) -> Iterator[int]:
-    count = min(cases, most)
-    yield from (i * cases // count for i in range(count))
+    """Some of the cases, the first one among them, drawn: every so many of a Sobol sequence lie in one
+    slice of its space.
+    """
+    drawn = random.Random(cases).sample(range(1, cases), min(cases, most) - 1)
+    yield from (0, *sorted(drawn))
 
 
 def _findings(error: TpssError, place: str) -> list[Finding]:

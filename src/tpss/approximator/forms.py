@@ -1,0 +1,91 @@
+"""What an approximator is asked, and what it answers, by the columns of a study's table."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+TRAINS, TRAINS_SPEED = "trains", "trains_speed_kmh"
+"""Inputs of the original form that the table does not hold; see `with_traffic`."""
+
+_SUPPLY = ("converters_per_station", "converters", "converter_rating_mva", "transformers")
+_CATENARY = ("catenary_r_ohm_per_km", "catenary_x_ohm_per_km", "connection_x_ohm")
+_GRADIENTS = ("gradient_mean_permille", "gradient_std_permille")
+
+
+@dataclass(frozen=True)
+class Form:
+    """Inputs that may vary, in the order in which they are preferred, and outputs."""
+
+    numbers: tuple[str, ...]
+    choices: tuple[str, ...]
+    outputs: tuple[str, ...]
+    with_stations: bool
+    """Whether the energy of each station is put out too."""
+
+    def outputs_of(self, columns: Sequence[str]) -> list[str]:
+        """Outputs that a table with these columns can teach."""
+        stations = [
+            name
+            for name in columns
+            if self.with_stations and name.startswith("station.") and name.endswith(".energy_mwh")
+        ]
+        return [*self.outputs, *stations]
+
+
+FORMS = {
+    "aggregated": Form(
+        numbers=(
+            "station_distance_km",
+            "length_km",
+            "route_km",
+            "converter_stations",
+            "stops",
+            *_SUPPLY,
+            *_CATENARY,
+            "headway_min",
+            "speed_limit_kmh",
+            "mean_speed_limit_kmh",
+            "train_mass_t",
+            "max_motor_current_a",
+            *_GRADIENTS,
+        ),
+        choices=("catenary", "high_voltage_line"),
+        outputs=(
+            "mean_speed_kmh",
+            "trip_time_min",
+            "total_energy_mwh",
+            "losses_mwh",
+            "lowest_voltage_kv",
+            "peak_loading",
+        ),
+        with_stations=True,
+    ),
+    "original": Form(
+        numbers=(
+            "station_distance_km",
+            *_SUPPLY,
+            *_CATENARY,
+            TRAINS,
+            TRAINS_SPEED,
+            *_GRADIENTS,
+        ),
+        choices=("catenary", "high_voltage_line"),
+        outputs=("mean_speed_kmh",),
+        with_stations=False,
+    ),
+}
+"""``original``: what TPSA was first meant for, the highest mean speed of a train added to a line."""
+
+NAMED_CATENARY, OWN = "catenary", "own"
+
+
+def with_traffic(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with the number and the speed of the trains that run on the line.
+
+    Both follow from what is known beforehand: the trains of all services with a headway, as if each
+    kept to the speed limit on the way of the studied train.
+    """
+    speed = table["mean_speed_limit_kmh"]
+    trains = table["trains_per_h"] * table["route_km"] / speed
+    return table.assign(**{TRAINS: trains, TRAINS_SPEED: speed})

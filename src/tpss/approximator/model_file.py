@@ -1,0 +1,256 @@
+"""The file of an approximator: JSON of numbers and words, which are checked and never run."""
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+
+from tpss.approximator.domain import Domain, fits
+from tpss.approximator.inputs import Inputs
+from tpss.approximator.network import Ensemble
+from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.scenario.fields import Name, Part, Real, Version, Whole, fault
+
+FORMAT, VERSION = "tpss-approximator", 1
+
+MOST_BYTES = 200_000_000
+"""Longest file that is read: a hundred times as long as those that are written."""
+
+
+class Weights(Part):
+    """Weights of an `Ensemble`."""
+
+    w1: tuple[tuple[tuple[Real, ...], ...], ...]
+    b1: tuple[tuple[Real, ...], ...]
+    w2: tuple[tuple[tuple[Real, ...], ...], ...]
+    b2: tuple[tuple[Real, ...], ...]
+
+    @model_validator(mode="after")
+    def _have_one_shape(self) -> Self:
+        try:
+            shapes = [np.array(each, dtype=float).shape for each in self._all()]
+            (m, _, n), (m1, n1), (m2, n2, o), (m3, o3) = shapes
+        except ValueError:
+            raise fault("weights that are no tables of numbers", REMEDY) from None
+        if not (m and m == m1 == m2 == m3 and n == n1 == n2 and o == o3):
+            raise fault(f"weights of shapes {shapes}, which do not fit together", REMEDY)
+        return self
+
+    def _all(self) -> tuple[Any, ...]:
+        return self.w1, self.b1, self.w2, self.b2
+
+    def ensemble(self) -> Ensemble:
+        """The ensemble."""
+        return Ensemble(*(np.array(each, dtype=float) for each in self._all()))
+
+
+REMEDY = "train it again, or fetch the file again from where it came from"
+
+
+class Output(Part):
+    """What an approximator puts out, and how sure it is."""
+
+    name: Name
+    scale: Literal["linear", "log"]
+    """Whether the networks know the value or its logarithm."""
+    low: Real
+    high: Real
+    """What is scaled to -1 and 1, after the logarithm."""
+    usual: Annotated[Real, Field(gt=0)]
+    """How far the members disagree at most in most cases, in sizes of the errors."""
+    factor: Annotated[Real, Field(ge=0)]
+    """Half the interval, in deviations."""
+
+
+class Score(Part):
+    """How well an output was predicted in cases that were held out."""
+
+    name: Name
+    unit: Literal["%", ""]
+    """% if the errors are relative."""
+    median: Real
+    ninetieth: Real
+    """90th percentile of the errors."""
+    coverage: Real
+    """Share of the cases inside their intervals."""
+    half_width: Real
+    """Median of half the interval."""
+    linear_ninetieth: Real | None
+    nearest_ninetieth: Real | None
+    """90th percentile of the errors of linear regression, and of the nearest trained case."""
+
+
+class CollapseScore(Part):
+    """How well it was told which lines do not carry their load, in cases that were held out."""
+
+    share: Real
+    """Of the cases that collapsed or stalled."""
+    accuracy: Real
+    brier: Real
+    linear_accuracy: Real | None
+    nearest_accuracy: Real | None
+
+
+class Data(Part):
+    """What an approximator was trained on."""
+
+    study: Name
+    study_hash: Name
+    cases: Whole
+    """Cases of the study's table."""
+    used: Whole
+    """Cases that were simulated and passed their audit."""
+    carried: Whole
+    """Of these, cases in which the line carried its load."""
+    held_out: tuple[Whole, ...]
+    """Numbers of the cases that were not trained on."""
+    time_step_min: Real
+    seed: Whole
+    tpss_version: Name
+    kernel_hash: Name
+    """Of the program that made the table."""
+
+
+class ModelFile(Part):
+    """An approximator."""
+
+    format: Literal["tpss-approximator"]
+    version: Version
+    made_by: dict[Name, Name]
+    """Versions of the programs that trained it."""
+    form: Name
+    data: Data
+    inputs: Inputs
+    domain: Domain
+    outputs: Annotated[tuple[Output, ...], Field(min_length=1)]
+    tried: dict[Name, dict[Name, Real]]
+    """Errors for cases not seen, by what the networks tell and by their number of neurons."""
+    figures: Weights
+    noise: Weights
+    """Networks that tell the logarithm of the size of the figures' errors."""
+    collapse: Weights | None
+    """None if the line carried its load in every case."""
+    scores: tuple[Score, ...]
+    collapse_score: CollapseScore | None
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        names = [each.name for each in self.inputs.varying]
+        if len(set(names)) < len(names):
+            raise fault("an input that occurs twice", REMEDY)
+        if not {each.of for each in self.inputs.multiples} <= set(names):
+            raise fault("a multiple of what is no input", REMEDY)
+        if any(each.factor == 0.0 for each in self.inputs.multiples):
+            raise fault("a multiple by 0", REMEDY)
+        if any(each.kind == "number" and not each.low < each.high for each in self.inputs.varying):
+            raise fault("an input without a range", REMEDY)
+        if not fits(self.domain, self.inputs):
+            raise fault("a domain of other inputs", REMEDY)
+        count = len(self.outputs)
+        for weights, outputs in ((self.figures, count), (self.noise, count), (self.collapse, 1)):
+            shape = None if weights is None else (len(weights.w1[0]), len(weights.b2[0]))
+            if shape not in (None, (self.inputs.width, outputs)):
+                raise fault("networks of other inputs or outputs", REMEDY)
+        return self
+
+
+def read_model(path: Path) -> ModelFile:
+    """The content of an approximator's file.
+
+    Raises
+    ------
+    ApproximatorError
+        It cannot be read, or is no such file.
+    ScenarioError
+        It is one, and damaged; all faults are listed.
+    """
+    document = _document(path)
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise ApproximatorError(
+            f"{path} is not the file of an approximator; name one that tpss approximate train has "
+            "written"
+        )
+    if document.get("version") != VERSION:
+        raise ApproximatorError(
+            f"{path} was written by another version of TPSS: its format is {document.get('version')!r}, "
+            f"this version reads {VERSION}; train it again"
+        )
+    try:
+        return ModelFile.model_validate(document)
+    except ValidationError as error:
+        raise ScenarioError([_finding(dict(d), path) for d in error.errors()]) from error
+
+
+def _document(path: Path) -> Any:
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise ApproximatorError(f"{path} is too long to be the file of an approximator")
+        return json.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise ApproximatorError(f"{path} cannot be read: {error.strerror or error}") from error
+    except (ValueError, RecursionError) as error:
+        raise ApproximatorError(
+            f"{path} is not the file of an approximator, or damaged ({error}); {REMEDY}"
+        ) from error
+
+
+def _finding(detail: dict[str, Any], path: Path) -> Finding:
+    key = ".".join(str(part) for part in detail["loc"])
+    shown = repr(detail["input"]) if detail["type"] != "missing" else ""
+    if len(shown) > 60:
+        shown = f"{shown[:57]}..."
+    problem = detail["msg"]
+    return Finding(str(path), key, shown, f"the file is damaged: {problem}", REMEDY)
+
+
+def check_target(path: Path, force: bool) -> None:
+    """Refuse a file that could not be written, before the work begins.
+
+    Raises
+    ------
+    ApproximatorError
+    """
+    if path.is_dir():
+        raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
+    if path.exists() and not force:
+        raise ApproximatorError(f"{path} exists; give another --out, or --force to replace it")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file that is there whole or not at all.
+
+    Raises
+    ------
+    ApproximatorError
+    """
+    unfinished = path.with_name(f"{path.name}.unfinished")
+    try:
+        with unfinished.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(path)
+    except OSError as error:
+        unfinished.unlink(missing_ok=True)
+        raise _unwritable(path, error) from error
+
+
+def _unwritable(path: Path, error: OSError) -> ApproximatorError:
+    return ApproximatorError(
+        f"{path} cannot be written: {error.strerror or error}; make room, or give another --out"
+    )
+
+
+def text_of_model(model: ModelFile) -> str:
+    """The file as text: numbers as they are, to the last digit."""
+    return json.dumps(model.model_dump(mode="json"), indent=None, separators=(",", ":")) + "\n"

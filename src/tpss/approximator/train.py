@@ -1,0 +1,277 @@
+"""From the table of a study to an approximator."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from tpss.approximator import fit as fitting
+from tpss.approximator.approximator import Approximator, scaled
+from tpss.approximator.calibrate import deviation, factor_of, log_sizes, usual_spread
+from tpss.approximator.domain import Domain, domain_of
+from tpss.approximator.forms import FORMS, with_traffic
+from tpss.approximator.inputs import Inputs, inputs_of_table
+from tpss.approximator.model_file import VERSION, Data, ModelFile, Output, Weights
+from tpss.approximator.network import Array, Ensemble
+from tpss.approximator.scores import Cases, Simple, score_collapse, score_figures
+from tpss.errors import ApproximatorError
+
+HELD_OUT = 0.2
+"""Share of the cases that are not trained on, but predicted to see how well that goes."""
+
+FEWEST = 100
+"""Cases, with lines that carry their load, that an approximator can be trained on."""
+
+FEWEST_COLLAPSES = 10
+"""Cases with lines that do not, if there are any."""
+
+
+def train_approximator(
+    folder: str | Path,
+    *,
+    form: str = "aggregated",
+    seed: int = 0,
+    report: Callable[[int, int], None] | None = None,
+) -> Approximator:
+    """Train an approximator on the table of a study.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Folder that `tpss.run_study` has written; the study need not be finished.
+    form : str
+        ``aggregated``, or ``original``: the highest mean speed of a train added to a line.
+    seed : int
+        What all draws follow from.
+    report : callable, optional
+        Called with the number of networks that are fitted, and how many there will be.
+
+    Returns
+    -------
+    Approximator
+        Trained on four fifths of the cases; its scores are those of the last one.
+
+    Raises
+    ------
+    StudyError
+        The folder is not that of a study, or of another version.
+    ApproximatorError
+        The table has too few cases, or nothing varies in it.
+    """
+    table, origin = read_table(Path(folder))
+    return _train(table, origin, form, seed, report or _no_report)
+
+
+def _no_report(_done: int, _whole: int) -> None:
+    pass
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a table comes from."""
+
+    study: str
+    study_hash: str
+    tpss_version: str
+    kernel_hash: str
+
+
+def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
+    """The cases of a study that were simulated and passed their audit, and where they come from.
+
+    Raises
+    ------
+    StudyError, ApproximatorError
+    """
+    demand_packages()
+    from tpss.sweep.folder import load_table, read_manifest
+
+    table = load_table(folder)
+    manifest = read_manifest(folder)
+    if table["time_step_min"].nunique() > 1:
+        steps = ", ".join(f"{step:g}" for step in sorted(table["time_step_min"].unique()))
+        raise ApproximatorError(
+            f"{folder} mixes time steps ({steps} min), which tell different things of the same line; "
+            "run the study with one of them"
+        )
+    origin = Origin(
+        study=str(manifest.get("name") or folder.absolute().name),
+        **{
+            name: str(manifest.get(name) or "unknown")
+            for name in ("study_hash", "tpss_version", "kernel_hash")
+        },
+    )
+    return with_traffic(table), origin
+
+
+def demand_packages() -> None:
+    """Refuse to go on without what training needs.
+
+    Raises
+    ------
+    ApproximatorError
+    """
+    packages = {"sklearn": "scikit-learn", "pyarrow": "pyarrow"}
+    absent = [name for module, name in packages.items() if find_spec(module) is None]
+    if absent:
+        raise ApproximatorError(
+            f'to train an approximator needs {", ".join(absent)}: pip install "tpss[study]"'
+        )
+
+
+def usable(table: pd.DataFrame) -> pd.DataFrame:
+    """Cases with a result that passed its audit."""
+    ran = table["status"].isin(("finished", "collapsed", "stalled"))
+    return table[ran & (table["audit_passed"] == True)]  # noqa: E712, it may be null
+
+
+def _train(
+    table: pd.DataFrame, origin: Origin, form: str, seed: int, report: Callable[[int, int], None]
+) -> Approximator:
+    used = usable(table)
+    _demand_enough(used, len(table))
+    inputs = inputs_of_table(used, FORMS[form])
+    names = FORMS[form].outputs_of(list(used.columns))
+    given = inputs.read({each.name: used[each.name] for each in inputs.varying}, "the table")
+    cases = cases_of(used, inputs.encode(given.inputs), names)
+    held_out = _held_out(len(used), seed)
+    kept = np.setdiff1d(np.arange(len(used)), held_out)
+    trained, tested = cases.of(kept), cases.of(held_out)
+    carried = trained.of(np.flatnonzero(trained.carried))
+    outputs = [_scaling(name, carried.y[name]) for name in names]
+    y = np.column_stack([scaled(carried.y[o.name], o.scale, o.low, o.high) for o in outputs])
+    classes = (~trained.carried[:, None]).astype(np.float64)
+    tasks = {"figures": (carried.x, y), "noise": (carried.x, y)}
+    if not trained.carried.all():
+        tasks["collapse"] = (trained.x, classes)
+    tick = _counter(sum(fitting.fits_of(kind, *task) for kind, task in tasks.items()), report)
+    figures = fitting.fit("figures", carried.x, y, seed, tick)
+    errors = figures.unseen - y
+    noise = fitting.fit("noise", carried.x, log_sizes(errors), seed, tick)
+    fitted = {"figures": figures, "noise": noise}
+    if "collapse" in tasks:
+        fitted["collapse"] = fitting.fit("collapse", trained.x, classes, seed, tick)
+    file = ModelFile(
+        format="tpss-approximator",
+        version=VERSION,
+        made_by={"tpss": version("tpss"), "scikit-learn": version("scikit-learn")},
+        form=form,
+        data=_data(table, used, held_out, seed, origin),
+        inputs=inputs,
+        domain=_domain(inputs, given.inputs, kept),
+        outputs=tuple(
+            _calibrated(output, errors[:, k], noise.unseen[:, k], figures.spread[:, k])
+            for k, output in enumerate(outputs)
+        ),
+        tried={kind: _by_neurons(each.errors) for kind, each in fitted.items()},
+        figures=_weights(figures.ensemble),
+        noise=_weights(noise.ensemble),
+        collapse=_weights(fitted["collapse"].ensemble) if "collapse" in fitted else None,
+        scores=(),
+        collapse_score=None,
+    )
+    return _scored(file, trained, tested)
+
+
+def _calibrated(output: Output, errors: Array, log_noise: Array, spread: Array) -> Output:
+    usual = usual_spread(log_noise, spread)
+    factor = factor_of(errors, deviation(log_noise, spread, usual))
+    return output.model_copy(update={"usual": usual, "factor": factor})
+
+
+def _by_neurons(errors: dict[int, float]) -> dict[str, float]:
+    return {str(neurons): error for neurons, error in errors.items()}
+
+
+def _scored(file: ModelFile, trained: Cases, tested: Cases) -> Approximator:
+    """The approximator with its scores in cases that it was not trained on."""
+    unscored = Approximator(file)
+    simple = Simple(unscored, trained)
+    scores = {
+        "scores": score_figures(unscored, tested, simple),
+        "collapse_score": score_collapse(unscored, tested, simple),
+    }
+    return Approximator(file.model_copy(update=scores))
+
+
+def _demand_enough(used: pd.DataFrame, cases: int) -> None:
+    finished = int((used["status"] == "finished").sum())
+    if finished < FEWEST:
+        raise ApproximatorError(
+            f"{finished} of {cases} cases finished and passed their audit: too few to learn from; an "
+            f"approximator needs at least {FEWEST}, and thousands to be good"
+        )
+    lost = len(used) - finished
+    if 0 < lost < FEWEST_COLLAPSES:
+        raise ApproximatorError(
+            f"{lost} case(s) collapsed or stalled: too few to learn where that begins; vary further, "
+            f"until {FEWEST_COLLAPSES} do, or less far, until none does"
+        )
+
+
+def _held_out(rows: int, seed: int) -> fitting.Indices:
+    order = np.random.default_rng(seed).permutation(rows)
+    return np.sort(order[: round(HELD_OUT * rows)])
+
+
+def cases_of(table: pd.DataFrame, x: Array, names: list[str]) -> Cases:
+    """Cases of a table with their outputs."""
+    carried = (table["status"] == "finished").to_numpy()
+    y = {name: table[name].to_numpy(dtype=float) for name in names}
+    return Cases(x, {k: np.where(carried, v, np.nan) for k, v in y.items()}, carried)
+
+
+def _scaling(name: str, values: Array) -> Output:
+    """How an output is scaled: relative errors count for what is positive, except a voltage."""
+    if not np.isfinite(values).all():
+        raise ApproximatorError(f"the table lacks {name} in a case that finished: run it again")
+    is_log = not name.endswith("_kv") and bool((values > 0.0).all())
+    known = np.log(values) if is_log else values
+    low, high = float(known.min()), float(known.max())
+    if not low < high:
+        raise ApproximatorError(f"{name} is the same in all cases: there is nothing to learn")
+    scale = "log" if is_log else "linear"
+    return Output(name=name, scale=scale, low=low, high=high, usual=1.0, factor=0.0)
+
+
+def _domain(inputs: Inputs, values: dict[str, Array], kept: fitting.Indices) -> Domain:
+    return domain_of({name: each[kept] for name, each in values.items()}, inputs)
+
+
+def _weights(ensemble: Ensemble) -> Weights:
+    parts = {name: getattr(ensemble, name).tolist() for name in ("w1", "b1", "w2", "b2")}
+    return Weights.model_validate(parts)
+
+
+def _counter(whole: int, report: Callable[[int, int], None]) -> Callable[[], None]:
+    """Counts networks as they are fitted."""
+    done = 0
+    report(0, whole)
+
+    def tick() -> None:
+        nonlocal done
+        done += 1
+        report(done, whole)
+
+    return tick
+
+
+def _data(
+    table: pd.DataFrame, used: pd.DataFrame, held_out: fitting.Indices, seed: int, origin: Origin
+) -> Data:
+    return Data(
+        study=origin.study,
+        study_hash=origin.study_hash,
+        cases=len(table),
+        used=len(used),
+        carried=int((used["status"] == "finished").sum()),
+        held_out=tuple(used["case"].to_numpy()[held_out].tolist()),
+        time_step_min=float(used["time_step_min"].iloc[0]),
+        seed=seed,
+        tpss_version=origin.tpss_version,
+        kernel_hash=origin.kernel_hash,
+    )

@@ -1,0 +1,301 @@
+"""The commands ``tpss approximate train``, ``predict`` and ``check``."""
+
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from tpss import units
+from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
+from tpss.errors import ApproximatorError, Finding, ScenarioError
+
+if TYPE_CHECKING:
+    from tpss.approximator.approximator import Approximator
+    from tpss.approximator.model_file import CollapseScore, Score
+
+LINES_SHOWN = 20
+"""Rows of a table whose figures are printed."""
+
+
+def train_model(folder: Path, out: Path, form: str, seed: int, force: bool, quiet: bool) -> int:
+    """Train an approximator and write its file; return the exit code."""
+    from tpss.approximator.model_file import check_target
+    from tpss.approximator.train import train_approximator
+
+    check_target(out, force)
+    console = Console(stderr=True, quiet=quiet)
+    try:
+        with nullcontext() if quiet else _progress_bar(console) as report:
+            model = train_approximator(folder, form=form, seed=seed, report=report)
+    except KeyboardInterrupt:
+        print("Interrupted; nothing was written.", file=sys.stderr)
+        return INTERRUPTED
+    written, fault = _save(model, out, force)
+    if not quiet:
+        _print_model(model, Console())
+        if not fault:
+            print(f"Wrote {written}")
+    if fault:
+        print(fault, file=sys.stderr)
+        return BAD_INPUT
+    return DONE
+
+
+def _save(model: "Approximator", out: Path, force: bool) -> tuple[Path | None, str]:
+    """Write the file; if that fails, into a temporary one, so that the training is not lost."""
+    try:
+        return model.save(out, force=force), ""
+    except ApproximatorError as error:
+        fault = str(error)
+    spare = Path(tempfile.mkdtemp(prefix="tpss-approximator-")) / out.name
+    try:
+        return model.save(spare), f"{fault}\nIt was saved as {spare} instead."
+    except ApproximatorError as error:
+        spare.parent.rmdir()
+        return None, f"{fault}\n{error}\nNothing of the training is kept but what is printed here."
+
+
+@contextmanager
+def _progress_bar(console: Console) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar of the networks that are fitted; gives the callable to report to."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("networks"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("Training", total=None)
+
+        def report(done: int, whole: int) -> None:
+            bar.update(task, completed=done, total=whole)
+
+        yield report
+
+
+def predict_lines(
+    file: Path,
+    assignments: list[str],
+    table: Path | None,
+    scenario: Path | None,
+    flag: bool,
+    out: Path | None,
+    force: bool,
+) -> int:
+    """Predict, print, and write what is asked for; return the exit code."""
+    from tpss.approximator.approximator import load_approximator
+    from tpss.approximator.model_file import check_target
+
+    model = load_approximator(file)
+    if out is not None:
+        _demand_kind(out)
+        check_target(out, force)
+    lines, place = _lines(model, assignments, table, scenario)
+    found = model.predict(lines, "flag" if flag else "refuse", place)
+    if out is not None:
+        _write(pd.concat([lines.reset_index(drop=True), found], axis=1), out)
+        print(f"Wrote {out}")
+    elif len(found) == 1:
+        _print_prediction(model, found.iloc[0])
+    else:
+        _print_predictions(model, found)
+    for row, words in enumerate(found["outside"].tolist()):
+        if words and row < LINES_SHOWN:
+            which = f"row {row + 1} " if len(found) > 1 else ""
+            print(f"{which}outside the trained region: {words}", file=sys.stderr)
+    return DONE
+
+
+def _lines(
+    model: "Approximator", assignments: list[str], table: Path | None, scenario: Path | None
+) -> tuple[pd.DataFrame, str]:
+    """Lines to predict, a row each, and where they come from."""
+    if table is not None:
+        return _read_table(table), str(table)
+    values: dict[str, Any] = {}
+    if scenario is not None:
+        values |= _inputs_of_scenario(model, scenario)
+    values |= dict(_assignment(text) for text in assignments)
+    return pd.DataFrame({name: [value] for name, value in values.items()}), str(scenario or "--set")
+
+
+def _assignment(text: str) -> tuple[str, Any]:
+    """Input and value of ``input=value``."""
+    name, equals, raw = text.partition("=")
+    if not equals or not name.strip() or not raw.strip():
+        remedy = "write --set headway_min=8"
+        raise ScenarioError([Finding("--set", text, "", "not of the form INPUT=VALUE", remedy)])
+    value = raw.strip()
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value
+
+
+def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
+    from tpss.approximator.forms import with_traffic
+    from tpss.scenario import load_scenario
+    from tpss.sweep.inputs import inputs_of
+
+    described = pd.DataFrame([inputs_of(load_scenario(file))._asdict()])
+    known = with_traffic(described).iloc[0].dropna()
+    return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
+
+
+def _demand_kind(path: Path) -> None:
+    if path.suffix not in (".csv", ".parquet"):
+        raise ApproximatorError(
+            f"{path} is neither .csv nor .parquet; give it one of these endings"
+        )
+
+
+def _read_table(path: Path) -> pd.DataFrame:
+    _demand_kind(path)
+    try:
+        if path.suffix == ".parquet":
+            return pd.read_parquet(path)
+        return pd.read_csv(path, comment="#", skipinitialspace=True)
+    except (OSError, ValueError, ImportError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ApproximatorError(f"{path} cannot be read as a table: {reason}") from error
+
+
+def _write(table: pd.DataFrame, out: Path) -> None:
+    from tpss.approximator.model_file import write_bytes
+
+    if out.suffix == ".parquet":
+        write_bytes(out, table.to_parquet(index=False))
+    else:
+        text = table.to_csv(index=False, float_format="%.10g", lineterminator="\n")
+        write_bytes(out, text.encode())
+
+
+def _print_prediction(model: "Approximator", row: Any) -> None:
+    """Figures of one line, an output a row."""
+    from tpss.approximator.approximator import COLLAPSE, LIKELY
+
+    names = [output.name for output in model.file.outputs]
+    if COLLAPSE in row and row[COLLAPSE] >= LIKELY:
+        chance = f"{row[COLLAPSE]:.3f}"
+        print(f"The line does not carry this: probability of collapse {chance}")
+        return
+    table = _table("", "figure", "90 % interval", "unit")
+    for name in names:
+        low, high = (_number(row[f"{name}.{end}"]) for end in ("low", "high"))
+        cells = (_words(name), _number(row[name]), f"{low} to {high}", units.label(name))
+        table.add_row(*map(escape, cells))
+    if COLLAPSE in row:
+        ends = (f"{row[f'{COLLAPSE}.{end}']:.3f}" for end in ("low", "high"))
+        table.add_row("probability of collapse", f"{row[COLLAPSE]:.3f}", " to ".join(ends), "")
+    Console().print(table)
+
+
+def _print_predictions(model: "Approximator", found: pd.DataFrame) -> None:
+    """Figures of several lines, a line a row; those of single stations are in files only."""
+    from tpss.approximator.approximator import COLLAPSE
+
+    names = [output.name for output in model.file.outputs if "station." not in output.name]
+    table = _table("row", *(_heading(name) for name in names))
+    if COLLAPSE in found:
+        table.add_column("collapse", justify="right")
+    for number, (_, row) in enumerate(found.head(LINES_SHOWN).iterrows(), start=1):
+        cells = [_with_interval(row, name) for name in names]
+        chance = [f"{row[COLLAPSE]:.3f}"] if COLLAPSE in found else []
+        table.add_row(str(number), *cells, *chance)
+    Console().print(table)
+    if len(found) > LINES_SHOWN:
+        print(f"{len(found) - LINES_SHOWN:,} more rows; --out writes all of them into a file.")
+
+
+def _with_interval(row: Any, name: str) -> str:
+    if pd.isna(row[name]):
+        return "-"
+    half = (row[f"{name}.high"] - row[f"{name}.low"]) / 2.0
+    return f"{_number(row[name])} ±{half:.2g}"
+
+
+def check_model(file: Path, folder: Path | None) -> int:
+    """Say what an approximator is, or how it predicts a study; return the exit code."""
+    from tpss.approximator.approximator import load_approximator
+
+    model, console = load_approximator(file), Console()
+    if folder is None:
+        _print_model(model, console)
+        return DONE
+    from tpss.approximator.compare import compare
+
+    found = compare(model, folder)
+    console.print(f"{found.tested:,} cases {found.which}", highlight=False)
+    if found.outside:
+        console.print(f"{found.outside:,} lie outside the trained region", highlight=False)
+    _print_scores(found.scores, found.collapse, console)
+    return DONE
+
+
+def _print_model(model: "Approximator", console: Console) -> None:
+    data, inputs = model.file.data, model.file.inputs
+    tell = [
+        f"Trained on {data.used - len(data.held_out):,} cases of the study {data.study} "
+        f"({data.study_hash}) at steps of {data.time_step_min:g} min; {len(data.held_out):,} held out.",
+        f"Simulated by TPSS {data.tpss_version} (kernels {data.kernel_hash}), trained by "
+        + ", ".join(f"{name} {version}" for name, version in model.file.made_by.items())
+        + ".",
+        f"{model.neurons} in each of {model.members} networks.",
+    ]
+    for line in tell:
+        console.print(line, highlight=False, markup=False)
+    table = _table("input", "trained at", "unit", "may be given as")
+    for each in inputs.varying:
+        others = ", ".join(other.name for other in inputs.multiples if other.of == each.name)
+        table.add_row(*map(escape, (each.name, each.range, units.label(each.name), others)))
+    for name, value in inputs.fixed.items():
+        shown = value if isinstance(value, str) else f"{value:.6g}"
+        table.add_row(*map(escape, (name, f"{shown} only", units.label(name), "or left out")))
+    console.print(table)
+    _print_scores(model.file.scores, model.file.collapse_score, console)
+
+
+def _print_scores(
+    scores: Iterable["Score"], collapse: "CollapseScore | None", console: Console
+) -> None:
+    table = _table("in cases held out", "median error", "90th percentile", "in interval", "unit")
+    for score in scores:
+        unit = score.unit or units.label(score.name)
+        errors = (_number(score.median), _number(score.ninetieth))
+        table.add_row(*map(escape, (_words(score.name), *errors, f"{score.coverage:.1%}", unit)))
+    console.print(table)
+    if collapse is not None:
+        console.print(
+            f"Whether the line collapses is told rightly in {collapse.accuracy:.1%} of the cases; "
+            f"{collapse.share:.1%} collapse.",
+            highlight=False,
+        )
+
+
+def _table(first: str, *others: str) -> Table:
+    table = Table(box=None, pad_edge=False)
+    table.add_column(first)
+    for heading in others:
+        table.add_column(escape(heading), justify="left" if heading == "unit" else "right")
+    return table
+
+
+def _words(name: str) -> str:
+    return units.words(name).replace("station.", "").replace(".", " ")
+
+
+def _heading(name: str) -> str:
+    return f"{_words(name)} [{units.label(name) or 1}]"
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

@@ -1,0 +1,152 @@
+"""Arguments and options of ``tpss approximate``."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    help="TPSA, the approximator: learn from a study what its simulations lead to, and predict more.",
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+)
+
+
+class FormName(StrEnum):
+    """What an approximator is asked and answers."""
+
+    AGGREGATED = "aggregated"
+    ORIGINAL = "original"
+
+
+ModelFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="MODEL", help="File that tpss approximate train has written.", show_default=False
+    ),
+]
+
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
+
+
+@app.command(
+    epilog="Example:  tpss approximate train converters --out converters.json, after "
+    "tpss sweep examples/study_converters.toml --out converters"
+)
+def train(
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            metavar="DIR", help="Folder of a study, as tpss sweep writes it.", show_default=False
+        ),
+    ],
+    out: Annotated[Path, typer.Option(help="File to write (JSON).")] = Path("model.json"),
+    form: Annotated[
+        FormName,
+        typer.Option(
+            metavar="FORM",
+            help="aggregated; or original: the highest mean speed of a train added to a line, from "
+            "the number and the speed of those that run there.",
+        ),
+    ] = FormName.AGGREGATED,
+    seed: Annotated[int, typer.Option(min=0, help="Number that all draws follow from.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Train an approximator on the table of a study.
+
+    Four fifths of the cases are trained on; the others tell how good it is, and the file says so.
+
+    Exit codes: 0 done, 2 bad input, or the file cannot be written, 130 interrupted (nothing is
+    written).
+    """
+    from tpss.cli.approximate import train_model
+
+    raise typer.Exit(train_model(folder, out, form.value, seed, force, quiet))
+
+
+@app.command(
+    epilog="Examples:  tpss approximate predict model.json --set length_km=120 --set headway_min=8, "
+    "and so on for its other inputs; tpss approximate predict model.json --table lines.csv --out "
+    "figures.csv"
+)
+def predict(
+    model: ModelFile,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="INPUT=VALUE",
+            help="An input; tpss approximate check MODEL lists them; repeatable.",
+            show_default=False,
+        ),
+    ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            help="Lines to predict, a row each and a column an input (.csv or .parquet).",
+            show_default=False,
+        ),
+    ] = None,
+    scenario: Annotated[
+        Path | None,
+        typer.Option(
+            help="Scenario file (TOML) whose inputs are taken; --set changes them.",
+            show_default=False,
+        ),
+    ] = None,
+    flag: Annotated[
+        bool,
+        typer.Option(
+            "--flag",
+            help="Predict outside the trained region too, and say so, in place of refusing.",
+        ),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write inputs and figures into this file (.csv or .parquet).", show_default=False
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Predict figures of lines that were not simulated, each with an interval.
+
+    A figure lies in its interval in nine of ten cases like those of the study.
+
+    Exit codes: 0 done, 2 bad input, an input outside the trained region, or the file cannot be
+    written.
+    """
+    from tpss.cli.approximate import predict_lines
+
+    if (table is not None) and (set_ or scenario is not None):
+        raise typer.BadParameter("give either --table, or one line by --scenario and --set")
+    if table is None and scenario is None and not set_:
+        raise typer.BadParameter("give --set for each input, --scenario, or --table")
+    raise typer.Exit(predict_lines(model, set_ or [], table, scenario, flag, out, force))
+
+
+@app.command(
+    epilog="Examples:  tpss approximate check model.json, then tpss approximate check model.json "
+    "another-study"
+)
+def check(
+    model: ModelFile,
+    folder: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[DIR]", help="Folder of a study to predict and compare.", show_default=False
+        ),
+    ] = None,
+) -> None:
+    """Say what an approximator was trained on, what it asks and answers, and how good it is.
+
+    With the folder of a study, its cases inside the trained region are predicted and compared; of
+    the study that it was trained on, those that were held out.
+
+    Exit codes: 0 done, 2 bad input.
+    """
+    from tpss.cli.approximate import check_model
+
+    raise typer.Exit(check_model(model, folder))
