@@ -14,7 +14,7 @@ from tpss.sweep.derive import scenario_of, scenario_with
 from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
 
 SAMPLE = 100
-"""Cases that are built, evenly over the study, to find those that cannot be."""
+"""Cases that are built, drawn from the study, to find those that cannot be."""
 
 TRIAL_S, TRIAL_CASES = 2.0, 20
 """How long, and with how many cases, the time of a case is measured at most."""
