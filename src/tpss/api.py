@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from tpss.clock import clock_of
+from tpss.compiling import compile_in_parts
+from tpss.kernel import kernels_are_compiled
 from tpss.model import build_model
 from tpss.model.build import Layout, steps_of
 from tpss.model.traffic import build_services
@@ -67,6 +69,8 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
+    if not kernels_are_compiled():
+        compile_in_parts(build_model(scenario)[0])
     prepared = build(scenario)
     compile_kernels(prepared.start.model, prepared.clock)
     return prepared

@@ -1,0 +1,48 @@
+"""The two parts in which the kernels are compiled are those that the clock calls."""
+
+import pytest
+
+from tpss.compiling import adopt
+from tpss.model import build_model
+from tpss.simulation.parts import compile_calls, driving, load_flow
+from tpss.simulation.run import compile_kernels
+
+from scenarios import short_line
+
+
+@pytest.mark.parametrize("part", [driving, load_flow])
+def test_a_part_asks_for_nothing_that_the_clock_has_not_compiled(part):
+    """With other types of arguments a kernel would be compiled twice, once for nothing."""
+    model, _ = build_model(short_line())
+    compile_kernels(model)
+    calls = part(model)
+    before = [sum(kernel.stats.cache_misses.values()) for kernel, _ in calls]
+    compile_calls(calls)
+    assert [sum(kernel.stats.cache_misses.values()) for kernel, _ in calls] == before
+
+
+@pytest.fixture
+def caches(tmp_path):
+    """A cache with the kernel f, and another one with f, of another kind, and g."""
+    for place, name, content in (
+        ("own/a", "f-1.py311", "own"), ("other/a", "f-1.py311", "other"), ("other/b", "g-2.py311", "g"),
+    ):  # fmt: skip
+        folder = tmp_path / place
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in (f"{name}.nbi", f"{name}.1.nbc", f"{name}.2.nbc"):
+            (folder / file).write_text(content)
+    return tmp_path / "own", tmp_path / "other"
+
+
+def test_what_a_cache_lacks_is_adopted_whole(caches):
+    own, other = caches
+    adopt(other, own)
+    adopted = {path.name: path.read_text() for path in (own / "b").iterdir()}
+    assert adopted == {"g-2.py311.nbi": "g", "g-2.py311.1.nbc": "g", "g-2.py311.2.nbc": "g"}
+
+
+def test_what_a_cache_has_stays_as_it_is(caches):
+    own, other = caches
+    adopt(other, own)
+    assert {path.read_text() for path in (own / "a").iterdir()} == {"own"}
+    assert len(list((other / "a").iterdir())) == 3
