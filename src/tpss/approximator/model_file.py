@@ -1,7 +1,6 @@
 """The file of an approximator: JSON of numbers and words, which are checked and never run."""
 
 import json
-import os
 import tempfile
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -14,6 +13,7 @@ from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError
 from tpss.scenario.fields import Name, Part, Real, Version, Whole, fault
+from tpss.whole_file import write_whole
 
 FORMAT, VERSION = "tpss-approximator", 1
 
@@ -233,15 +233,9 @@ def write_bytes(path: Path, content: bytes) -> None:
     ------
     ApproximatorError
     """
-    unfinished = path.with_name(f"{path.name}.unfinished")
     try:
-        with unfinished.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        unfinished.replace(path)
+        write_whole(path, content)
     except OSError as error:
-        unfinished.unlink(missing_ok=True)
         raise _unwritable(path, error) from error
 
 

@@ -1,7 +1,6 @@
 """The folder of a study: what it is, and a file of rows for each batch, written whole or not at all."""
 
 import json
-import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from tpss.errors import StudyError
+from tpss.whole_file import write_whole
 
 MANIFEST, CASES = "study.json", "cases"
 
@@ -124,20 +124,6 @@ def told(path: Path) -> Iterator[None]:
             f"{place} cannot be written: {error.strerror or error}; make room, or give another --out. "
             "What is there is kept, and the same command goes on from it"
         ) from error
-
-
-def write_whole(place: Path, content: bytes) -> None:
-    """Write a file that is there whole, and on the disk, or not at all."""
-    unfinished = place.with_name(f"{place.name}.unfinished")
-    try:
-        with unfinished.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        unfinished.replace(place)
-    except OSError:
-        unfinished.unlink(missing_ok=True)
-        raise
 
 
 def missing(done: Ranges, cases: int) -> Ranges:
