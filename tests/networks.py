@@ -67,7 +67,7 @@ def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     trains = blank_records(len(powers_va), TRAIN)
     trains.train_type = np.arange(len(powers_va))
     trains.position_m = positions_m
-    trains.efficiency = 1.0
+    trains.per_efficiency = 1.0
     return Loads(trains, types, build_machine())
 
 

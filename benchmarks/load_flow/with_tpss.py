@@ -70,7 +70,7 @@ def constant_loads(trains: int) -> Loads:
     """Trains that nothing but their driver limits, so that each draws a power of its own."""
     kind, rows = blank_records(1, TRAIN_TYPE), blank_records(trains, TRAIN)
     kind.reactive_model, kind.filter_reactance_ohm = POWER_FACTOR, math.inf
-    rows.efficiency, rows.force_cap_n, rows.free_band_v = 1.0, 1.0, math.inf
+    rows.per_efficiency, rows.force_cap_n, rows.free_band_v = 1.0, 1.0, math.inf
     return Loads(rows, kind, build_machine())
 
 

@@ -48,8 +48,8 @@ def solve_slowly(case):
         residual = power / 10e6
         residual[n:] += drawn / 10e6
         for s, node in enumerate(law.node):
-            u, angle, *_ = terminal_voltage(power[node].real, power[node].imag, 1.0, law[s])
-            residual[node] = (voltage[node] - u * np.exp(1j * angle)) / 16_500.0
+            u, direction, *_ = terminal_voltage(power[node].real, power[node].imag, 1.0, law[s])
+            residual[node] = (voltage[node] - u * direction) / 16_500.0
         return np.concatenate([residual.real, residual.imag])
 
     start = np.concatenate([np.ones(len(y)), np.zeros(len(y))])

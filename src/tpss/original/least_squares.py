@@ -90,7 +90,7 @@ class Search:
 
     def __init__(self, grid: Grid, count: int, model: Model, state: State) -> None:
         self.grid, self.count, self.model, self.state = grid, count, model, state
-        self.loads = Loads(state.trains, model.types, model.machine)
+        self.loads = Loads(state.trains, model.types, state.machine)
         self.evaluations = 0
         powers = np.zeros(2 * model.network.sources.size)
         self.flat = np.concatenate([np.zeros(grid.size), np.ones(grid.size), powers])

@@ -4,22 +4,30 @@ from typing import Any
 
 from tpss.kernel import inlined, kernel
 from tpss.physics.motor import NEW, line_voltage_factor, motor_voltage
-from tpss.physics.reactive_power import TRANSFORMER_RATIO, bridge_reactive_power, bridge_sine
+from tpss.physics.reactive_power import (
+    TRANSFORMER_RATIO,
+    bridge_reactive_power,
+    bridge_sine,
+    sine_over_motor_voltage,
+)
+from tpss.physics.series import reaches, series_at
 
 
 @inlined
 def train_bridge_sine(voltage_v: float, kind: Any, train: Any, machine: Any) -> tuple[float, float]:
     """β, clipped to 0 ≤ β ≤ 1, and its slope over the line voltage. [1], [1/V]"""
-    motor_v = motor_voltage(
-        train.speed_m_s,
-        voltage_v,
-        kind.base_speed_m_s,
-        kind.highest_motor_voltage_v,
-        kind.voltage_model,
-    )
-    sine, by_motor, by_locomotive = bridge_sine(
-        motor_v, voltage_v * TRANSFORMER_RATIO, machine.bridge_sine, train.neurons
-    )
+    network, series, locomotive_v = machine.bridge_sine, train.sine, voltage_v * TRANSFORMER_RATIO
+    motor_v = 0.0
+    if kind.voltage_model != NEW or not reaches(locomotive_v, series):
+        motor_v = motor_voltage(
+            train.speed_m_s,
+            voltage_v,
+            kind.base_speed_m_s,
+            kind.highest_motor_voltage_v,
+            kind.voltage_model,
+        )
+        bridge_sine(motor_v, locomotive_v, network, machine.room, series)
+    sine, by_locomotive = series_at(locomotive_v, series)
     train.bridge_sine = sine
     if sine <= 0.0:
         return 0.0, 0.0
@@ -27,7 +35,7 @@ def train_bridge_sine(voltage_v: float, kind: Any, train: Any, machine: Any) -> 
         return 1.0, 0.0
     slope = by_locomotive * TRANSFORMER_RATIO
     if kind.voltage_model != NEW and line_voltage_factor(voltage_v, kind.voltage_model) < 1.0:
-        slope += by_motor * motor_v / voltage_v
+        slope += sine_over_motor_voltage(network, machine.room) * motor_v / voltage_v
     return sine, slope
 
 

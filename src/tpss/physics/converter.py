@@ -66,16 +66,18 @@ def grid_angle(power_w: float, converters: float, law: Law) -> tuple[float, floa
     grid = law.grid_reactance_ohm / (square + law.grid_reactance_ohm * q50_var)
     x_motor = law.motor_reactance_ohm / converters
     motor = x_motor / (square + x_motor * q50_var)
-    angle = law.grid_angle_rad - (math.atan(grid * power_w) + math.atan(motor * power_w)) / 3.0
-    slope = -(grid / (1.0 + (grid * power_w) ** 2) + motor / (1.0 + (motor * power_w) ** 2)) / 3.0
-    return angle, slope
+    by_grid, by_motor = grid * power_w, motor * power_w
+    # arctan a + arctan b = arctan (a + b)/(1 - ab), of the quadrant that the signs tell.
+    lag = math.atan2(by_grid + by_motor, 1.0 - by_grid * by_motor)
+    slope = grid / (1.0 + by_grid * by_grid) + motor / (1.0 + by_motor * by_motor)
+    return law.grid_angle_rad - lag / 3.0, -slope / 3.0
 
 
 @inlined
 def terminal_voltage(
     power_w: float, reactive_power_var: float, converters: float, law: Law
-) -> tuple[float, float, float, float, float]:
-    r"""Voltage and angle of a station and their slopes: U, θ, dU/dQ, dθ/dP, dθ/dQ.
+) -> tuple[float, complex, float, float, float]:
+    r"""Voltage of a station, its direction, and their slopes: U, e^{jθ}, dU/dQ, dθ/dP, dθ/dQ.
 
     .. math::
         \theta = \theta_0 + \psi, \quad
@@ -99,8 +101,11 @@ def terminal_voltage(
     x = law.generator_reactance_ohm / converters
     opposite = x * power_w
     adjacent = voltage * voltage + x * reactive_power_var
-    length = opposite * opposite + adjacent * adjacent
-    angle = behind - math.atan2(opposite, adjacent)
-    by_power = behind_slope - x * adjacent / length
-    by_reactive = opposite * (2.0 * voltage * voltage_slope + x) / length
-    return voltage, angle, voltage_slope, by_power, by_reactive
+    per_square = 1.0 / (opposite * opposite + adjacent * adjacent)
+    # The direction of the last angle without the angle: the sides of its triangle.
+    size = math.sqrt(per_square)
+    turn = complex(adjacent * size, -opposite * size)
+    direction = complex(math.cos(behind), math.sin(behind)) * turn
+    by_power = behind_slope - x * adjacent * per_square
+    by_reactive = opposite * (2.0 * voltage * voltage_slope + x) * per_square
+    return voltage, direction, voltage_slope, by_power, by_reactive

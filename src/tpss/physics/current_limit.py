@@ -92,8 +92,8 @@ def _apparent_power(
     [Boullanger2009]_, eq. (2.13), (2.17), (2.19), (2.21) and (2.22).
     """
     power, power_slope, speed, speed_slope = motor_power(motor_force_n, kind, train)
-    active = power / train.efficiency + kind.auxiliary_power_w
-    active_slope = power_slope / train.efficiency
+    active = power * train.per_efficiency + kind.auxiliary_power_w
+    active_slope = power_slope * train.per_efficiency
     current_a = 0.0
     if kind.reactive_model == DOUBLE_BRIDGE:
         if train.speed_m_s < kind.base_speed_m_s:

@@ -29,7 +29,7 @@ from tpss.physics.curve import CURVE, Points, curve_at
 from tpss.physics.effort_table import MOST_VOLTAGES
 from tpss.physics.machine import highest_force, take_effort
 from tpss.physics.motor import armature_current, motor_force
-from tpss.physics.neural_network import NETWORK, NEURONS
+from tpss.physics.neural_network import NETWORK
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
     POWER_FACTOR,
@@ -38,6 +38,7 @@ from tpss.physics.reactive_power import (
     power_factor,
     reactive_ratio,
 )
+from tpss.physics.series import ROOM, SERIES
 
 FULL_EFFORT_N = 1e9
 """Force cap of a driver who takes whatever the machine gives: more than any machine does. [N]"""
@@ -49,10 +50,11 @@ MACHINE = np.dtype(
             ("tractive_effort", NETWORK),
             ("bridge_sine", NETWORK),
             ("power_factor", NETWORK),
+            ("room", float, ROOM),
         ],
     ),
 )
-"""The three networks that describe a locomotive's machine."""
+"""The three networks that describe a locomotive's machine, and the room in which they are evaluated."""
 
 TRAIN_TYPE = np.dtype(
     [
@@ -105,15 +107,15 @@ DEMAND = np.dtype(
         ("speed_m_s", float),  # at the start of the step
         ("mean_speed_weight_s", float),  # h/2 to bill the step's mean speed, 0 for its start's
         ("driven_share", float),  # share of the step in which the motors give the force, mostly 1
-        ("efficiency", float),
+        ("per_efficiency", float),  # 1 / η
         ("reactive_ratio", float),  # Q over P of the motors, by the power factor
         ("taken_speed_m_s", float),  # speed to which all that `take_speed` writes belongs
         ("free_voltage_v", float),  # voltage around which the machine does not limit the force
         ("free_force_n", float),  # what the machine gives there
         ("free_band_v", float),  # how far from it that is proven; negative: nowhere
         ("steepest_n_per_v", float),  # bound of the slope of the machine's force over voltage
-        ("bias", float, (NEURONS,)),  # of the tractive-effort network, by speed and current
-        ("neurons", float, (NEURONS,)),  # scratch of a network
+        ("effort", SERIES),  # the tractive-effort network over the line voltage [N], [V]
+        ("sine", SERIES),  # the bridge network over the locomotive's voltage [1], [V]
         ("row_force_n", float, (MOST_VOLTAGES,)),  # of a table's rows, or by limits the first
         ("row_slope_n_per_v", float, (MOST_VOLTAGES,)),
         ("cap_power_w", float),  # of the motors at the force cap
@@ -178,13 +180,15 @@ def take_speed(
             train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
         return
     speed = train.taken_speed_m_s = train.speed_m_s
-    train.efficiency = curve_at(speed, kind.efficiency.first, kind.efficiency.points, points)
+    efficiency = curve_at(speed, kind.efficiency.first, kind.efficiency.points, points)
+    train.per_efficiency = 1.0 / efficiency
     if kind.reactive_model == POWER_FACTOR:
-        factor = power_factor(speed, machine.power_factor, train.neurons)
+        factor = power_factor(speed, machine.power_factor, machine.room[0])
         train.reactive_ratio = reactive_ratio(factor)
     elif kind.reactive_model == POWER_FACTOR_CURVE:
         factor = curve_at(speed, kind.power_factor.first, kind.power_factor.points, points)
         train.reactive_ratio = reactive_ratio(factor)
+    train.sine.reach_8 = 0.0
     take_effort(kind, train, machine, points)
     train.free_voltage_v = voltage_v
     train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
@@ -342,7 +346,7 @@ def armature_demand(
     return current, current * relative * slope_n_per_v
 
 
-@kernel
+@fused
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
     kind: TrainType, train: Demand, machine: Machine,
@@ -381,8 +385,7 @@ def electrical_demand(
     """
     force, slope = wheel_force(voltage_v, kind, train, machine)
     power, power_slope = motor_power_demand(force, slope, kind, train)
-    per_motor_power = 1.0 / train.efficiency
-    active = power * per_motor_power + kind.auxiliary_power_w
+    active = power * train.per_efficiency + kind.auxiliary_power_w
     if kind.reactive_model == DOUBLE_BRIDGE:
         reactive, reactive_slope = bridge_demand(voltage_v, force, slope, kind, train, machine)
     else:
@@ -393,4 +396,4 @@ def electrical_demand(
     reactive_slope += filtered_slope
     train.wheel_force_n = force
     train.active_power_w, train.reactive_power_var = active, reactive
-    return active, reactive, power_slope * per_motor_power, reactive_slope
+    return active, reactive, power_slope * train.per_efficiency, reactive_slope

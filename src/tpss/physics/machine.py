@@ -10,11 +10,11 @@ from tpss.kernel import inlined, kernel
 from tpss.physics.curve import Points
 from tpss.physics.effort_limits import limited_force, voltage_share
 from tpss.physics.effort_table import outside_table, table_force, take_rows
+from tpss.physics.series import reaches, series_at
 from tpss.physics.tractive_effort import (
     VOLTAGE,
     effort_outside_training,
     maximum_motor_force,
-    speed_and_current_bias,
 )
 
 NETWORK = 0
@@ -44,9 +44,8 @@ def take_effort(kind: Any, train: Any, machine: Any, points: Points) -> None:
         fall_v = kind.full_voltage_v - kind.zero_voltage_v
         train.steepest_n_per_v = force / fall_v if fall_v > 0.0 else 0.0
     else:
-        network = machine.tractive_effort
-        speed_and_current_bias(train.speed_m_s, kind.highest_current_a, network, train.bias)
-        train.steepest_n_per_v = network.steepest[VOLTAGE]
+        train.effort.reach_8 = 0.0
+        train.steepest_n_per_v = machine.tractive_effort.steepest[VOLTAGE]
 
 
 @kernel
@@ -70,7 +69,16 @@ def highest_force(voltage_v: float, kind: Any, train: Any, machine: Any) -> tupl
         As in `take_effort`, which comes first.
     """
     if kind.effort_model == NETWORK:
-        return maximum_motor_force(voltage_v, train.bias, machine.tractive_effort, train.neurons)
+        if not reaches(voltage_v, train.effort):
+            maximum_motor_force(
+                train.speed_m_s,
+                voltage_v,
+                kind.highest_current_a,
+                machine.tractive_effort,
+                machine.room,
+                train.effort,
+            )
+        return series_at(voltage_v, train.effort)
     return _described_force(voltage_v, kind, train)
 
 

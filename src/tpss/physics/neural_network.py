@@ -21,6 +21,7 @@ References
 [Boullanger2009]_, eq. (B.1)-(B.4), (C.1), (C.10), (D.1), (D.8), (E.1), (E.6).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -37,6 +38,16 @@ NEURONS = 16
 
 MOST_INPUTS = 3
 
+TAYLOR_TERMS = 8
+SERIES_INPUT = 1
+"""Input along which `series` follows a network: the voltage of those that have one."""
+
+EIGHTH_OVER_FIRST = 10.21
+"""Bound of the eighth derivative of logsig over the first one. [1]"""
+
+LONGEST_WAY = 0.5
+"""Farthest that a series lets the input of a neuron move from its centre. [1]"""
+
 NETWORK = np.dtype(
     (
         np.record,
@@ -45,7 +56,9 @@ NETWORK = np.dtype(
             ("bias", float, (NEURONS,)),
             ("output", float, (NEURONS,)),  # weight of each neuron in the output
             ("output_bias", float),
-            ("slope", float, (MOST_INPUTS, NEURONS)),  # output times weight
+            ("taylor", float, (TAYLOR_TERMS, NEURONS)),  # w² (w¹)^k / k! of the input `SERIES_INPUT`
+            ("remainder", float, (NEURONS,)),  # bounds what those leave out, over the rounding
+            ("furthest_8", float),  # eighth power of the distance for which that holds
             ("steepest", float, (MOST_INPUTS,)),  # bound of the output's slope over each input
             ("trained", float, (MOST_INPUTS, 2)),  # ends of each input's training range
         ],
@@ -123,12 +136,25 @@ def build_network(coefficients: Mapping[str, Any], input_to_si: Sequence[float])
     network.bias[:neurons] = bias
     network.output[:neurons] = output
     network.output_bias = output_bias
-    network.slope[:] = network.weight * network.output
     # The derivative of logsig never exceeds 1/4.
-    network.steepest[:] = np.abs(network.slope).sum(axis=1) / 4.0
+    network.steepest[:] = np.abs(network.weight * network.output).sum(axis=1) / 4.0
+    prepare_series(network)
     network.trained[:] = (-np.inf, np.inf)
     network.trained[:inputs] = trained
     return network
+
+
+def prepare_series(network: FeedForwardNetwork) -> None:
+    """Write what `series` needs of a network."""
+    weight, output = network.weight[SERIES_INPUT], network.output
+    for k in range(TAYLOR_TERMS):
+        network.taylor[k] = output * weight**k / math.factorial(k)
+    rounding = float(np.finfo(float).eps * np.abs(output).sum())
+    worst = EIGHTH_OVER_FIRST * math.exp(LONGEST_WAY) / math.factorial(TAYLOR_TERMS)
+    network.remainder[:] = worst / rounding * np.abs(output) * np.abs(weight) ** TAYLOR_TERMS
+    steepest = float(np.abs(weight).max())
+    furthest = LONGEST_WAY / steepest if steepest > 0.0 else math.inf
+    network.furthest_8 = furthest**TAYLOR_TERMS
 
 
 @fused
@@ -141,18 +167,6 @@ def logsig(neurons: Array) -> None:
     """
     for n in range(NEURONS):
         neurons[n] = 1.0 / (1.0 + exponential(-neurons[n]))
-
-
-@fused
-def logsig_slope(neurons: Array) -> None:
-    """Put the derivative in the place of each value of `logsig`, s (1 - s), shape (NEURONS,).
-
-    References
-    ----------
-    [Boullanger2009]_, eq. (B.4).
-    """
-    for n in range(NEURONS):
-        neurons[n] = neurons[n] * (1.0 - neurons[n])
 
 
 @fused

@@ -8,16 +8,16 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import fused, inlined, kernel
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
 from tpss.physics.neural_network import (
     NEURONS,
     FeedForwardNetwork,
     logsig,
-    logsig_slope,
     outside,
     weigh,
 )
+from tpss.physics.series import Series, make_series
 
 Array = npt.NDArray[np.float64]
 
@@ -25,15 +25,22 @@ POWER_FACTOR = 0
 DOUBLE_BRIDGE = 1
 POWER_FACTOR_CURVE = 2
 
+MOTOR, LOCOMOTIVE = 0, 1
+"""Inputs of the bridge network: the voltages."""
+
 TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
 """In-locomotive voltage over line voltage, U_locoRc / U = 487 V / 15 kV. [Boullanger2009]_, (F.32)."""
 
 
-@fused
+@inlined
 def bridge_sine(
-    motor_voltage_v: float, locomotive_voltage_v: float, network: FeedForwardNetwork, neurons: Array
-) -> tuple[float, float, float]:
-    r"""Network for the sine of the firing angle, β, and its slopes in both voltages. [1], [1/V]
+    motor_voltage_v: float,
+    locomotive_voltage_v: float,
+    network: FeedForwardNetwork,
+    room: Array,
+    series: Series,
+) -> None:
+    r"""Make the series of the sine of the firing angle, β, over the locomotive's voltage. [1], [V]
 
     β stands for the sin(arccos(...)) of eq. (3.1) of two half-controlled bridges in series; it is
     between 0 and 1 but for the network's error, and the caller clips it and counts that.
@@ -44,8 +51,8 @@ def bridge_sine(
         U_di, trained on 0 to 770 V. [V]
     locomotive_voltage_v : float
         U_locoRc, trained on 214.28 to 642.84 V. [V]
-    neurons : Array, shape (NEURONS,)
-        Scratch.
+    network, room, series
+        As in `make_series`.
 
     References
     ----------
@@ -53,13 +60,17 @@ def bridge_sine(
     """
     weight = network.weight
     for n in range(NEURONS):
-        neurons[n] = (
-            network.bias[n] + weight[0, n] * motor_voltage_v + weight[1, n] * locomotive_voltage_v
-        )
-    logsig(neurons)
-    sine = network.output_bias + weigh(network.output, neurons)
-    logsig_slope(neurons)
-    return sine, weigh(network.slope[0], neurons), weigh(network.slope[1], neurons)
+        fixed = network.bias[n] + weight[MOTOR, n] * motor_voltage_v
+        room[0, n] = fixed + weight[LOCOMOTIVE, n] * locomotive_voltage_v
+    make_series(locomotive_voltage_v, network, room, series)
+
+
+@inlined
+def sine_over_motor_voltage(network: FeedForwardNetwork, room: Array) -> float:
+    """Slope of β over the motor voltage, where its series has just been made. [1/V]"""
+    for n in range(NEURONS):
+        room[2, n] = network.weight[MOTOR, n] * room[1, n]
+    return weigh(network.output, room[2])
 
 
 @inlined

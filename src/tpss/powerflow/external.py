@@ -1,5 +1,6 @@
 """What a load flow solved outside the kernels asks of trains and converter stations."""
 
+import cmath
 from typing import Any
 
 import numpy as np
@@ -51,11 +52,11 @@ def find_terminals(power: Floats, sources: Any, flow_sources: Any, terminals: Fl
         Written: U, θ, dU/dQ, dθ/dP, dθ/dQ. [V], [rad], [V/var], [rad/W], [rad/var]
     """
     for s in range(sources.size):
-        voltage, angle, voltage_by_q, angle_by_p, angle_by_q = terminal_voltage(
+        voltage, direction, voltage_by_q, angle_by_p, angle_by_q = terminal_voltage(
             power[s, 0], power[s, 1], flow_sources[s].converters, sources[s]
         )
         terminals[s, 0] = voltage
-        terminals[s, 1] = angle
+        terminals[s, 1] = cmath.phase(direction)
         terminals[s, 2] = voltage_by_q
         terminals[s, 3] = angle_by_p
         terminals[s, 4] = angle_by_q

@@ -80,14 +80,15 @@ def source_law(
     Returns f [V] and the pair (s1, s2) with δf = s1 δS + s2 conj(δS). [V/VA]
     """
     power = voltage * current.conjugate()
-    magnitude, angle, by_q, angle_by_p, angle_by_q = terminal_voltage(
+    magnitude, direction, by_q, angle_by_p, angle_by_q = terminal_voltage(
         power.real, power.imag, flow.sources[s].converters, network.sources[s]
     )
-    direction = complex(math.cos(angle), math.sin(angle))
-    law = magnitude * direction
-    f_p = 1j * law * angle_by_p
-    f_q = direction * by_q + 1j * law * angle_by_q
-    return law, scaled(f_p - 1j * f_q, 0.5), scaled(f_p + 1j * f_q, 0.5)
+    law = scaled(direction, magnitude)
+    turned = complex(-law.imag, law.real)
+    f_p = scaled(turned, 0.5 * angle_by_p)
+    f_q = scaled(direction, 0.5 * by_q) + scaled(turned, 0.5 * angle_by_q)
+    along = complex(-f_q.imag, f_q.real)
+    return law, f_p - along, f_p + along
 
 
 @kernel

@@ -54,7 +54,7 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     short = place_trains(count, state.trains, model.network, state.flow)
     recording.counters[Counter.SHORT_PIECE] += short
     for k in range(count):
-        prepare(state.trains[state.flow.standing[k].train], model)
+        prepare(state.trains[state.flow.standing[k].train], state.machine[0], model)
     return count
 
 

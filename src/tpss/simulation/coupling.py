@@ -70,9 +70,9 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
         for k in range(count):
             train = state.trains[flow.standing[k].train]
             train.voltage_v = fixed_v
-            electrical_demand(fixed_v, model.types[train.train_type], train, model.machine[0])
+            electrical_demand(fixed_v, model.types[train.train_type], train, state.machine[0])
         return 1.0, 0
-    loads = Loads(state.trains, model.types, model.machine)
+    loads = Loads(state.trains, model.types, state.machine)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
         state.trains[flow.standing[k].train].voltage_v = magnitude(flow.standing[k].voltage_v)

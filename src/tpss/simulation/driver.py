@@ -12,6 +12,7 @@ from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import gradient_at, mean_gradient, step_index
 from tpss.physics.locomotive import (
     FULL_EFFORT_N,
+    Machine,
     acceleration,
     note_cap,
     prove_free_band,
@@ -168,7 +169,7 @@ def aim(train: Any, sight: Sight) -> None:
 
 
 @inlined
-def prepare(train: Any, model: Model) -> None:
+def prepare(train: Any, machine: Machine, model: Model) -> None:
     """Everything about a train that stays fixed while this step is solved.
 
     References
@@ -180,6 +181,6 @@ def prepare(train: Any, model: Model) -> None:
     train.driven_share = train.moving_share = 1.0
     train.hold_s = 0.0
     train.course = USUAL
-    take_speed(train.voltage_v, kind, train, model.machine[0], model.points)
+    take_speed(train.voltage_v, kind, train, machine, model.points)
     oppose(train, kind, model)
     aim(train, sight_of(model))

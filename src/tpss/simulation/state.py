@@ -175,7 +175,7 @@ class Model(NamedTuple):
     types: Any
     """Records of `TRAIN_TYPE`."""
     machine: Any
-    """One record of `MACHINE`."""
+    """One record of `MACHINE`, from which each `State` has its own."""
     points: Any
     """Records of `CURVE_POINT`, of all curves of the trains."""
     network: Network
@@ -205,6 +205,8 @@ class State(NamedTuple):
 
     trains: Any
     """Records of `TRAIN`."""
+    machine: Any
+    """One record of `MACHINE`, with room of its own: runs of one model may go on at the same time."""
     flow: Flow
     clock: Any
     """One record of `CLOCK`."""
@@ -269,6 +271,7 @@ def new_state(model: Model, trains: Any) -> State:
     clock.carried_share = 1.0
     return State(
         trains=trains,
+        machine=model.machine.copy(),
         flow=new_flow(model.network, trains.size),
         clock=clock,
     )

@@ -170,7 +170,7 @@ def test_efficiency_and_power_factor_may_be_curves_over_speed(as_run):
         power_factor={"speed_kmh": [0, 100], "value": [0.8, 1.0]},
     )
     train = train_at(50.0, kind, points, as_run)
-    assert train.efficiency == pytest.approx(0.8)
+    assert train.per_efficiency == pytest.approx(1 / 0.8)
     assert train.reactive_ratio == pytest.approx(math.sqrt(0.19) / 0.9)
     fast = train_at(130.0, kind, points, as_run)
-    assert (fast.efficiency, fast.reactive_ratio) == (0.9, 0.0)
+    assert (fast.per_efficiency, fast.reactive_ratio) == (1 / 0.9, 0.0)
