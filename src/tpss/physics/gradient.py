@@ -26,27 +26,19 @@ def step_index(position_m: float, from_m: Array) -> int:
 
 
 @inlined
-def gradient_at(position_m: float, from_m: Array, gradient: Array) -> float:
-    """Gradient at a position: rise over run, positive uphill. [1]
-
-    Parameters
-    ----------
-    position_m : float
-        Position on the line. [m]
-    from_m : Array, shape (n,)
-        Positions from which the gradients hold, ascending. [m]
-    gradient : Array, shape (n,)
-        Rise over run. [1]
-
-    References
-    ----------
-    [Boullanger2009]_, the inclination of eq. (F.3).
-    """
-    return gradient[step_index(position_m, from_m)]
+def stair_ahead(stair: int, position_m: float, from_m: Array) -> int:
+    """`step_index`, found from a stair that held not far behind: a search mispredicts its branches."""
+    if from_m[stair] > position_m:
+        return step_index(position_m, from_m)
+    while stair + 1 < from_m.size and from_m[stair + 1] <= position_m:
+        stair += 1
+    return stair
 
 
 @inlined
-def mean_gradient(position_m: float, way_m: float, from_m: Array, gradient: Array) -> float:
+def mean_gradient(
+    stair: int, position_m: float, way_m: float, from_m: Array, gradient: Array
+) -> float:
     """Altitude difference over a way, divided by the way; the gradient at a point if it is zero. [1]
 
     The climb of a long step is then the true one, whatever the profile does on the way.  The stairs
@@ -54,14 +46,20 @@ def mean_gradient(position_m: float, way_m: float, from_m: Array, gradient: Arra
 
     Parameters
     ----------
+    stair : int
+        The stair that holds where the way begins.
     position_m : float
-        Where the way begins. [m]
+        Where that is. [m]
     way_m : float
         Length of the way ahead, not negative. [m]
     from_m, gradient : Array, shape (n,)
-        The profile, as in `gradient_at`.
+        The profile: positions from which the gradients hold, ascending [m]; rise over run, positive
+        uphill [1].
+
+    References
+    ----------
+    [Boullanger2009]_, the inclination of eq. (F.3).
     """
-    stair = step_index(position_m, from_m)
     if way_m <= 0.0:
         return gradient[stair]
     end_m = position_m + way_m

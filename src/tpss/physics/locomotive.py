@@ -327,7 +327,7 @@ def motor_power_demand(
     return power, power_slope * slope_n_per_v
 
 
-@inlined
+@fused
 def armature_demand(
     force_n: float, slope_n_per_v: float, kind: TrainType, train: Demand
 ) -> tuple[float, float]:

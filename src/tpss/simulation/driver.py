@@ -9,7 +9,7 @@ from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.driving.within_step import highest_speed_that_stops_within
 from tpss.kernel import inlined, kernel
 from tpss.physics.adhesion import adhesion_limit
-from tpss.physics.gradient import gradient_at, mean_gradient, step_index
+from tpss.physics.gradient import mean_gradient, stair_ahead, step_index
 from tpss.physics.locomotive import (
     FULL_EFFORT_N,
     Machine,
@@ -113,11 +113,9 @@ def oppose(train: Any, kind: Any, model: Model) -> None:
     [Boullanger2009]_, eq. (2.8)-(2.10), (F.2)-(F.4).
     """
     profile, speed = model.gradients, train.speed_m_s
-    if model.options.mean_gradient:
-        way_m = speed * model.options.step_s
-        slope = mean_gradient(train.position_m, way_m, profile.from_m, profile.value)
-    else:
-        slope = gradient_at(train.position_m, profile.from_m, profile.value)
+    train.stair = stair_ahead(train.stair, train.position_m, profile.from_m)
+    way_m = speed * model.options.step_s if model.options.mean_gradient else 0.0
+    slope = mean_gradient(train.stair, train.position_m, way_m, profile.from_m, profile.value)
     davis = DavisCoefficients(
         kind.resistance_a_n, kind.resistance_b_n_s_per_m, kind.resistance_c_n_s2_per_m2
     )
@@ -157,8 +155,6 @@ def aim(train: Any, sight: Sight) -> None:
     train.target_speed_m_s = 0.0
     train.wanted_force_n = 0.0
     if train.phase != DWELLING:
-        speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
-        train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
         on_course = False
         if train.phase == PLANNED and options.braking == WITHIN_STEP:
             on_course = steer_to_stop(train, kind, sight)
@@ -181,6 +177,9 @@ def prepare(train: Any, machine: Machine, model: Model) -> None:
     train.driven_share = train.moving_share = 1.0
     train.hold_s = 0.0
     train.course = USUAL
+    if train.speed_m_s != train.taken_speed_m_s:
+        speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
+        train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
     take_speed(train.voltage_v, kind, train, machine, model.points)
     oppose(train, kind, model)
     aim(train, sight_of(model))

@@ -6,13 +6,9 @@ from typing import Any
 
 from tpss.kernel import inlined, kernel
 from tpss.physics.curve import outside_curve
-from tpss.physics.locomotive import (
-    machine_force,
-    motor_state,
-    train_armature_current,
-)
+from tpss.physics.locomotive import armature_demand, machine_force
 from tpss.physics.machine import effort_extrapolates
-from tpss.physics.motor import line_voltage_factor, motor_current, motor_voltage
+from tpss.physics.motor import NEW, line_voltage_factor, motor_current, motor_voltage
 from tpss.physics.neural_network import outside
 from tpss.physics.reactive_power import (
     DOUBLE_BRIDGE,
@@ -84,9 +80,9 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     i = state.flow.standing[k].train
     train, row = state.trains[i], recording.trains[step, i]
     kind = model.types[train.train_type]
-    motor, speed, _, _ = motor_state(train.wheel_force_n, kind, train)
-    current = train_armature_current(motor, speed, kind, train)
-    current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
+    current, _ = armature_demand(train.wheel_force_n, 0.0, kind, train)
+    if kind.voltage_model != NEW:
+        current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
     recording.train_state[step, i] = state_code(train)
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n

@@ -71,6 +71,7 @@ TRAIN = np.dtype(
         ("arrival_step", np.int64),  # -1 until it arrives
         ("phase", np.int64),
         ("position_m", float),
+        ("stair", np.int64),  # of the gradients, under it
         *((name, DEMAND[name]) for name in DEMAND.names or ()),
         ("next_stop", np.int64),
         ("dwell_left", np.int64),

@@ -27,7 +27,7 @@ def _climb(train: Any, kind: Any, way_m: float, sight: Sight) -> None:
     """Find the resistances of a step that goes `way_m`."""
     if sight.options.mean_gradient:
         profile = sight.gradients
-        slope = mean_gradient(train.position_m, way_m, profile.from_m, profile.value)
+        slope = mean_gradient(train.stair, train.position_m, way_m, profile.from_m, profile.value)
         train.gradient_force_n = gradient_force(kind.mass_kg, slope)
         train.resistance_n = train.running_resistance_n + train.gradient_force_n
 
