@@ -71,8 +71,8 @@ def test_low_voltage_solution_within_the_plausible_band_is_refused():
     search = Search(
         lay_out(1, case.network, case.flow),
         1,
-        SimpleNamespace(network=case.network, types=loads.types, machine=loads.machine),
-        SimpleNamespace(flow=case.flow, trains=loads.trains),
+        SimpleNamespace(network=case.network, types=loads.types),
+        SimpleNamespace(flow=case.flow, trains=loads.trains, machine=loads.machine),
     )
 
     def solution(voltage):

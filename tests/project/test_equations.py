@@ -83,7 +83,7 @@ def test_every_citation_stands_in_the_bibliography():
 def test_every_function_of_physics_cites_a_source():
     """Helpers that compute no equation of their own are named here."""
     helpers = {
-        "mean_gradient", "step_index", "outside", "exponential",
+        "step_index", "stair_ahead", "reaches", "series_at", "prepare_series", "outside", "exponential",
         "effort_outside_training", "bridge_outside_training", "take_speed", "prove_free_band",
         "train_armature_current", "train_bridge_sine", "note_cap", "motor_power_demand",
         "armature_demand", "outside_curve", "take_rows", "outside_table", "take_effort",

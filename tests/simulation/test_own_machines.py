@@ -13,9 +13,10 @@ import math
 import numpy as np
 import pytest
 
+from tpss.kernel import blank_records
 from tpss.model.trains import build_machine
-from tpss.physics.neural_network import NEURONS
-from tpss.physics.tractive_effort import maximum_motor_force, speed_and_current_bias
+from tpss.physics.series import ROOM, SERIES
+from tpss.physics.tractive_effort import motor_force_series
 
 from conftest import plain
 from scenarios import run
@@ -146,18 +147,17 @@ def test_use_beyond_a_table_or_a_curve_is_counted():
 
 def sampled_network():
     """The Rc4's network around 1250 A as a dense table; below zero counts as 0."""
-    network, bias = build_machine()[0].tractive_effort, np.zeros(NEURONS)
+    network, series = build_machine()[0].tractive_effort, blank_records(1, SERIES)[0]
     speeds, voltages = np.arange(0.0, 161.0, 2.5), np.arange(10.5, 16.6, 0.5)
     currents = np.arange(1050.0, 1301.0, 50.0)
     force_kn = np.zeros((currents.size, voltages.size, speeds.size))
     for c, current in enumerate(currents):
         for k, speed in enumerate(speeds):
-            plain(speed_and_current_bias)(speed / 3.6, current, network, bias)
             for u, voltage in enumerate(voltages):
-                force, _ = plain(maximum_motor_force)(
-                    voltage * 1e3, bias, network, np.zeros(NEURONS)
+                plain(motor_force_series)(
+                    speed / 3.6, voltage * 1e3, current, network, np.zeros(ROOM), series
                 )
-                force_kn[c, u, k] = max(0.0, force) / 1e3
+                force_kn[c, u, k] = max(0.0, series.coefficient[0]) / 1e3
     return {"speed_kmh": speeds.tolist(), "voltage_kv": voltages.tolist(),
             "motor_current_a": currents.tolist(), "force_kn": force_kn.tolist()}  # fmt: skip
 

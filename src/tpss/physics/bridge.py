@@ -7,7 +7,7 @@ from tpss.physics.motor import NEW, line_voltage_factor, motor_voltage
 from tpss.physics.reactive_power import (
     TRANSFORMER_RATIO,
     bridge_reactive_power,
-    bridge_sine,
+    bridge_sine_series,
     sine_over_motor_voltage,
 )
 from tpss.physics.series import reaches, series_at
@@ -26,7 +26,7 @@ def train_bridge_sine(voltage_v: float, kind: Any, train: Any, machine: Any) -> 
             kind.highest_motor_voltage_v,
             kind.voltage_model,
         )
-        bridge_sine(motor_v, locomotive_v, network, machine.room, series)
+        bridge_sine_series(motor_v, locomotive_v, network, machine.room, series)
     sine, by_locomotive = series_at(locomotive_v, series)
     train.bridge_sine = sine
     if sine <= 0.0:

@@ -14,7 +14,7 @@ from tpss.physics.series import reaches, series_at
 from tpss.physics.tractive_effort import (
     VOLTAGE,
     effort_outside_training,
-    maximum_motor_force,
+    motor_force_series,
 )
 
 NETWORK = 0
@@ -70,7 +70,7 @@ def highest_force(voltage_v: float, kind: Any, train: Any, machine: Any) -> tupl
     """
     if kind.effort_model == NETWORK:
         if not reaches(voltage_v, train.effort):
-            maximum_motor_force(
+            motor_force_series(
                 train.speed_m_s,
                 voltage_v,
                 kind.highest_current_a,

@@ -56,9 +56,9 @@ NETWORK = np.dtype(
             ("bias", float, (NEURONS,)),
             ("output", float, (NEURONS,)),  # weight of each neuron in the output
             ("output_bias", float),
-            ("taylor", float, (TAYLOR_TERMS, NEURONS)),  # w² (w¹)^k / k! of the input `SERIES_INPUT`
+            ("taylor", float, (TAYLOR_TERMS, NEURONS)),  # w² (w¹)^k / k! of one input
             ("remainder", float, (NEURONS,)),  # bounds what those leave out, over the rounding
-            ("furthest_8", float),  # eighth power of the distance for which that holds
+            ("closest_8", float),  # one over the eighth power of the distance for which that holds
             ("steepest", float, (MOST_INPUTS,)),  # bound of the output's slope over each input
             ("trained", float, (MOST_INPUTS, 2)),  # ends of each input's training range
         ],
@@ -152,9 +152,7 @@ def prepare_series(network: FeedForwardNetwork) -> None:
     rounding = float(np.finfo(float).eps * np.abs(output).sum())
     worst = EIGHTH_OVER_FIRST * math.exp(LONGEST_WAY) / math.factorial(TAYLOR_TERMS)
     network.remainder[:] = worst / rounding * np.abs(output) * np.abs(weight) ** TAYLOR_TERMS
-    steepest = float(np.abs(weight).max())
-    furthest = LONGEST_WAY / steepest if steepest > 0.0 else math.inf
-    network.furthest_8 = furthest**TAYLOR_TERMS
+    network.closest_8 = float(np.abs(weight).max() / LONGEST_WAY) ** TAYLOR_TERMS
 
 
 @fused

@@ -33,7 +33,7 @@ TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
 
 
 @inlined
-def bridge_sine(
+def bridge_sine_series(
     motor_voltage_v: float,
     locomotive_voltage_v: float,
     network: FeedForwardNetwork,
@@ -67,7 +67,12 @@ def bridge_sine(
 
 @inlined
 def sine_over_motor_voltage(network: FeedForwardNetwork, room: Array) -> float:
-    """Slope of β over the motor voltage, where its series has just been made. [1/V]"""
+    """Slope of β over the motor voltage, where its series has just been made. [1/V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (D.8), derived.
+    """
     for n in range(NEURONS):
         room[2, n] = network.weight[MOTOR, n] * room[1, n]
     return weigh(network.output, room[2])

@@ -68,6 +68,10 @@ def make_series(centre: float, network: FeedForwardNetwork, room: Any, series: S
         Its first row holds the neurons' inputs; its second holds p = s(1 - s) afterwards.
     series : record of `SERIES`
         Written.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (B.2) and (B.4), expanded; the proof stands at the top of this file.
     """
     logsig(room[0])
     for n in range(NEURONS):
@@ -84,7 +88,7 @@ def make_series(centre: float, network: FeedForwardNetwork, room: Any, series: S
         series.coefficient[k] = weigh(network.taylor[k], room[k])
     series.coefficient[0] += network.output_bias
     series.centre = centre
-    series.reach_8 = min(network.furthest_8, 1.0 / weigh(network.remainder, room[1]))
+    series.reach_8 = 1.0 / max(network.closest_8, weigh(network.remainder, room[1]))
 
 
 @fused

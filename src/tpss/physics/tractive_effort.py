@@ -20,7 +20,7 @@ SPEED, VOLTAGE, CURRENT = 0, 1, 2
 
 
 @inlined
-def maximum_motor_force(
+def motor_force_series(
     speed_m_s: float,
     voltage_v: float,
     current_a: float,

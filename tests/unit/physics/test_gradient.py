@@ -6,12 +6,17 @@ from 500 m over 3000 m: 500 · 0.010 - 2000 · 0.005 + 500 · 0.002 = 5 - 10 + 1
 import numpy as np
 import pytest
 
-from tpss.physics.gradient import gradient_at, mean_gradient, step_index
+from tpss.physics.gradient import mean_gradient, stair_ahead, step_index
 
 from alternatives import climb
 
 FROM_M = np.array([0.0, 1000.0, 3000.0])
 GRADIENT = np.array([0.010, -0.005, 0.002])
+
+
+def mean_over(as_run, position_m, way_m, from_m, gradient):
+    stair = as_run(step_index)(position_m, from_m)
+    return as_run(mean_gradient)(stair, position_m, way_m, from_m, gradient)
 
 
 @pytest.mark.parametrize(
@@ -22,7 +27,8 @@ def test_a_stair_holds_from_its_position_and_the_outer_ones_beyond_the_ends(
     as_run, position_m, stair
 ):
     assert as_run(step_index)(position_m, FROM_M) == stair
-    assert as_run(gradient_at)(position_m, FROM_M, GRADIENT) == GRADIENT[stair]
+    for before in range(FROM_M.size):
+        assert as_run(stair_ahead)(before, position_m, FROM_M) == stair
 
 
 @pytest.mark.parametrize(
@@ -36,16 +42,16 @@ def test_a_stair_holds_from_its_position_and_the_outer_ones_beyond_the_ends(
     ],
 )
 def test_mean_gradient_is_the_climb_over_the_way(as_run, position_m, way_m, climb_m):
-    mean = as_run(mean_gradient)(position_m, way_m, FROM_M, GRADIENT)
+    mean = mean_over(as_run, position_m, way_m, FROM_M, GRADIENT)
     assert mean == pytest.approx(climb_m / way_m, rel=1e-12)
 
 
 def test_mean_over_no_way_is_the_gradient_at_the_point(as_run):
-    assert as_run(mean_gradient)(1000.0, 0.0, FROM_M, GRADIENT) == -0.005
+    assert mean_over(as_run, 1000.0, 0.0, FROM_M, GRADIENT) == -0.005
 
 
 def test_single_stair_holds_everywhere(as_run):
-    uniform = as_run(mean_gradient)(-7.0, 1e5, np.array([0.0]), np.array([0.004]))
+    uniform = mean_over(as_run, -7.0, 1e5, np.array([0.0]), np.array([0.004]))
     assert uniform == pytest.approx(0.004)
 
 
@@ -56,6 +62,6 @@ def test_mean_gradient_is_the_altitude_difference_on_random_profiles(as_run):
         from_m = np.sort(random.uniform(0.0, 1e5, stairs))
         gradient = random.uniform(-0.03, 0.03, stairs)
         position_m, way_m = random.uniform(-1e4, 1.1e5), random.uniform(0.1, 3e4)
-        mean = as_run(mean_gradient)(position_m, way_m, from_m, gradient)
+        mean = mean_over(as_run, position_m, way_m, from_m, gradient)
         expected_m = climb(position_m, way_m, from_m, gradient)
         assert mean * way_m == pytest.approx(expected_m, abs=1e-9)

@@ -244,13 +244,13 @@ def test_bridges_draw_reactive_power_by_their_firing_angle(as_run):
 def test_former_motor_voltage_draws_more_current_below_14_kilovolt(as_run):
     """The same power at 13/14 of the motor voltage takes 14/13 of the current, by another β."""
     new, former = (freight(reactive_model=DOUBLE_BRIDGE, voltage_model=m) for m in (NEW, FORMER))
-    train = demand(1e5)
     ratio = 14 / 13
     for kind in (new, former):
-        sine, _ = as_run(train_bridge_sine)(13e3, kind, train, MACHINE)
+        sine, _ = as_run(train_bridge_sine)(13e3, kind, demand(1e5), MACHINE)
         ratio = ratio / sine if kind is new else ratio * sine
     reactive = [
-        as_run(bridge_demand)(13e3, 1e5, 0.0, kind, train, MACHINE)[0] for kind in (new, former)
+        as_run(bridge_demand)(13e3, 1e5, 0.0, kind, demand(1e5), MACHINE)[0]
+        for kind in (new, former)
     ]
     assert reactive[1] / reactive[0] == pytest.approx(ratio)
 
@@ -384,13 +384,17 @@ def test_inside_the_proven_band_the_force_is_what_the_driver_wants(as_run):
 
 
 def test_force_does_not_depend_on_the_voltages_tried_before(as_run):
-    """The band stays where it was proven, whatever is evaluated outside it."""
+    """The band stays where it was proven, whatever is evaluated outside it.
+
+    Series made around other voltages differ by roundings, some 2e-16 of the network's terms (1e6 N).
+    """
     for kind, train in random_trains(100):
         as_run(prove_free_band)(kind, train)
         fresh = train.copy()
         for at_v in (11e3, 16.5e3, 13e3, 13.01e3, 15.2e3):
             force, _ = as_run(wheel_force)(at_v, kind, train, MACHINE)
-            assert force == as_run(wheel_force)(at_v, kind, fresh.copy(), MACHINE)[0]
+            alone, _ = as_run(wheel_force)(at_v, kind, fresh.copy(), MACHINE)
+            assert force == pytest.approx(alone, rel=1e-12, abs=1e-8)
 
 
 def test_band_is_used_within_and_not_beyond(as_run):

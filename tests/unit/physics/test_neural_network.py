@@ -17,7 +17,6 @@ from tpss.physics.neural_network import (
     build_network,
     fold_scaling,
     logsig,
-    logsig_slope,
     outside,
     tansig_as_logsig,
     weigh,
@@ -88,12 +87,6 @@ def test_logsig_is_the_logistic_function(as_run):
     assert math.isnan(neurons[6])
 
 
-def test_its_slope_is_s_times_one_minus_s(as_run):
-    neurons = np.full(NEURONS, 0.25)
-    as_run(logsig_slope)(neurons)
-    assert neurons == pytest.approx(0.1875)
-
-
 def test_weigh_is_a_dot_product(as_run):
     weight, neurons = np.random.default_rng(1).normal(size=(2, NEURONS))
     assert as_run(weigh)(weight, neurons) == pytest.approx(weight @ neurons, rel=1e-12)
@@ -102,7 +95,7 @@ def test_weigh_is_a_dot_product(as_run):
 def test_surplus_neurons_weigh_nothing():
     network = build_network(PRINTED, [1 / 3.6])
     assert not network.output[1:].any()
-    assert not network.slope[:, 1:].any()
+    assert not network.taylor[:, 1:].any()
 
 
 def test_bound_of_the_slope_is_met_where_the_neuron_is_at_its_middle():

@@ -8,16 +8,19 @@ X_f = -0.45 Ω at 16 kV:     U_locoRc = 487 · 16/15 = 519.47 V; Q_f = -599 657 
 import numpy as np
 import pytest
 
+from tpss.kernel import blank_records
 from tpss.model.trains import build_machine
 from tpss.physics.neural_network import NEURONS
 from tpss.physics.reactive_power import (
     bridge_outside_training,
     bridge_reactive_power,
-    bridge_sine,
+    bridge_sine_series,
     filter_reactive_power,
     power_factor,
     reactive_ratio,
+    sine_over_motor_voltage,
 )
+from tpss.physics.series import ROOM, SERIES, series_at
 
 from alternatives import central_difference, exact_bridge_sine
 
@@ -55,9 +58,17 @@ FACTORS = [
 ]
 
 
+def bridge(as_run, motor_v, locomotive_v):
+    """β and its slopes over both voltages."""
+    network, room, series = MACHINE.bridge_sine, np.zeros(ROOM), blank_records(1, SERIES)[0]
+    as_run(bridge_sine_series)(motor_v, locomotive_v, network, room, series)
+    sine, by_locomotive = as_run(series_at)(locomotive_v, series)
+    return sine, as_run(sine_over_motor_voltage)(network, room), by_locomotive
+
+
 @pytest.mark.parametrize(("motor_v", "locomotive_v", "sine", "exact"), SINES)
 def test_bridge_network_reproduces_the_printed_tables(as_run, motor_v, locomotive_v, sine, exact):
-    given, _, _ = as_run(bridge_sine)(motor_v, locomotive_v, MACHINE.bridge_sine, SCRATCH)
+    given, _, _ = bridge(as_run, motor_v, locomotive_v)
     assert given == pytest.approx(sine, rel=1e-9, abs=1e-12)
     assert exact_bridge_sine(motor_v, locomotive_v) == pytest.approx(exact, abs=1e-12)
 
@@ -65,11 +76,9 @@ def test_bridge_network_reproduces_the_printed_tables(as_run, motor_v, locomotiv
 @pytest.mark.parametrize(("motor_v", "locomotive_v"), [row[:2] for row in SINES])
 def test_slopes_are_those_of_the_bridge_network(as_run, motor_v, locomotive_v):
     def sine(of_motor, of_locomotive):
-        return as_run(bridge_sine)(of_motor, of_locomotive, MACHINE.bridge_sine, SCRATCH)[0]
+        return bridge(as_run, of_motor, of_locomotive)[0]
 
-    _, by_motor, by_locomotive = as_run(bridge_sine)(
-        motor_v, locomotive_v, MACHINE.bridge_sine, SCRATCH
-    )
+    _, by_motor, by_locomotive = bridge(as_run, motor_v, locomotive_v)
     motor_slope = central_difference(lambda u: sine(u, locomotive_v), motor_v, 1e-3)
     locomotive_slope = central_difference(lambda u: sine(motor_v, u), locomotive_v, 1e-3)
     assert by_motor == pytest.approx(motor_slope, rel=1e-6, abs=1e-9)
@@ -81,7 +90,7 @@ def test_bridge_network_is_within_two_hundredths_of_the_exact_sine():
     motor_v, locomotive_v = np.meshgrid(np.arange(0.0, 771.0, 2.0), np.arange(214.28, 642.84, 2.0))
     exact = exact_bridge_sine(motor_v, locomotive_v)
     pairs = zip(motor_v.flat, locomotive_v.flat, strict=True)
-    given = np.array([bridge_sine(*pair, MACHINE.bridge_sine, SCRATCH)[0] for pair in pairs])
+    given = np.array([bridge(lambda kernel: kernel, *pair)[0] for pair in pairs])
     assert np.sqrt(np.mean((given - exact.ravel()) ** 2)) < 0.02
 
 

@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
+from tpss.kernel import blank_records
 from tpss.model.trains import build_machine
-from tpss.physics.neural_network import NEURONS
+from tpss.physics.series import ROOM, SERIES, series_at
 from tpss.physics.tractive_effort import (
     VOLTAGE,
     effort_outside_training,
-    maximum_motor_force,
-    speed_and_current_bias,
+    motor_force_series,
 )
 
 from alternatives import central_difference
@@ -37,9 +37,11 @@ CURVES = list(itertools.product([0, 40, 85, 120, 160], [10.5, 13.5, 16.5], [350,
 
 
 def effort(as_run, speed_kmh, voltage_kv, current_a):
-    bias = np.zeros(NEURONS)
-    as_run(speed_and_current_bias)(speed_kmh / 3.6, float(current_a), NETWORK, bias)
-    return as_run(maximum_motor_force)(voltage_kv * 1e3, bias, NETWORK, np.zeros(NEURONS))
+    series = blank_records(1, SERIES)[0]
+    as_run(motor_force_series)(
+        speed_kmh / 3.6, voltage_kv * 1e3, float(current_a), NETWORK, np.zeros(ROOM), series
+    )
+    return as_run(series_at)(voltage_kv * 1e3, series)
 
 
 @pytest.mark.parametrize(("speed_kmh", "voltage_kv", "current_a", "force_n"), TABLE)
