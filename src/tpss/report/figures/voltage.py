@@ -7,7 +7,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tpss.report.contact_line import line_voltage
+from tpss.report.contact_line import line_voltage, voltage_marks
 from tpss.report.style import STYLE, as_text, colour, legend, line, panels
 from tpss.results.result import Result
 
@@ -76,19 +76,12 @@ def voltage_envelope(result: Result) -> Figure:
 
 def _mark_limits(panel: Axes, result: Result, lowest_kv: float, highest_kv: float) -> None:
     """Lines at nominal voltage and limits, named beside the panel."""
-    limits = result.scenario.standards.voltage_limits
-    marks = {
-        "$U_{min2}$": limits.umin2_kv,
-        "$U_{min1}$": limits.umin1_kv,
-        "$U_n$": limits.un_kv,
-        "$U_{max1}$": limits.umax1_kv,
-        "$U_{max2}$": limits.umax2_kv,
-    }
+    marks = voltage_marks(result.scenario.standards.voltage_limits)
     for name, kilovolts in marks.items():
-        dashes = "-" if kilovolts == limits.un_kv else (0, (6, 3))
+        dashes = "-" if name == "Un" else (0, (6, 3))
         panel.axhline(kilovolts, color="#555555", linewidth=0.8, linestyle=dashes)
         panel.annotate(
-            f"{name} {kilovolts:g}",
+            f"$U_{{{name.removeprefix('U')}}}$ {kilovolts:g}",
             (1.0, kilovolts),
             xytext=(4, 0),
             xycoords=("axes fraction", "data"),
@@ -98,7 +91,7 @@ def _mark_limits(panel: Axes, result: Result, lowest_kv: float, highest_kv: floa
             color="#444444",
             annotation_clip=False,
         )
-    low, high = min(lowest_kv, limits.umin2_kv), max(highest_kv, limits.umax2_kv)
+    low, high = min(lowest_kv, *marks.values()), max(highest_kv, *marks.values())
     margin = 0.08 * (high - low)
     panel.set_ylim(low - margin, high + margin)
 
