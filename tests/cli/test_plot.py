@@ -47,7 +47,12 @@ def test_a_journey_against_time_differs_from_one_against_distance(tpss_command, 
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (("--figure", "jurney"), "there is no figure 'jurney'; figures: time-distance, journey"),
+        (
+            ("--figure", "jurney"),
+            "there is no figure 'jurney'; did you mean journey? choose from all",
+        ),
+        (("--figure", "energy", "--train", "eastbound 1"), "energy is not of one train; leave"),
+        (("--figure", "energy", "--against", "time"), "energy is not a journey; leave --against"),
         (
             ("--figure", "journey", "--train", "x"),
             "there is no train 'x' on the line; trains: east",
@@ -58,8 +63,18 @@ def test_a_journey_against_time_differs_from_one_against_distance(tpss_command, 
         (("--figure", "energy", "--out", "demo.svg"), "demo.svg exists already"),
         (("--out", "demo.svg/x"), "demo.svg/x cannot be written"),
     ],
-    ids=["figure", "train", "format", "folder", "one file", "there", "below a file"],
-)
+    ids=[
+        "figure",
+        "train of all",
+        "axis of none",
+        "train",
+        "format",
+        "folder",
+        "one file",
+        "there",
+        "below a file",
+    ],
+)  # fmt: skip
 def test_what_cannot_be_done_is_said_and_nothing_is_written(
     tpss_command, demo, tmp_path, asked, words
 ):

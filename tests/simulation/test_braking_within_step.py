@@ -10,6 +10,15 @@ step of 60 s.
     F_brake = (1 470 000 · 0.85 - R) · 19.608/60 = 397 315 N
     a = -16.667/60 = -0.27778 m/s²:  11 349 - 22 368 - 397 315 = -408 333 N = M a
     P = R · 16.667 · 20.196/60 / 0.8 + 151 500 = 387 940 W
+
+and hand-worked limit: the same train 1 km before a limit of 30 km/h.
+
+    (v - w)/b = 9.804 s,  τ = 60 - 9.804 = 50.196 s
+    way = 16.667 · 50.196 + (16.667² - 8.333²)/1.7 = 836.601 + 122.549 = 959.150 m,
+          then 40.850 m at 30 km/h
+    F = R · 50.196/60 = 28 207 N
+    F_brake = (1 470 000 · 0.85 - R) · 9.804/60 = 198 658 N
+    P = R · 16.667 · 50.196/60 / 0.8 + 151 500 = 739 154 W
 """
 
 import numpy as np
@@ -230,6 +239,65 @@ def test_a_lower_limit_around_the_stop_goes_first(step_min, before_m):
     result = run({**step(step_min), **stops((10.0, 1.0)), **lower})
     assert result.status == "finished"
     assert result.audit["stop_error_m"] < 1e-9
+
+
+LOWER = limits((0, 60), (10.0, 30), (14.0, 60))
+
+
+def test_a_train_holds_its_speed_before_it_brakes_to_a_lower_limit():
+    result = run({**step(1.0), **LOWER, **placed(9.0, 60.0)})
+    way, found = journey(result, PLACED), row(result, 0)
+    assert way.v[:4] == pytest.approx([60 / 3.6, 30 / 3.6, 30 / 3.6, 30 / 3.6], rel=1e-12)
+    assert way.x[1] == pytest.approx(9_959.150, abs=1e-3)
+    assert float(found.tractive_force) == pytest.approx(28_207, abs=1.0)
+    assert float(found.braking_force) == pytest.approx(198_658, abs=1.0)
+    assert float(found.active_power) == pytest.approx(739_154, abs=2.0)
+    assert way.state[0] == STATE_BRAKING
+
+
+@pytest.mark.parametrize("step_min", STEPS_MIN)
+@pytest.mark.parametrize("place_km", [9.0, 9.37, 10.0])
+@pytest.mark.parametrize("high_kmh", [40, 100])
+def test_no_train_falls_below_a_lower_limit_ahead(step_min, place_km, high_kmh):
+    """100 t, at its limit before 4 km.  In whole steps of 0.5 min the train came down to 4 km/h; that
+    none is above its limit is a rule of every run."""
+    light = {"trains.freight.mass_t": 100.0}
+    result = run({**step(step_min), **light, **limits((0, high_kmh), (place_km, 30), (20, 60))})
+    way = journey(result)
+    near = way.v[(way.x > 6_000.0) & (way.x < place_km * 1e3 + 3_000.0)]
+    assert near.min(initial=np.inf) >= 30 / 3.6 - 1e-9
+
+
+def test_a_lower_limit_costs_a_trip_no_more_than_its_share_of_a_step():
+    """At most a step is run at 30 km/h in place of 60, which costs 1 - 30/60 of it, and the energy by
+    which running resistance differs; that back to 60 km/h adds a little.  Whole steps of a minute
+    cost 2 min."""
+    fine, minutes = (run({**step(h), **LOWER}).summary for h in (0.05, 1.0))
+    assert minutes["trip_time_min"] == pytest.approx(fine["trip_time_min"], abs=0.6)
+    assert minutes["total_energy_mwh"] == pytest.approx(fine["total_energy_mwh"], rel=0.015)
+
+
+def test_a_train_that_cannot_hold_its_speed_before_a_lower_limit_brakes_uniformly():
+    """15 per mille ask for more than the machine gives at 60 km/h."""
+    hill = gradients((0, 0), (8.9, 15), (10.0, 0))
+    result = run({**step(1.0), **LOWER, **placed(9.0, 60.0), **hill})
+    way, found = journey(result, PLACED), row(result, 0)
+    assert way.x[1] - way.x[0] == pytest.approx(30.0 * (way.v[0] + way.v[1]))
+    assert float(found.tractive_force) * float(found.braking_force) == 0.0
+
+
+def test_a_train_placed_too_near_to_a_lower_limit_for_that_brakes_in_whole_steps():
+    """600 m before the limit: 60 km/h to 12 km/h takes all of the minute and of the way."""
+    way = journey(run({**step(1.0), **LOWER, **placed(9.4, 60.0)}), PLACED)
+    assert way.x[1] == pytest.approx(10_000.0)
+    assert way.v[1] == pytest.approx(12 / 3.6)
+
+
+def test_a_stop_behind_a_lower_limit_is_met_from_the_course_to_the_limit():
+    """The stop is 10 m behind the limit's position."""
+    for step_min in STEPS_MIN:
+        result = run({**step(step_min), **limits((0, 60), (9.99, 30)), **stops((10.0, 1.0))})
+        assert result.audit["stop_error_m"] < 1e-9
 
 
 @pytest.mark.parametrize("step_min", [0.05, 0.5, 1.0])

@@ -5,7 +5,7 @@ import pytest
 
 from tpss.results.explain import warnings
 
-from scenarios import run
+from scenarios import SHORT_LINE, gradients, run
 
 WEAK = {
     "traffic.0.headway_min": 3.0,
@@ -32,6 +32,11 @@ TRAINS = {
 def on_weak_line(train, **more):
     changes = {f"trains.freight.{name}": value for name, value in TRAINS[train].items()}
     return run({**WEAK, **changes, **more})
+
+
+def placed(*places_km):
+    """Trains on the line at the start, at 20 km/h."""
+    return [{"position_km": km, "speed_kmh": 20.0} for km in places_km]
 
 
 def allowed_a(voltage_v):
@@ -80,3 +85,34 @@ def test_limited_trains_are_slower_and_keep_the_line_from_collapse():
 def test_the_run_says_in_how_many_steps_the_current_held_trains_back():
     said = warnings(on_weak_line("network", **LIMIT).summary)
     assert any(line.startswith("the current limitation") for line in said)
+
+
+def test_a_stall_at_low_voltage_names_the_limitation_that_keeps_the_force_from_the_train():
+    """Two trains without it draw the voltage below Umin2 = 11 kV: then only the rotors, slowing down,
+    give a wheel force, 0.9 kN, of 175.5 kN that the train could have."""
+    traffic = SHORT_LINE["traffic"][0]
+    free_km, limited_km = (12.0, 13.0), (15.0,)
+    changes = {
+        **{key: value for key, value in WEAK.items() if not key.startswith("traffic")},
+        **LIMIT,
+        **gradients((0.0, 0.0), (14.5, 8.0)),
+        "trains.free": {"model": "Rc4-freight-1470t"},
+        "traffic": [
+            {**traffic, "name": name, "train": train, "initial_trains": placed(*places)}
+            for name, train, places in (
+                ("limited", "freight", limited_km),
+                ("free", "free", free_km),
+            )
+        ],
+    }
+    result = run(changes)
+    assert result.status == "stalled"
+    assert "machine and the rails give 0.9 kN at 10.75 kV" in result.summary["problem"]
+    assert "lets 1 % of the force through that it wants and could give" in result.summary["problem"]
+    assert result.summary["advice"].startswith("Ease the train's current_limitation")
+
+
+def test_a_stall_for_want_of_grip_does_not_blame_the_limitation():
+    result = on_weak_line("network", **LIMIT, **{"line.gradients.0.permille": 30.0})
+    assert result.status == "stalled"
+    assert "current limitation" not in result.summary["problem"]

@@ -9,6 +9,7 @@ from sweep.studies import study, write_study
 from tpss.sweep.campaign import estimate
 from tpss.sweep.check import check
 from tpss.sweep.design import design_of
+from tpss.sweep.study import load_study
 
 from conftest import EXAMPLES
 
@@ -120,6 +121,18 @@ def test_values_that_do_not_go_together_are_told_with_each_other(tmp_path):
     }
     message = told(tmp_path, changes)
     assert "faster than the limit here" in message
+
+
+def test_a_scenario_in_place_of_a_study_is_told_and_the_other_way_round():
+    for load, example, words in (
+        (load_study, "thesis_160km.toml", "a scenario, not a study"),
+        (tpss.load_scenario, "study_converters.toml", "a study, not a scenario"),
+    ):
+        with pytest.raises(tpss.ScenarioError) as caught:
+            load(EXAMPLES / example)
+        (finding,) = caught.value.findings
+        assert finding.problem == words
+        assert finding.remedy.startswith("run it by tpss")
 
 
 def test_all_faults_of_the_base_scenario_are_told(tmp_path):

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from tpss.cli.arguments import Quiet
+
 app = typer.Typer(
     help="TPSA, the approximator: learn from a study what its simulations lead to, and predict more.",
     no_args_is_help=True,
@@ -26,8 +28,6 @@ ModelFile = Annotated[
         metavar="MODEL", help="File that tpss approximate train has written.", show_default=False
     ),
 ]
-
-Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
 
 
 @app.command(

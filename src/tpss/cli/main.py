@@ -14,7 +14,8 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli import approximate_app, complete
+from tpss.cli import approximate_app, complete, import_app
+from tpss.cli.arguments import Assignments, Quiet, ResultFolder, ScenarioFile
 from tpss.results.file_kinds import Kind
 
 
@@ -33,6 +34,8 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     epilog="Start with:  tpss new my-line, then tpss run my-line/scenario.toml",
 )
+app.add_typer(import_app.app, name="import")
+app.add_typer(approximate_app.app, name="approximate")
 
 
 def _print_version(value: bool) -> None:
@@ -53,24 +56,6 @@ def _options(
     pass
 
 
-ScenarioFile = Annotated[
-    Path,
-    typer.Argument(
-        help="Scenario file (TOML).", show_default=False, autocompletion=complete.scenario_files
-    ),
-]
-
-Assignments = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="KEY=VALUE",
-        help="Set one value of the scenario, such as traffic.0.headway_min=12; repeatable.",
-        show_default=False,
-    ),
-]
-
-
 @app.command(epilog="Example:  tpss run examples/thesis_160km.toml --set traffic.0.headway_min=12")
 def run(
     file: ScenarioFile,
@@ -84,7 +69,7 @@ def run(
     force: Annotated[
         bool, typer.Option("--force", help="Replace an existing result folder.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
+    quiet: Quiet = False,
     show: Annotated[
         str | None,
         typer.Option(
@@ -145,12 +130,7 @@ def report(
     "--figure journey --train 'eastbound 3' --against time --out journey.pdf"
 )
 def plot(
-    result: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULT", help="Folder that tpss run has written.", show_default=False
-        ),
-    ],
+    result: ResultFolder,
     figure: Annotated[
         str,
         typer.Option(
@@ -204,12 +184,7 @@ def check(file: ScenarioFile, set_: Assignments = None) -> None:
 
 @app.command(epilog="Example:  tpss export results/thesis-160km-001 --to xlsx")
 def export(
-    result: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULT", help="Folder that tpss run has written.", show_default=False
-        ),
-    ],
+    result: ResultFolder,
     to: Annotated[Kind, typer.Option(metavar="KIND", help="csv, xlsx or parquet.")] = Kind.CSV,
     out: Annotated[
         Path | None,
@@ -269,7 +244,7 @@ def sweep(
             metavar="DIR", help="Print key figures of a study's folder.", show_default=False
         ),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run the cases of a study, and keep a row of each in a table (Parquet).
 
@@ -349,39 +324,6 @@ def schema(
     from tpss.cli.schema import write_schema
 
     write_schema(out)
-
-
-imports = typer.Typer(help="Make scenario files from the files of others.", no_args_is_help=True)
-app.add_typer(imports, name="import")
-app.add_typer(approximate_app.app, name="approximate")
-
-
-@imports.callback()
-def _imports() -> None:
-    pass
-
-
-@imports.command(
-    epilog="Example:  tpss import ttobench SE_Vasteras_Kolback.json CH_Stadler_FLIRT_TPF.json "
-    "--out vasteras"
-)
-def ttobench(
-    files: Annotated[
-        list[Path],
-        typer.Argument(metavar="FILE...", help="Tracks and trains (JSON).", show_default=False),
-    ],
-    out: Annotated[Path, typer.Option(help="Folder for the files.", show_default=False)],
-    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
-) -> None:
-    """Turn tracks and trains of TTOBench into lines and trains, and each pair into a scenario.
-
-    A track gives a line (TOML, with a CSV profile of its gradients), a train gives a model file.
-    Each says in its comments what was taken, left out and assumed. Every pair of a track and a train
-    gives a scenario that runs at once; its supply and its traffic are assumed, and marked so.
-    """
-    from tpss.cli.imports import import_ttobench
-
-    import_ttobench(files, out, force)
 
 
 def main() -> None:

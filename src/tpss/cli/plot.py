@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALL = "all"
+JOURNEY = "journey"
 FORMATS = ("png", "svg", "pdf")
 
 DOTS_PER_INCH = 200
@@ -40,6 +41,7 @@ def plot_result(
 
     if figure != ALL:
         catalogue.demand_figure(figure)
+        _demand_use(figure, train, against, catalogue.OF_A_TRAIN)
     place, names = _target(folder, figure, out)
     result = load_result(folder)
     store.check_files(place, names.values(), force)
@@ -59,6 +61,16 @@ def plot_result(
     print(_said(place, files, figure))
     for name, reason in left_out:
         print(f"Left out {name}: {reason}")
+
+
+def _demand_use(figure: str, train: str | None, against: str, of_a_train: Sequence[str]) -> None:
+    """Refuse options that the figure would not heed."""
+    if train is not None and figure not in of_a_train:
+        raise ResultError(
+            f"{figure} is not of one train; leave --train out, or draw {', '.join(of_a_train)}"
+        )
+    if against == "time" and figure != JOURNEY:
+        raise ResultError(f"{figure} is not a {JOURNEY}; leave --against out")
 
 
 def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str, str]]:

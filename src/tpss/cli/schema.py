@@ -2,11 +2,11 @@
 
 import json
 import os
-import tempfile
 from pathlib import Path
 
 from tpss.errors import ResultError
 from tpss.scenario.schema import TITLE, scenario_schema
+from tpss.whole_file import write_whole
 
 
 def write_schema(out: Path | None) -> None:
@@ -24,10 +24,7 @@ def write_schema(out: Path | None) -> None:
     if os.path.lexists(out) and not _is_our_schema(out):
         raise ResultError(f"{out} is there and is not a schema of TPSS; name another file")
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as folder:
-            part = Path(folder) / out.name
-            part.write_text(text, encoding="utf-8")
-            part.replace(out)
+        write_whole(out, text.encode())
     except OSError as error:
         message = f"{out} cannot be written: {error.strerror}; name another file"
         raise ResultError(message) from error

@@ -6,6 +6,23 @@ n = ⌈(v' - w)/(b h)⌉ steps; the limit can still be met if these take it no f
 Both x' and that way grow with v' (by slopes, and by jumps where n does), so the speeds from which
 the limit can be met are those up to a highest one, which bisection finds to the last digit.  From
 such a speed full braking always leads to another, so the limit stays within reach.
+
+Steps in which the speed is held first
+--------------------------------------
+Full braking over whole steps leaves a train far below the limit where steps are long against
+(v - w)/b: at 0.85 m/s² from 100 km/h, at 8 km/h after 30 s.  A step that may hold its speed v for a
+while and brake with b at its end, from v to v' in (v - v')/b, goes
+
+    way = v (h - (v - v')/b) + (v² - v'²)/2b = v h - (v - v')²/2b,
+
+and n such steps, all but the first of them with the brakes alone, bring a train to w exactly,
+
+    way = v (n h - (v - w)/b) + (v² - w²)/2b.
+
+These ways grow with v' and v too, and again a step of the latest braking leads from a speed from which
+the limit can be met to another.  The train comes to the limit's position with w, or is that slow up
+to a step before it.  Other than steps of full braking these may be too long for a train that has been
+placed too near to a limit: it is driven in uniform steps.
 """
 
 import math
@@ -14,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.braking import shortest_stop
-from tpss.kernel import inlined, kernel
+from tpss.kernel import inlined, kernel, switch
 from tpss.physics.gradient import step_index
 
 Array = npt.NDArray[np.float64]
@@ -28,6 +45,14 @@ SLACK_STEPS = 1e-12
 SLACK_M_S = 1e-9
 """Rounding by which a train may enter a limit too fast: a limit met a step before is one of these
 above it, and must not call for another, impossible, step of braking. [m/s]"""
+
+UNIFORM = switch(0)
+"""Steps of constant acceleration."""
+HOLD_FIRST = switch(1)
+"""Steps that slow a train down do so with its highest retardation at their end."""
+
+OUT_OF_REACH = -1.0
+"""In place of a speed: steps that hold their speed first cannot meet a limit."""
 
 BISECTIONS = 60
 """Halvings after which the bracket of a speed is as wide as a rounding."""
@@ -54,6 +79,26 @@ def slowing_distance(
 
 
 @inlined
+def latest_slowing_distance(
+    speed_m_s: float, limit_m_s: float, retardation_m_s2: float, step_s: float
+) -> float:
+    r"""Way to a limit, in whole steps that end with full braking and of which the first holds its speed.
+
+    In metres, 0 at or below the limit.
+
+    .. math:: v \left(n h - \frac{v - w}{b}\right) + \frac{v^2 - w^2}{2 b}
+
+    Parameters are those of `slowing_distance`.
+    """
+    if speed_m_s <= limit_m_s:
+        return 0.0
+    slowing_s = (speed_m_s - limit_m_s) / retardation_m_s2
+    n = math.ceil(slowing_s / step_s)
+    braking_m = slowing_s * (speed_m_s + limit_m_s) / 2.0
+    return speed_m_s * (n * step_s - slowing_s) + braking_m
+
+
+@inlined
 def slows_down(
     speed_m_s: float, from_m: float, to_m: float, limits_from_m: Array, limit_m_s: Array
 ) -> bool:
@@ -69,7 +114,7 @@ def slows_down(
 @kernel
 def can_meet_limit(
     speed_m_s: float, next_speed_m_s: float, distance_m: float, limit_m_s: float,
-    retardation_m_s2: float, step_s: float,
+    retardation_m_s2: float, step_s: float, manner: int,
 ) -> bool:  # fmt: skip
     """Whether a limit ahead can still be met after a step from one speed to the next.
 
@@ -81,29 +126,44 @@ def can_meet_limit(
         Distance from the start of the step to the limit's position. [m]
     limit_m_s, retardation_m_s2, step_s : float
         As in `slowing_distance`.
+    manner : int
+        `UNIFORM` or `HOLD_FIRST`.
     """
     if speed_m_s <= limit_m_s + SLACK_M_S and next_speed_m_s <= limit_m_s:
         return True
-    way = step_s * (speed_m_s + next_speed_m_s) / 2.0
-    slowing = slowing_distance(next_speed_m_s, limit_m_s, retardation_m_s2, step_s)
+    if manner == HOLD_FIRST:
+        slower_m_s = max(0.0, speed_m_s - next_speed_m_s)
+        faster_m_s = max(0.0, next_speed_m_s - speed_m_s)
+        way = step_s * (speed_m_s + faster_m_s / 2.0) - slower_m_s**2 / (2.0 * retardation_m_s2)
+        slowing = latest_slowing_distance(next_speed_m_s, limit_m_s, retardation_m_s2, step_s)
+    else:
+        way = step_s * (speed_m_s + next_speed_m_s) / 2.0
+        slowing = slowing_distance(next_speed_m_s, limit_m_s, retardation_m_s2, step_s)
     return way + slowing <= distance_m + SLACK_M
 
 
 @kernel
 def highest_speed_before_limit(
     speed_m_s: float, wanted_m_s: float, distance_m: float, limit_m_s: float,
-    retardation_m_s2: float, step_s: float,
+    retardation_m_s2: float, step_s: float, manner: int,
 ) -> float:  # fmt: skip
     """Highest speed after this step, up to the wanted one, from which a limit can be met. [m/s]
 
-    Parameters are those of `can_meet_limit`; `wanted_m_s` is what the driver wants after the step.
+    Or `OUT_OF_REACH`.  Parameters are those of `can_meet_limit`; `wanted_m_s` is what the driver wants
+    after the step.
     """
-    if can_meet_limit(speed_m_s, wanted_m_s, distance_m, limit_m_s, retardation_m_s2, step_s):
+    d, limit, b, h = distance_m, limit_m_s, retardation_m_s2, step_s
+    if can_meet_limit(speed_m_s, wanted_m_s, d, limit, b, h, manner):
         return wanted_m_s
-    low, high = max(0.0, speed_m_s - retardation_m_s2 * step_s), wanted_m_s
+    low, high = max(0.0, speed_m_s - b * h), wanted_m_s
+    if manner == HOLD_FIRST:
+        low = max(low, min(speed_m_s, limit))
+        # Roundings of a way and of a speed do not take a train off the braking that it has begun.
+        if not can_meet_limit(speed_m_s, low - SLACK_M_S, d + SLACK_M, limit, b, h, manner):
+            return OUT_OF_REACH
     for _ in range(BISECTIONS):
         middle = (low + high) / 2.0
-        if can_meet_limit(speed_m_s, middle, distance_m, limit_m_s, retardation_m_s2, step_s):
+        if can_meet_limit(speed_m_s, middle, d, limit, b, h, manner):
             low = middle
         else:
             high = middle
@@ -113,9 +173,11 @@ def highest_speed_before_limit(
 @kernel
 def heed_limits_ahead(
     position_m: float, speed_m_s: float, wanted_m_s: float, from_m: Array, limit_m_s: Array,
-    retardation_m_s2: float, step_s: float,
+    retardation_m_s2: float, step_s: float, manner: int,
 ) -> float:  # fmt: skip
     """Highest speed after this step, up to the wanted one, that every lower limit ahead allows. [m/s]
+
+    Or `OUT_OF_REACH`, if steps that hold their speed first cannot meet all of them.
 
     A limit no lower than the one before it asks for nothing: a train that is allowed to be faster than
     both may stay so.
@@ -126,6 +188,8 @@ def heed_limits_ahead(
         Position of the train. [m]
     from_m, limit_m_s : Array, shape (n,)
         Positions from which the limits hold [m], ascending, and the limits [m/s].
+    retardation_m_s2, step_s, manner
+        As in `can_meet_limit`.
     """
     # No train looks further ahead than a step at both speeds, a stop and one step more.
     fastest = max(speed_m_s, wanted_m_s)
@@ -135,7 +199,9 @@ def heed_limits_ahead(
         if limit_m_s[j] < min(fastest, limit_m_s[j - 1]):
             wanted_m_s = highest_speed_before_limit(
                 speed_m_s, wanted_m_s, from_m[j] - position_m, limit_m_s[j],
-                retardation_m_s2, step_s,
+                retardation_m_s2, step_s, manner,
             )  # fmt: skip
+            if wanted_m_s == OUT_OF_REACH:
+                return OUT_OF_REACH
         j += 1
     return wanted_m_s

@@ -3,7 +3,7 @@
 from typing import Any
 
 from tpss.driving.braking import shortest_stop
-from tpss.driving.speed_limits import can_meet_limit
+from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.driving.within_step import braking_distance
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
@@ -88,7 +88,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
             distance = limits.from_m[j] - position_m
             lower = limits.value[j] < limits.value[j - 1]
             if lower and not can_meet_limit(
-                speed, slowest, distance, limits.value[j], retardation, h
+                speed, slowest, distance, limits.value[j], retardation, h, UNIFORM
             ):
                 problem = f"too fast to meet the limit at {limits.from_m[j] / 1e3:g} km"
     if not problem:

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from tpss.report.sampling import Floats
+from tpss.scenario.standards import VoltageLimits
 
 MOST_POSITIONS = 240
 MOST_TIMES = 320
@@ -83,6 +84,17 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
         map_kv=columns.T / 1e3,
         steps_a_column=per_column,
     )
+
+
+def voltage_marks(limits: VoltageLimits) -> dict[str, float]:
+    """Nominal voltage and limits by their names in EN 50163, which a figure of voltages shows. [kV]"""
+    return {
+        "Umin2": limits.umin2_kv,
+        "Umin1": limits.umin1_kv,
+        "Un": limits.un_kv,
+        "Umax1": limits.umax1_kv,
+        "Umax2": limits.umax2_kv,
+    }
 
 
 def _phasors(dataset: xr.Dataset, place: str) -> np.ndarray:

@@ -6,7 +6,6 @@ program is part of the file.  The page forbids itself all access to the network.
 
 import json
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
@@ -26,8 +25,9 @@ from tpss.results.audit import LIMITS
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result
+from tpss.whole_file import write_whole
 
-NAMES = {
+STATUS_IN_WORDS = {
     "finished": "The run finished.",
     "collapsed": "The line cannot carry its load: the run collapsed.",
     "stalled": "A train stalled, and ended the run.",
@@ -63,10 +63,7 @@ def write_report(
     check_target(place, force)
     text = report(results) if isinstance(results, Result) else comparison(results)
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{place.name}-", dir=place.parent) as folder:
-            part = Path(folder) / place.name
-            part.write_text(text, encoding="utf-8")
-            part.replace(place)
+        write_whole(place, text.encode())
     except OSError as error:
         message = f"{place} cannot be written: {error.strerror}; give another --out"
         raise ResultError(message) from error
@@ -241,7 +238,7 @@ def _page(
         results=results,
         single=next(iter(results.values())) if len(results) == 1 else None,
         troubles=_troubles(results),
-        status_names=NAMES,
+        status_names=STATUS_IN_WORDS,
         figures=figures,
         data=data,
         tables=tables,

@@ -12,7 +12,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from tpss.report.contact_line import LineVoltage
+from tpss.report.contact_line import LineVoltage, voltage_marks
 from tpss.report.gradients import inclination
 from tpss.report.palette import COLOURS, LEAST_SPAN_KV, VOLTAGE_SCALE
 from tpss.report.sampling import MOST_OF_CURVES, Floats, kept, share
@@ -86,7 +86,7 @@ def line_at_a_moment(result: Result, voltage: LineVoltage) -> go.Figure:
         Of this run.
     """
     figure = _figure(["voltage [kV]"], POSITION, "position", height=460)
-    _add_envelope(figure, voltage, "", 0)
+    _add_envelope(figure, voltage)
     _add_trains(figure, result, "trains now", 0)
     _mark_feeding_points(figure, [result])
     shown_kv = [float(voltage.lowest_kv.min()), float(voltage.highest_kv.max())]
@@ -117,35 +117,29 @@ def envelopes(runs: Mapping[str, tuple[Result, LineVoltage]]) -> go.Figure:
     return figure.update_layout(hovermode="closest")
 
 
-def journey(
-    runs: Mapping[str, Result], train: str | None = None, against: str = "position"
-) -> go.Figure:
-    """Speed of a train, the voltage at its pantograph, and the gradient below it.
+def journey(runs: Mapping[str, Result], train: str | None = None) -> go.Figure:
+    """Speed of a train, the voltage at its pantograph, and the gradient below it, over its way.
 
     Parameters
     ----------
     runs : mapping of str to Result
         By label.
     train : str, optional
-        Train of that name in every run; each run's studied train by default.
-    against : {"position", "time"}
-        What the horizontal axis carries.
+        Train of that name in every run; by default each run's studied train, or its first one.
     """
-    axis = POSITION if against == "position" else TIME
     labels = ["speed [km/h]", "voltage [kV]", "gradient [‰]"]
-    figure = _figure(labels, axis, against, height=560)
+    figure = _figure(labels, POSITION, "position", height=560)
     for k, (label, result) in enumerate(runs.items()):
         name = train or result.summary["studied_train"] or str(result.dataset.train.to_numpy()[0])
         data = result.dataset.sel(train=name)
-        km, minutes = data.position.to_numpy() / 1e3, data.time.to_numpy() / 60.0
-        x = km if against == "position" else minutes
+        km = data.position.to_numpy() / 1e3
         text = f"{label}: {name}" if len(runs) > 1 else name
         there = np.isfinite(km)
         kmh, kv = data.speed.to_numpy() * 3.6, data.pantograph_voltage.to_numpy() / 1e3
-        _add_line(figure, 1, x[there], kmh[there], text, k, "km/h")
-        _add_held(figure, 2, x[there], kv[there], text, (k, k), "kV", show_legend=False)
+        _add_line(figure, 1, km[there], kmh[there], text, k, "km/h")
+        _add_held(figure, 2, km[there], kv[there], text, (k, k), "kV", show_legend=False)
         permille = inclination(result, data.position.to_numpy()) * 1e3
-        _add_held(figure, 3, x[there], permille[there], text, (k, k), "‰", show_legend=False)
+        _add_held(figure, 3, km[there], permille[there], text, (k, k), "‰", show_legend=False)
     return figure
 
 
@@ -286,9 +280,8 @@ def _add_held(
     )
 
 
-def _add_envelope(figure: go.Figure, voltage: LineVoltage, label: str, k: int) -> None:
+def _add_envelope(figure: go.Figure, voltage: LineVoltage) -> None:
     """The band between lowest and highest voltage, and the mean in it."""
-    colour = COLOURS[k]
     for name, values, dash, fill in (
         ("highest", voltage.highest_kv, "dot", None),
         ("lowest", voltage.lowest_kv, "solid", "tonexty"),
@@ -297,9 +290,9 @@ def _add_envelope(figure: go.Figure, voltage: LineVoltage, label: str, k: int) -
         figure.add_scatter(
             x=_single(voltage.position_km),
             y=_single(values),
-            name=f"{label}{name}",
+            name=name,
             mode="lines",
-            line={"color": colour, "dash": dash, "width": 1.5},
+            line={"color": COLOURS[0], "dash": dash, "width": 1.5},
             fill=fill,
             fillcolor="rgba(86,180,233,0.18)",
             hovertemplate=f"{name} at %{{x:.1f}} km: %{{y:.2f}} kV<extra></extra>",
@@ -327,14 +320,7 @@ def _add_trains(figure: go.Figure, result: Result, name: str, k: int) -> None:
 
 def _mark_limits(figure: go.Figure, result: Result, shown_kv: Sequence[float]) -> None:
     """Nominal voltage and limits by which the result is judged."""
-    limits = result.scenario.standards.voltage_limits
-    marks = {
-        "Umin2": limits.umin2_kv,
-        "Umin1": limits.umin1_kv,
-        "Un": limits.un_kv,
-        "Umax1": limits.umax1_kv,
-        "Umax2": limits.umax2_kv,
-    }
+    marks = voltage_marks(result.scenario.standards.voltage_limits)
     for name, kilovolts in marks.items():
         figure.add_hline(
             kilovolts,
@@ -345,7 +331,7 @@ def _mark_limits(figure: go.Figure, result: Result, shown_kv: Sequence[float]) -
             },
             annotation_position="top right",
         )
-    low, high = min(limits.umin2_kv, *shown_kv), max(limits.umax2_kv, *shown_kv)
+    low, high = min(*marks.values(), *shown_kv), max(*marks.values(), *shown_kv)
     margin = 0.1 * (high - low)
     figure.update_yaxes(range=[low - margin, high + margin])
 

@@ -1,4 +1,4 @@
-"""The audit of steps that hold the speed, then brake, in runs that brake within steps.
+"""The audit of steps that hold the speed, then brake to a stop or a lower limit.
 
 The simulation sums forces over the times of a course; the audit knows of it only how long the speed was
 held, and has all else from the speeds and positions at the instants around the step.
@@ -16,7 +16,7 @@ def braking_work(before: Any, after: Any, kind: Any, step_s: float) -> Floats:
     """Work of resistances and brakes, phase by phase. [J]
 
     Of the resistances the mean over the step is recorded, for a part of which the train may stand.  To
-    hold the speed downhill takes brakes; the rest of their recorded impulse is for the stop.
+    hold the speed downhill takes brakes; the rest of their recorded impulse slows the train down.
 
     Parameters
     ----------

@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from tpss.kernel import plain
 from tpss.physics.constants import BASE_VOLTAGE_V
+from tpss.physics.locomotive import machine_force
 from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.simulation.run import INTERRUPTED, Outcome
 from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
@@ -19,6 +21,15 @@ _STRENGTHEN = (
 _FEED_LESS = (
     "Let less reactive power be fed into the line: by the trains' filters (a filter_reactance_ohm "
     "further from zero) or the catenary's capacitance."
+)
+
+_HELP_THE_TRAIN = (
+    "Lower the train's mass, raise its current limit (max_motor_current_a) or adhesive mass, "
+    "run on dry rails, or strengthen the supply if the voltage is low; with long time steps, "
+    "try a shorter one."
+)
+_LIMIT_LESS = (
+    "Ease the train's current_limitation (a higher max_current_a, a lower umin2_kv or knee_factor)."
 )
 
 _LIMITED = {
@@ -41,7 +52,7 @@ def explain(outcome: Outcome, model: Model) -> dict[str, str]:
     if outcome.status == "collapsed":
         return _collapse(outcome, time_min)
     if outcome.status == "stalled":
-        return _stall(outcome, time_min)
+        return _stall(outcome, model, time_min)
     if outcome.status == INTERRUPTED:
         problem = f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
         return {"problem": problem, "advice": "Run it again for the whole."}
@@ -77,7 +88,7 @@ def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
     return {"problem": problem, "advice": advice}
 
 
-def _stall(outcome: Outcome, time_min: float) -> dict[str, str]:
+def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
     clock = outcome.state.clock[0]
     if clock.stalled_train < 0:
         problem = f"The studied train has not arrived after {time_min:.0f} min."
@@ -96,12 +107,24 @@ def _stall(outcome: Outcome, time_min: float) -> dict[str, str]:
     on_line = np.isin(outcome.state.trains.phase, (DRIVING, PLANNED, DWELLING))
     lowest_kv = outcome.state.trains.voltage_v[on_line].min() / 1e3
     problem += f" The lowest voltage on the line is {lowest_kv:.2f} kV."
-    advice = (
-        "Lower the train's mass, raise its current limit (max_motor_current_a) or adhesive mass, "
-        "run on dry rails, or strengthen the supply if the voltage is low; with long time steps, "
-        "try a shorter one."
+    unlimited_n = _force_without_current_limitation(train, model.types[train.train_type])
+    if train.wheel_force_n < unlimited_n:
+        share = 100.0 * train.wheel_force_n / unlimited_n
+        problem += (
+            f" At this voltage its current limitation lets {share:.0f} % of the force through that it "
+            f"wants and could give otherwise, {unlimited_n / 1e3:.1f} kN."
+        )
+        return {"problem": problem, "advice": f"{_LIMIT_LESS} {_STRENGTHEN}"}
+    return {"problem": problem, "advice": _HELP_THE_TRAIN}
+
+
+def _force_without_current_limitation(train: Any, kind: Any) -> float:
+    """Force at the wheel rim that driver, rails and machine would give at the train's voltage. [N]"""
+    motors_n = max(0.0, float(train.machine_force_n))
+    machine_n = plain(machine_force)(
+        motors_n, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
     )
-    return {"problem": problem, "advice": advice}
+    return float(min(train.force_cap_n, max(0.0, machine_n)))
 
 
 def warnings(summary: dict[str, Any]) -> list[str]:

@@ -19,6 +19,9 @@ from tpss.simulation.balances import BALANCES
 from tpss.simulation.run import Clock, Run, Start, advance_to_end
 from tpss.simulation.state import PENDING, Counter, Memory, Model
 
+LIMITED = tuple(counter.name.lower() for counter in Counter)
+"""Names of what is counted, in the order of the recording."""
+
 
 @dataclass(frozen=True)
 class ServiceFigures:
@@ -180,9 +183,6 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
         limited=dict(zip(LIMITED, run.recording.counters.tolist(), strict=True)),
         audit=_audit(run, figures, whole, frame),
     )
-
-
-LIMITED = tuple(counter.name.lower() for counter in Counter)
 
 
 def _gather(run: Run, frame: Frame) -> Figures:

@@ -255,7 +255,10 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
         _demand_a_result(dataset)
         # An attribute of one number comes back as that number.
         dataset.attrs["station_energy_mwh"] = np.atleast_1d(dataset.attrs["station_energy_mwh"])
-    except (*DAMAGE, ScenarioError) as error:
+    except ScenarioError as error:
+        problem = f"{SCENARIO}: {error.findings[0].problem}"
+        raise ResultError(f"{folder} is damaged ({problem}); run the scenario again") from error
+    except DAMAGE as error:
         raise ResultError(f"{folder} is damaged ({error}); run the scenario again") from error
     return scenario, dataset, summary
 

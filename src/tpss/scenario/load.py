@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from tpss.errors import Finding, ScenarioError
 from tpss.scenario.files import read_toml
 from tpss.scenario.override import override
 from tpss.scenario.scenario import Scenario
@@ -25,5 +26,8 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
         The file, or a file that it names, cannot be read or has faults; all are listed.
     """
     source = Path(path)
-    document = override(read_toml(source), changes or {}, source)
-    return Scenario.from_document(document, source)
+    document = read_toml(source)
+    if {"scenario", "design"} <= document.keys():
+        remedy = "run it by tpss sweep, or name the scenario that it varies"
+        raise ScenarioError([Finding(str(source), "", "", "a study, not a scenario", remedy)])
+    return Scenario.from_document(override(document, changes or {}, source), source)

@@ -48,8 +48,8 @@ class Simulation(Part):
 
     braking: Literal["whole-steps", "within-step"] = Field(
         default="whole-steps",
-        description="Braking to a stop in whole steps (the thesis), or at the last moment, which may "
-        "lie within a step, as may the stop: that makes long steps accurate.",
+        description="Braking to stops and lower limits in whole steps (the thesis), or so late that it "
+        "may begin within a step, as may a stop: that makes long steps accurate.",
     )
 
     @model_validator(mode="after")

@@ -9,13 +9,12 @@ from tpss.simulation.driver import prepare
 from tpss.simulation.record import record_instant, record_network, record_train
 from tpss.simulation.state import (
     DWELLING,
-    EVEN,
-    LATEST,
     Counter,
     Model,
     Recording,
     State,
     Status,
+    is_on_course,
 )
 from tpss.simulation.stopping import move_on_course
 from tpss.simulation.traffic import depart, list_trains, move, remove_arrived
@@ -98,7 +97,7 @@ def end_step(
         note_loading(model, state)
     for k in range(count):
         train = state.trains[state.flow.standing[k].train]
-        if train.course == LATEST or train.course == EVEN:
+        if is_on_course(train.course):
             move_on_course(step, train, model, state)
         else:
             move(step, train, model, state)

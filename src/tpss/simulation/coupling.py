@@ -13,7 +13,7 @@ from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
 from tpss.simulation.driver import aim
-from tpss.simulation.state import DWELLING, EVEN, LATEST, Model, State, sight_of
+from tpss.simulation.state import DWELLING, Model, State, is_on_course, sight_of
 from tpss.simulation.stopping import settle_course
 from tpss.simulation.traffic import begin_plan, must_plan
 
@@ -97,7 +97,7 @@ def settle(train: Any, model: Model) -> None:
     train.braking_force_n = 0.0
     if train.phase == DWELLING:
         train.next_speed_m_s = 0.0
-    elif train.course == LATEST or train.course == EVEN:
+    elif is_on_course(train.course):
         settle_course(train, kind, model.options.step_s)
     elif force >= wanted or wanted <= 0.0:
         train.next_speed_m_s = train.target_speed_m_s

@@ -4,7 +4,7 @@ from typing import Any
 
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
-from tpss.driving.speed_limits import heed_limits_ahead
+from tpss.driving.speed_limits import HOLD_FIRST, OUT_OF_REACH, UNIFORM, heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.driving.within_step import highest_speed_that_stops_within
 from tpss.kernel import inlined, kernel
@@ -28,13 +28,15 @@ from tpss.simulation.state import (
     DRIVING,
     DWELLING,
     PLANNED,
+    TO_LIMIT,
+    TO_LIMIT_UNIFORMLY,
     USUAL,
     WITHIN_STEP,
     Model,
     Sight,
     sight_of,
 )
-from tpss.simulation.stopping import steer_to_stop
+from tpss.simulation.stopping import drive_uniformly, steer_to_limit, steer_to_stop
 from tpss.simulation.traffic import distance_to_stop
 
 
@@ -84,11 +86,33 @@ def target_speed(train: Any, kind: Any, sight: Sight) -> float:
             if most >= 2.0 * train.speed_m_s:
                 target = min(target, most)
         target = min(target, train.speed_m_s + kind.highest_acceleration_m_s2 * h)
-    allowed = heed_limits_ahead(
-        train.position_m, train.speed_m_s, target, limits.from_m, limits.value, retardation, h
-    )
+    allowed = allowed_speed(train, target, retardation, sight)
     if allowed < target and train.phase == PLANNED:
         train.phase = DRIVING  # a limit goes first; the train plans anew
+    return allowed
+
+
+@inlined
+def allowed_speed(train: Any, target_m_s: float, retardation_m_s2: float, sight: Sight) -> float:
+    """Highest speed after this step, up to the target, that lower limits ahead allow. [m/s]
+
+    Within steps, a train that has to slow down for one is put on its course.
+    """
+    limits, options, v = sight.limits, sight.options, train.speed_m_s
+    manner = UNIFORM
+    if options.braking == WITHIN_STEP and train.phase == DRIVING and train.course == USUAL:
+        manner = HOLD_FIRST
+    allowed = heed_limits_ahead(
+        train.position_m, v, target_m_s, limits.from_m, limits.value,
+        retardation_m_s2, options.step_s, manner,
+    )  # fmt: skip
+    if allowed == OUT_OF_REACH:
+        return heed_limits_ahead(
+            train.position_m, v, target_m_s, limits.from_m, limits.value,
+            retardation_m_s2, options.step_s, UNIFORM,
+        )  # fmt: skip
+    if manner == HOLD_FIRST and allowed < min(v, target_m_s):
+        train.course = TO_LIMIT
     return allowed
 
 
@@ -126,11 +150,18 @@ def oppose(train: Any, kind: Any, model: Model) -> None:
 
 
 @inlined
-def aim_uniformly(train: Any, kind: Any, sight: Sight) -> None:
-    """Set the target of a train for a step of constant acceleration, and the force that it takes."""
+def aim_usually(train: Any, kind: Any, sight: Sight) -> None:
+    """Set the target of a train that does not brake to its stop, and the force that it takes.
+
+    The step is one of constant acceleration, unless the train brakes to a lower limit within it.
+    """
     options = sight.options
+    if train.course == TO_LIMIT_UNIFORMLY:
+        drive_uniformly(train, kind, sight)
     by_rule = options.driver == AGGRESSIVE and train.phase == DRIVING
     target = target_speed(train, kind, sight)
+    if train.course == TO_LIMIT and steer_to_limit(train, kind, target, sight):
+        return
     a = wanted_acceleration(train.speed_m_s, target, options.step_s)
     wanted = ideal_force(a, train.resistance_n, kind.inertia_kg)
     if by_rule:
@@ -159,7 +190,7 @@ def aim(train: Any, sight: Sight) -> None:
         if train.phase == PLANNED and options.braking == WITHIN_STEP:
             on_course = steer_to_stop(train, kind, sight)
         if not on_course:
-            aim_uniformly(train, kind, sight)
+            aim_usually(train, kind, sight)
     prove_free_band(kind, train)
     note_cap(kind, train)
 

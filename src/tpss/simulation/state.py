@@ -48,6 +48,8 @@ USUAL = 0
 LATEST = 1
 EVEN = 2
 LIMIT_FIRST = 3
+TO_LIMIT = 4
+TO_LIMIT_UNIFORMLY = 5
 
 # Codes of `train_state` in the result.
 ABSENT = -1
@@ -57,6 +59,13 @@ STATE_COASTING = 2
 STATE_BRAKING = 3
 STATE_DWELLING = 4
 STATE_ARRIVED = 5
+
+
+@inlined
+def is_on_course(course: int) -> bool:
+    """Whether a train may brake for a part of the step only."""
+    return course in (LATEST, EVEN, TO_LIMIT)
+
 
 STOP = np.dtype(
     [("position_m", float), ("dwell_steps", np.int64), ("destination", np.bool_)], align=True

@@ -1,4 +1,4 @@
-"""Trains that brake to their stop within steps: their aim, their forces, their motion.
+"""Trains that brake within steps, to their stop or to a lower limit: aim, forces, motion.
 
 What `driver.aim`, `coupling.settle` and `traffic.move` do for a step of constant acceleration is done
 here for one that holds the speed, then brakes; the formulas are those of `driving.within_step`.
@@ -6,7 +6,7 @@ here for one that holds the speed, then brakes; the formulas are those of `drivi
 
 from typing import Any
 
-from tpss.driving.speed_limits import heed_limits_ahead, slows_down
+from tpss.driving.speed_limits import UNIFORM, heed_limits_ahead, slows_down
 from tpss.driving.within_step import (
     even_braking,
     latest_braking,
@@ -18,7 +18,7 @@ from tpss.kernel import inlined, kernel
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.locomotive import acceleration
 from tpss.physics.running_resistance import gradient_force
-from tpss.simulation.state import DRIVING, EVEN, LATEST, LIMIT_FIRST, Model, Sight, State
+from tpss.simulation.state import DRIVING, EVEN, LATEST, LIMIT_FIRST, USUAL, Model, Sight, State
 from tpss.simulation.traffic import distance_to_stop, stand_at_stop
 
 
@@ -67,22 +67,59 @@ def steer_to_stop(train: Any, kind: Any, sight: Sight) -> bool:
         _follow(0.0, even_braking(v, distance_m, retardation), train, kind, sight)
         target = train.target_speed_m_s
         if limited and target > heed_limits_ahead(
-            position_m, v, target, limits.from_m, limits.value, retardation, h
+            position_m, v, target, limits.from_m, limits.value, retardation, h, UNIFORM
         ):
             train.phase = DRIVING
             train.course = LIMIT_FIRST
-            train.moving_share = 1.0
-            _climb(train, kind, v * h, sight)
+            drive_uniformly(train, kind, sight)
             return False
         driven_s = train.brake_s
         wanted = train.resistance_n - kind.inertia_kg * (v - target) / driven_s
     elif driven_s == 0.0:
         wanted = 0.0
-    train.driven_share = driven_s / h
-    train.mean_speed_weight_s = driven_s / 2.0 if sight.options.mean_power else 0.0
-    train.wanted_force_n = wanted
-    train.force_cap_n = max(0.0, min(wanted, train.adhesion_n))
+    _want(wanted, driven_s, train, sight)
     return True
+
+
+@inlined
+def steer_to_limit(train: Any, kind: Any, target_m_s: float, sight: Sight) -> bool:
+    """Set the course of a train that brakes to a lower limit, and the force that it takes.
+
+    It holds its speed, then brakes with its highest retardation to the end of the step.  Return whether
+    it may: not if the brakes take all of the step, or the machine would have to drive while the train
+    brakes.
+    """
+    h, v, retardation = sight.options.step_s, train.speed_m_s, kind.highest_retardation_m_s2
+    train.brake_s = min(h, (v - target_m_s) / retardation)
+    train.hold_s = h - train.brake_s
+    way_m = way_of_part(v, target_m_s, train.hold_s, train.brake_s)
+    _climb(train, kind, way_m, sight)
+    if train.hold_s == 0.0 or train.resistance_n > kind.inertia_kg * retardation:
+        train.course = USUAL
+        drive_uniformly(train, kind, sight)
+        return False
+    train.target_speed_m_s = target_m_s
+    _want(train.resistance_n, train.hold_s, train, sight)
+    return True
+
+
+@inlined
+def _want(wanted_n: float, driven_s: float, train: Any, sight: Sight) -> None:
+    """Note the force that a train on a course wants, and for how long."""
+    train.driven_share = driven_s / sight.options.step_s
+    train.mean_speed_weight_s = driven_s / 2.0 if sight.options.mean_power else 0.0
+    train.wanted_force_n = wanted_n
+    train.force_cap_n = max(0.0, min(wanted_n, train.adhesion_n))
+
+
+@kernel
+def drive_uniformly(train: Any, kind: Any, sight: Sight) -> None:
+    """Take a train off its course: the step is one of constant acceleration."""
+    h = sight.options.step_s
+    train.hold_s = 0.0
+    train.driven_share = train.moving_share = 1.0
+    train.mean_speed_weight_s = h / 2.0 if sight.options.mean_power else 0.0
+    _climb(train, kind, train.speed_m_s * h, sight)
 
 
 @kernel

@@ -4,7 +4,7 @@ from typing import Any
 
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
 from tpss.driving.speed_limits import SLACK_M
-from tpss.driving.within_step import braking_distance
+from tpss.driving.within_step import braking_distance, way_of_part
 from tpss.kernel import fused, inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
@@ -17,6 +17,8 @@ from tpss.simulation.state import (
     LIMIT_FIRST,
     PENDING,
     PLANNED,
+    TO_LIMIT,
+    TO_LIMIT_UNIFORMLY,
     USUAL,
     WITHIN_STEP,
     Model,
@@ -80,6 +82,14 @@ def least_room(speed_m_s: float, retardation_m_s2: float, options: Options) -> f
 
 
 @inlined
+def cannot_hold(train: Any) -> bool:
+    """Whether a train that is to hold its speed before it brakes cannot do so."""
+    if train.course != LATEST and train.course != TO_LIMIT:
+        return False
+    return bool(train.force_n < train.wanted_force_n * train.driven_share)
+
+
+@inlined
 def must_plan(train: Any, model: Model) -> bool:
     """Whether this step, driven as it is, would leave a train too little way to stop.
 
@@ -89,12 +99,14 @@ def must_plan(train: Any, model: Model) -> bool:
     ----------
     [Boullanger2009]_, ``final_brake`` of figure 3-7.
     """
-    if train.course == LATEST:
-        return train.force_n < train.wanted_force_n * train.driven_share  # it cannot hold its speed
+    if cannot_hold(train):
+        return True
     if train.phase != DRIVING or train.course == LIMIT_FIRST or train.speed_m_s <= 0.0:
         return False
     h, speed = model.options.step_s, max(train.next_speed_m_s, 0.0)
     way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
+    if train.course == TO_LIMIT:
+        way_m = way_of_part(train.speed_m_s, speed, train.hold_s, train.brake_s)
     retardation = model.types[train.train_type].highest_retardation_m_s2
     needed_m = least_room(speed, retardation, model.options)
     return distance_to_stop(train, model.stops) - way_m < needed_m
@@ -106,6 +118,9 @@ def begin_plan(train: Any, model: Model) -> None:
 
     Within steps, one that cannot hold its speed before it brakes is to brake evenly.
     """
+    if train.course == TO_LIMIT and cannot_hold(train):
+        train.course = TO_LIMIT_UNIFORMLY
+        return
     if model.options.braking == WITHIN_STEP:
         train.course = EVEN if train.course == LATEST else USUAL
         train.phase = PLANNED

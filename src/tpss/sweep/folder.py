@@ -156,8 +156,9 @@ def read_manifest(path: Path) -> dict[str, Any]:
     try:
         manifest = json.loads((path / MANIFEST).read_text("utf-8"))
     except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
         raise StudyError(
-            f"{path} is not the folder of a study ({MANIFEST}: {error}); name one that tpss sweep has "
+            f"{path} is not the folder of a study ({MANIFEST}: {reason}); name one that tpss sweep has "
             "written"
         ) from error
     if not isinstance(manifest, dict):

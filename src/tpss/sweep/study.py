@@ -132,6 +132,9 @@ def load_study(path: str | Path) -> Study:
     """
     source = Path(path)
     document = read_toml(source)
+    if {"trains", "traffic"} <= document.keys():
+        remedy = "run it by tpss run, or name it in a study"
+        raise ScenarioError([Finding(str(source), "", "", "a scenario, not a study", remedy)])
     for key in ("set", "vary"):
         if isinstance(document.get(key), dict):
             document[key] = flattened(document[key], is_variation=key == "vary")

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from tpss.errors import ResultError
+from tpss.errors import ResultError, suggest
 from tpss.report.figures.effort import effort
 from tpss.report.figures.energy import energy_flow
 from tpss.report.figures.journey import journey
@@ -112,7 +112,7 @@ def draw(
 def demand_figure(name: str) -> None:
     """Raise a `ResultError` if there is no figure of that name."""
     if name not in FIGURES:
-        raise ResultError(f"there is no figure {name!r}; figures: {', '.join(FIGURES)}, or all")
+        raise ResultError(f"there is no figure {name!r}; {suggest(name, [*FIGURES, 'all'])}")
 
 
 def chosen_train(result: Result, train: str | None) -> str:

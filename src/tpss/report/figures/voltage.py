@@ -1,13 +1,13 @@
 """Voltage along the line: of a train, and over a whole run."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tpss.report.contact_line import line_voltage
+from tpss.report.contact_line import line_voltage, voltage_marks
 from tpss.report.style import STYLE, as_text, colour, legend, line, panels
 from tpss.results.result import Result
 
@@ -28,9 +28,7 @@ def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> 
     [Boullanger2009]_, the layout of figures 3-2 and 3-3.
     """
     figure, (panel,) = panels(["voltage at the pantograph [kV]"], "position [km]", panel_inch=3.0)
-    feeding = {km for run in runs.values() for km in run.dataset.node_position.to_numpy() / 1e3}
-    for km in sorted(feeding):
-        panel.axvline(km, color="#888888", linewidth=0.8, linestyle=":")
+    _mark_feeding_points(panel, runs.values())
     for k, (label, result) in enumerate(runs.items()):
         data = result.dataset.sel(train=train or result.summary["studied_train"])
         voltage_kv = data.pantograph_voltage.to_numpy() / 1e3
@@ -69,7 +67,8 @@ def voltage_envelope(result: Result) -> Figure:
     panel.plot(km, voltage.lowest_kv, "-", color=colour(0), label="lowest", linewidth=1.6)
     shown = np.concatenate([voltage.lowest_kv, voltage.highest_kv])
     _mark_limits(panel, result, float(shown.min()), float(shown.max()))
-    _mark_feeding_points(panel, result)
+    _mark_feeding_points(panel, [result])
+    _name_stations(panel, result)
     panel.grid(visible=False, axis="x")
     legend(figure, panel)
     return figure
@@ -77,19 +76,12 @@ def voltage_envelope(result: Result) -> Figure:
 
 def _mark_limits(panel: Axes, result: Result, lowest_kv: float, highest_kv: float) -> None:
     """Lines at nominal voltage and limits, named beside the panel."""
-    limits = result.scenario.standards.voltage_limits
-    marks = {
-        "$U_{min2}$": limits.umin2_kv,
-        "$U_{min1}$": limits.umin1_kv,
-        "$U_n$": limits.un_kv,
-        "$U_{max1}$": limits.umax1_kv,
-        "$U_{max2}$": limits.umax2_kv,
-    }
+    marks = voltage_marks(result.scenario.standards.voltage_limits)
     for name, kilovolts in marks.items():
-        dashes = "-" if kilovolts == limits.un_kv else (0, (6, 3))
+        dashes = "-" if name == "Un" else (0, (6, 3))
         panel.axhline(kilovolts, color="#555555", linewidth=0.8, linestyle=dashes)
         panel.annotate(
-            f"{name} {kilovolts:g}",
+            f"$U_{{{name.removeprefix('U')}}}$ {kilovolts:g}",
             (1.0, kilovolts),
             xytext=(4, 0),
             xycoords=("axes fraction", "data"),
@@ -99,16 +91,21 @@ def _mark_limits(panel: Axes, result: Result, lowest_kv: float, highest_kv: floa
             color="#444444",
             annotation_clip=False,
         )
-    low, high = min(lowest_kv, limits.umin2_kv), max(highest_kv, limits.umax2_kv)
+    low, high = min(lowest_kv, *marks.values()), max(highest_kv, *marks.values())
     margin = 0.08 * (high - low)
     panel.set_ylim(low - margin, high + margin)
 
 
-def _mark_feeding_points(panel: Axes, result: Result) -> None:
-    """Dotted lines at transformers and stations, the stations with their names above the panel."""
+def _mark_feeding_points(panel: Axes, results: Iterable[Result]) -> None:
+    """Dotted lines at transformers and stations."""
+    places_m = {float(m) for result in results for m in result.dataset.node_position.to_numpy()}
+    for m in sorted(places_m):
+        panel.axvline(m / 1e3, color="#888888", linewidth=0.8, linestyle=":")
+
+
+def _name_stations(panel: Axes, result: Result) -> None:
+    """Names of the converter stations above the panel."""
     data = result.dataset
-    for km in np.unique(data.node_position.to_numpy()) / 1e3:
-        panel.axvline(km, color="#888888", linewidth=0.8, linestyle=":")
     places = data.station_position.to_numpy() / 1e3
     low, high = panel.get_xlim()
     for km, name in zip(places, data.station.to_numpy(), strict=True):

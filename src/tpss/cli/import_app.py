@@ -1,0 +1,36 @@
+"""Arguments and options of ``tpss import``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(help="Make scenario files from the files of others.", no_args_is_help=True)
+
+
+@app.callback()
+def _imports() -> None:
+    pass
+
+
+@app.command(
+    epilog="Example:  tpss import ttobench SE_Vasteras_Kolback.json CH_Stadler_FLIRT_TPF.json "
+    "--out vasteras"
+)
+def ttobench(
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE...", help="Tracks and trains (JSON).", show_default=False),
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for the files.", show_default=False)],
+    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+) -> None:
+    """Turn tracks and trains of TTOBench into lines and trains, and each pair into a scenario.
+
+    A track gives a line (TOML, with a CSV profile of its gradients), a train gives a model file.
+    Each says in its comments what was taken, left out and assumed. Every pair of a track and a train
+    gives a scenario that runs at once; its supply and its traffic are assumed, and marked so.
+    """
+    from tpss.cli.imports import import_ttobench
+
+    import_ttobench(files, out, force)
