@@ -120,7 +120,7 @@ def allowed_speed(train: Any, target_m_s: float, retardation_m_s2: float, sight:
     if manner == HOLD_FIRST and allowed < min(v, target_m_s):
         train.course = TO_LIMIT
     # A train that slows down to the rounding of a speed would creep on for days; it stops.
-    return 0.0 if allowed < min(v, SLACK_M_S) else allowed
+    return 0.0 if 0.0 < allowed < min(v, SLACK_M_S) else allowed
 
 
 @inlined
