@@ -4,6 +4,7 @@ Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records
 one node or section together; to compiled code an array of them is one argument.
 """
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -184,6 +185,10 @@ def gap_weight(start_m: float, end_m: float, impedance_ohm_per_m: complex) -> fl
     return float((BASE_VOLTAGE_V**2 / impedance_ohm / BASE_POWER_VA) ** 2)
 
 
+_pattern = lru_cache(maxsize=64)(find_pattern)
+"""Patterns by the edges of networks, which share them; nobody changes one."""
+
+
 def assemble(
     n_nodes: int,
     sections: list[tuple[int, int, float, float, complex, float]],
@@ -202,12 +207,12 @@ def assemble(
         At most one a node.
     """
     ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
-    pattern, place = find_pattern(n_nodes, ends)
+    pattern, place = _pattern(n_nodes, tuple(ends))
     impedances = [abs(z) for *_, z in branches]
     impedances += [abs(z) * max(SHORTEST_PIECE_M, b - a) for _, _, a, b, z, _ in sections]
     rounding = max(map(resolution_va, impedances)) / BASE_POWER_VA
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
-    source_of_node[sources.node] = np.arange(sources.size)
+    source_of_node[sources["node"]] = np.arange(sources.size)
 
     def blocks(a: int, b: int) -> tuple[int, int, int, int]:
         return place[a, a], place[a, b], place[b, a], place[b, b]
@@ -235,6 +240,6 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         blocks=blank_records(blocks, BLOCK),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
-    flow.sources.converters = network.sources.installed
-    flow.standing.train = np.arange(n_trains)
+    flow.sources["converters"] = network.sources["installed"]
+    flow.standing["train"] = np.arange(n_trains)
     return flow

@@ -5,7 +5,7 @@ forms the current of every piece of line and every branch from the voltages at i
 admittance equations), and compares the powers that this asks for with the recorded ones.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -89,7 +89,7 @@ class Audit:
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name."""
-        return {**asdict(self), "failures": list(self.failures), "passed": self.passed}
+        return {**vars(self), "failures": list(self.failures), "passed": self.passed}
 
 
 def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:

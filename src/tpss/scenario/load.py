@@ -26,4 +26,4 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
     """
     source = Path(path)
     document = override(read_toml(source), changes or {}, source)
-    return Scenario.from_document(document, source)
+    return Scenario.from_own_document(document, source)

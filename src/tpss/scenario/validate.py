@@ -10,7 +10,6 @@ from tpss import units
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
-from tpss.scenario.override import copy_of
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -61,7 +60,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     ScenarioError
         The document has faults; the error lists all of them.
     """
-    inlined = inline_files(copy_of(document), source)
+    inlined = inline_files(document, source)
     findings = inlined.findings
     scenario = None
     try:

@@ -218,10 +218,10 @@ def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
 def foreseen_steps(model: Model, service: Service) -> int:
     """Steps that a train of a service takes if little slows it down, with some to spare."""
     fastest = min(
-        float(model.limits.value.max()), float(model.types[service.train_type].highest_speed_m_s)
+        float(model.limits.value.max()), float(model.types["highest_speed_m_s"][service.train_type])
     )
     travel_s = (service.stops_m[-1] - service.start_m) / fastest
-    dwell = int(model.stops[service.route].dwell_steps.sum())
+    dwell = int(model.stops["dwell_steps"][service.route].sum())
     return (
         int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
     )

@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from tpss.kernel import blank_records
 from tpss.simulation.state import DRIVING, JOURNEY, PENDING, TRAIN
@@ -48,8 +48,7 @@ class Service:
         return max(0, math.ceil((until_s - self.first_s) / self.headway_s))
 
 
-@dataclass(frozen=True)
-class Train:
+class Train(NamedTuple):
     """A train as it enters the simulation; fields are those of `TRAIN`."""
 
     name: str
@@ -107,17 +106,15 @@ def placed_trains(service: Service) -> list[Train]:
     ]
 
 
-_STATE_FIELDS = [field.name for field in fields(Train) if field.name in (TRAIN.names or ())]
-
-
 def train_records(trains: list[Train], voltage_v: float) -> Any:
     """Records of `TRAIN`, in the order of the trains, with a first guess of their voltage."""
     rows = blank_records(len(trains), TRAIN)
-    for name in _STATE_FIELDS:
-        rows[name] = [getattr(train, name) for train in trains]
-    rows.arrival_step = -1
-    rows.voltage_v = voltage_v
-    rows.taken_speed_m_s = -1.0
+    for name, column in zip(Train._fields, zip(*trains, strict=True), strict=False):
+        if name in (TRAIN.names or ()):
+            rows[name] = column
+    rows["arrival_step"] = -1
+    rows["voltage_v"] = voltage_v
+    rows["taken_speed_m_s"] = -1.0
     return rows
 
 
@@ -125,8 +122,7 @@ def trains_at(journeys: Any, train: Train) -> list[Train]:
     """A train where it once was, by records of `JOURNEY`, ready to enter another run at its start."""
     names = JOURNEY.names or ()
     return [
-        replace(
-            train,
+        train._replace(
             name=f"{train.service} initial {number}",
             departure_step=0,
             **dict(zip(names, journey, strict=True)),

@@ -49,7 +49,7 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
     if study.file.gradients is not None:
         number = values.get(PROFILE, case)
         draw_gradients(document, values[MEAN], values[DEVIATION], number, design)
-    return Scenario.from_document(document, study.base_source)
+    return Scenario.from_own_document(document, study.base_source)
 
 
 def draw_gradients(
