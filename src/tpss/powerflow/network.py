@@ -24,6 +24,8 @@ TOLERANCE = 1e-10
 SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
 
+EPSILON = float(np.finfo(float).eps)
+
 SECTION = np.dtype(
     [
         ("start_node", np.int64),
@@ -176,7 +178,7 @@ def resolution_va(impedance_ohm: float) -> float:
     A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
     to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
     """
-    return float(4.0 * np.finfo(float).eps * BASE_VOLTAGE_V**2 / impedance_ohm)
+    return float(4.0 * EPSILON * BASE_VOLTAGE_V**2 / impedance_ohm)
 
 
 def gap_weight(start_m: float, end_m: float, impedance_ohm_per_m: complex) -> float:

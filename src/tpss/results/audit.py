@@ -142,7 +142,7 @@ def limits_of(model: Model) -> dict[str, float]:
     """
     limits = dict(LIMITS)
     blurred = model.network.tolerance / TOLERANCE
-    shortest_ohm = np.abs(model.network.sections.impedance_ohm_per_m).min() * SHORTEST_PIECE_M
+    shortest_ohm = np.abs(model.network.sections["impedance_ohm_per_m"]).min() * SHORTEST_PIECE_M
     limits["power_mismatch_va"] *= max(blurred, 2.0 * resolution_va(shortest_ohm) / JUDGED_VA)
     limits["converter_residual"] *= blurred
     limits["network_balance"] *= blurred

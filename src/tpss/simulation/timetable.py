@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from tpss.kernel import blank_records
-from tpss.simulation.state import DRIVING, JOURNEY, PENDING, TRAIN
+from tpss.simulation.state import DRIVING, PENDING, TRAIN
 
 DEPARTURE_ROUNDING_S = 1e-6
 """A train departs at the first instant that is no more than this before its time. [s]"""
@@ -49,7 +49,7 @@ class Service:
 
 
 class Train(NamedTuple):
-    """A train as it enters the simulation; fields are those of `TRAIN`."""
+    """A train as it enters the simulation; fields are those of `TRAIN`, the last ones of `JOURNEY`."""
 
     name: str
     service: str
@@ -120,12 +120,14 @@ def train_records(trains: list[Train], voltage_v: float) -> Any:
 
 def trains_at(journeys: Any, train: Train) -> list[Train]:
     """A train where it once was, by records of `JOURNEY`, ready to enter another run at its start."""
-    names = JOURNEY.names or ()
     return [
-        train._replace(
-            name=f"{train.service} initial {number}",
-            departure_step=0,
-            **dict(zip(names, journey, strict=True)),
+        Train(
+            f"{train.service} initial {number}",
+            train.service,
+            train.train_type,
+            train.route,
+            0,
+            *journey,
         )
         for number, journey in enumerate(journeys.tolist(), 1)
     ]
