@@ -110,7 +110,7 @@ def train_records(trains: list[Train], voltage_v: float) -> Any:
     """Records of `TRAIN`, in the order of the trains, with a first guess of their voltage."""
     rows = blank_records(len(trains), TRAIN)
     for name, column in zip(Train._fields, zip(*trains, strict=True), strict=False):
-        if name in (TRAIN.names or ()):
+        if name in (TRAIN.names or ()) and any(column):
             rows[name] = column
     rows["arrival_step"] = -1
     rows["voltage_v"] = voltage_v

@@ -3,7 +3,6 @@
 import datetime as dt
 import io
 import time
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -14,7 +13,6 @@ import pyarrow.parquet as pq
 from tpss.api import Prepared, build
 from tpss.errors import TpssError
 from tpss.many import key_figures
-from tpss.scenario.scenario import Scenario
 from tpss.sweep.columns import (
     FAILED,
     INVALID,
@@ -24,7 +22,7 @@ from tpss.sweep.columns import (
     schema_of,
     table_of,
 )
-from tpss.sweep.derive import scenario_of, scenario_with
+from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import Design, design_of
 from tpss.sweep.inputs import inputs_of
 from tpss.sweep.study import study_of_json
@@ -59,21 +57,10 @@ def _open(plan: Plan) -> _Opened:
     )
 
 
-TOGETHER = 64
-"""Cases that go through each stage together, before any goes into the next.
-
-The processor's caches then hold the code of that stage.
-"""
-
-
 def run_batch(plan: Plan, first: int, end: int) -> bytes:
     """Simulate the cases from `first` to `end` - 1; return their rows as a file of Parquet."""
     opened = _open(plan)
-    rows = [
-        row | opened.made_by
-        for begin in range(first, end, TOGETHER)
-        for row in run_cases(opened.design, range(begin, min(begin + TOGETHER, end)))
-    ]
+    rows = [run_case(opened.design, case) | opened.made_by for case in range(first, end)]
     file = io.BytesIO()
     pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
     return file.getvalue()
@@ -84,64 +71,27 @@ def warm_up(plan: Plan) -> None:
     key_figures(build(scenario_of(_open(plan).design, 0)))
 
 
-def run_cases(design: Design, numbers: Iterable[int]) -> list[dict[str, Any]]:
-    """Columns of cases, by the numbers of these; a case that cannot be simulated says why."""
-    cases = [_Case(design, number) for number in numbers]
-    for stage, timing in _STAGES:
-        for case in cases:
-            case.attempt(stage, timing)
-    return [case.row for case in cases]
+def run_case(design: Design, case: int) -> dict[str, Any]:
+    """Columns of one case; a case that cannot be simulated says why."""
+    values = design.values(case)
+    row: dict[str, Any] = {"case": case, **parameter_columns(design.parameters, values)}
+    started = time.perf_counter()
+    try:
+        prepared = build(scenario_of(design, case))
+        row |= described(prepared)
+        built = time.perf_counter()
+        row |= output_columns(key_figures(prepared))
+        row["timing.run_s"] = time.perf_counter() - built
+        row["timing.build_s"] = built - started
+    except TpssError as error:
+        row |= {"status": INVALID, "problem": str(error)}
+    except Exception as error:  # one case that fails must not take the others with it
+        row |= {"status": FAILED, "problem": f"{type(error).__name__}: {error}"}
+    row["timing.ended"] = dt.datetime.now(dt.UTC)
+    return row
 
 
-class _Case:
-    """A case on its way to its row."""
-
-    scenario: Scenario
-    prepared: Prepared
-
-    def __init__(self, design: Design, number: int) -> None:
-        self.design, self.number, self.values = design, number, design.values(number)
-        columns = parameter_columns(design.parameters, self.values)
-        self.row: dict[str, Any] = {"case": number, **columns}
-
-    def attempt(self, stage: "_Stage", timing: str) -> None:
-        """Take the case through a stage, unless it has failed in one before."""
-        if "status" in self.row:
-            return
-        started = time.perf_counter()
-        try:
-            stage(self)
-        except TpssError as error:
-            self.row |= {"status": INVALID, "problem": str(error)}
-        except Exception as error:  # one case that fails must not take the others with it
-            self.row |= {"status": FAILED, "problem": f"{type(error).__name__}: {error}"}
-        self.row[timing] = self.row.get(timing, 0.0) + time.perf_counter() - started
-        self.row["timing.ended"] = dt.datetime.now(dt.UTC)
-
-    def derive(self) -> None:
-        """Make its scenario."""
-        self.scenario = scenario_with(self.design, self.values, self.number)
-
-    def build(self) -> None:
-        """Build its model."""
-        self.prepared = build(self.scenario)
-
-    def describe(self) -> None:
-        """Say what it is, in numbers, and the digest of its scenario."""
-        self.row |= inputs_of(self.scenario)._asdict()
-        self.row["scenario_hash"] = self.scenario.digest()
-
-    def run(self) -> None:
-        """Simulate it."""
-        self.row |= output_columns(key_figures(self.prepared))
-
-
-_Stage = Callable[[_Case], None]
-
-_STAGES: tuple[tuple[_Stage, str], ...] = (
-    (_Case.derive, "timing.build_s"),
-    (_Case.build, "timing.build_s"),
-    (_Case.describe, "timing.build_s"),
-    (_Case.run, "timing.run_s"),
-)
-"""What a case goes through, and the column that the time of it counts in."""
+def described(prepared: Prepared) -> dict[str, Any]:
+    """What a case is, in numbers, and the digest of its scenario."""
+    scenario = prepared.scenario
+    return {**inputs_of(scenario)._asdict(), "scenario_hash": scenario.digest()}

@@ -8,7 +8,7 @@ from typing import Any
 
 from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
-from tpss.sweep.batch import run_cases
+from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
 from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
@@ -119,10 +119,10 @@ def time_per_case(design: Design) -> float:
 
     The first call compiles the kernels, which does not count.
     """
-    run_cases(design, [0])
+    run_case(design, 0)
     started, done = time.perf_counter(), 0
     for case in _spread(design.cases, TRIAL_CASES):
-        run_cases(design, [case])
+        run_case(design, case)
         done += 1
         if time.perf_counter() - started > TRIAL_S:
             break
