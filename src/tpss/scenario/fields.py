@@ -15,6 +15,7 @@ from pydantic import (
     GetJsonSchemaHandler,
     Strict,
 )
+from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
@@ -27,6 +28,14 @@ class Part(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_by_name=True
     )
+
+
+def fields_of(part: Any) -> dict[str, FieldInfo]:
+    """Fields of a part of a scenario, be it a model or a dataclass; nothing else has any."""
+    if isinstance(part, type) and issubclass(part, BaseModel):
+        return part.model_fields
+    found: dict[str, FieldInfo] = getattr(part, "__pydantic_fields__", {})
+    return found
 
 
 def _is_whole(value: Any) -> Any:
