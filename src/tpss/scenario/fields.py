@@ -51,7 +51,7 @@ Flag = Annotated[bool, Strict()]
 
 
 def _is_one_line(name: str) -> str:
-    if any(ord(character) < 32 or ord(character) == 127 for character in name):
+    if not name.isprintable() and any(ord(c) < 32 or ord(c) == 127 for c in name):
         raise PydanticCustomError("control_character", "a control character in a name")
     return name
 
