@@ -106,7 +106,7 @@ def main() -> None:
     options = arguments(__doc__, cases=2000)
     threads, study, where = (
         in_threads(options.cases),
-        as_study(options.cases),
+        as_study(4 * options.cases),
         machine("distributed"),
     )
     head = ("case", *next(iter(threads.values())))

@@ -8,11 +8,12 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 from annotated_types import Ge, Gt, Le, Lt
 from library_page import KINDS
 from markdown_pieces import anchor, code, prose, table
-from pydantic import BaseModel, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from tpss import library
 from tpss.scenario import Scenario
+from tpss.scenario.fields import fields_of
 from tpss.units import label
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
@@ -47,7 +48,7 @@ HEAD = ("key", "value", "unit", "default", "meaning")
 BOUNDS = {Ge: ("ge", "≥"), Gt: ("gt", ">"), Le: ("le", "≤"), Lt: ("lt", "<")}
 WORDS = {float: "number", int: "whole number", str: "text", bool: "`true` or `false`"}
 
-Part = type[BaseModel]
+Part = type
 
 
 def page() -> str:
@@ -65,7 +66,7 @@ def page() -> str:
 def _heads(part: Part, path: str = "") -> dict[Part, list[str]]:
     """The heads of the tables of all parts below a part, the outer one first."""
     found: dict[Part, list[str]] = {}
-    for name, field in part.model_fields.items():
+    for name, field in fields_of(part).items():
         for inner in _parts_in(field.annotation):
             head = _head(f"{path}{field.alias or name}", field)
             found.setdefault(inner, []).append(head)
@@ -89,18 +90,18 @@ def _holds(field: FieldInfo, container: type) -> bool:
 
 def _parts_in(annotation: Any) -> list[Part]:
     """The parts of a scenario inside an annotation such as ``tuple[Station, ...]``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    if isinstance(annotation, type) and fields_of(annotation):
         return [annotation]
     return [part for inner in get_args(annotation) for part in _parts_in(inner)]
 
 
 def _keys(part: Part) -> str:
     """Table of a part's keys."""
-    return table(HEAD, [_row(part, name) for name in part.model_fields])
+    return table(HEAD, [_row(part, name) for name in fields_of(part)])
 
 
 def _row(part: Part, name: str) -> tuple[str, ...]:
-    field = part.model_fields[name]
+    field = fields_of(part)[name]
     key = field.alias or name
     parts = _parts_in(field.annotation)
     meaning = field.description or (inspect.getdoc(parts[0]) or "" if parts else "")
@@ -127,7 +128,7 @@ def _value(field: FieldInfo) -> str:
 def _words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     """What an annotation admits, in words."""
     inner = get_args(annotation)
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    if isinstance(annotation, type) and fields_of(annotation):
         return f"[table](#{anchor(_heads(Scenario)[annotation][0])})"
     if annotation in WORDS:
         return ", ".join(filter(None, (WORDS[annotation], _range(metadata))))
@@ -156,12 +157,12 @@ def _range(metadata: Iterable[Any]) -> str:
 
 
 def _default(part: Part, name: str) -> str:
-    field = part.model_fields[name]
+    field = fields_of(part)[name]
     written = DEFAULTS.get(f"{part.__name__}.{name}")
     if written is not None:
         return written
     for key, (kind, whose) in GIVEN.items():
-        if key in part.model_fields and name in _keys_of_every_entry(kind):
+        if key in fields_of(part) and name in _keys_of_every_entry(kind):
             return whose
     if field.is_required():
         return "**required**"

@@ -130,6 +130,12 @@ def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
     return np.zeros(count, dtype=record_type(dtype)).view(np.recarray)
 
 
+def copy_of_records(array: Any) -> Any:
+    """Copy of an array of records, as bytes; numpy would copy field by field."""
+    as_bytes = array.view(np.ndarray).view(f"V{array.dtype.itemsize}")
+    return as_bytes.copy().view(array.dtype).view(np.recarray)
+
+
 @cache
 def record_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
     """The type of `dtype`'s records, which numpy would find out anew for each array that it views."""

@@ -79,7 +79,7 @@ def si(source: object, name: str) -> float:
 def si_of_each(items: Iterable[object], name: str) -> list[float]:
     """Values of the field `name` of each item in SI units."""
     factor = SUFFIXES[suffix(name)][1]
-    return [float(getattr(item, name)) * factor for item in items]
+    return [getattr(item, name) * factor for item in items]
 
 
 def si_list(source: object, name: str) -> list[float]:

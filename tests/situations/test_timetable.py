@@ -14,7 +14,8 @@ import pytest
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.simulation.run import Run
-from tpss.simulation.timetable import departing_trains
+from tpss.simulation.state import JOURNEY
+from tpss.simulation.timetable import Train, departing_trains
 
 from scenarios import journey, limits, phases, run, short_line, stops
 
@@ -32,6 +33,11 @@ def step(minutes: float) -> dict[str, float]:
 def entry(name: str, train: str, begin: str, end: str, *departures_min: float) -> dict[str, Any]:
     times = list(departures_min)
     return {"name": name, "train": train, "from": begin, "to": end, "departures_min": times}
+
+
+def test_the_last_fields_of_a_train_are_those_of_a_journey():
+    """So a train that already runs takes them over one after the other."""
+    assert Train._fields[-len(JOURNEY.names) :] == JOURNEY.names
 
 
 @pytest.mark.parametrize("step_min", [0.01, 0.3, 0.4, 1.0, 5.0])

@@ -7,6 +7,7 @@ impedance; with a high-voltage line it has a node on that line too.  The line's 
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from tpss.kernel import records
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.network import SOURCE, Network, assemble
-from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Catenary, ConverterStation, HighVoltageLine, Supply
 from tpss.units import si
 
@@ -81,25 +81,28 @@ class SupplyPlan:
         return range(2 * len(self.section_names))
 
 
-def build_supply(scenario: Scenario) -> tuple[Network, SupplyPlan]:
-    """Network of a scenario, with the names of its parts."""
-    plan = plan_supply(scenario)
-    sources = _sources(plan, scenario.supply.converter_stations)
+@lru_cache(maxsize=64)
+def build_supply(supply: Supply, length_km: float) -> tuple[Network, SupplyPlan]:
+    """Network along a line, with the names of its parts.
+
+    Cases of a study have few supplies; those of the same one share what this gives, and only read it.
+    """
+    plan = plan_supply(supply, length_km)
+    sources = _sources(plan, supply.converter_stations)
     return assemble(len(plan.nodes), plan.sections, plan.branches, sources), plan
 
 
-def plan_supply(scenario: Scenario) -> SupplyPlan:
+def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
     """Lay out nodes, sections and branches along the line.
 
     References
     ----------
     [Boullanger2009]_, figure 2-4 and appendix A.2.
     """
-    supply = scenario.supply
     plan = SupplyPlan()
     transformers = transformer_positions_km(supply)
     converters = {station.position_km: station for station in supply.converter_stations}
-    points = sorted({0.0, scenario.line.length_km, *converters, *transformers})
+    points = sorted({0.0, length_km, *converters, *transformers})
     line_node = {km: plan.add_node(CONTACT_LINE, km) for km in points}
     _lay_contact_line(plan, points, line_node, supply)
     feeding = dict(line_node)

@@ -4,6 +4,7 @@ Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records
 one node or section together; to compiled code an array of them is one argument.
 """
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,8 @@ TOLERANCE = 1e-10
 
 SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
+
+EPSILON = float(np.finfo(float).eps)
 
 SECTION = np.dtype(
     [
@@ -175,13 +178,17 @@ def resolution_va(impedance_ohm: float) -> float:
     A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
     to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
     """
-    return float(4.0 * np.finfo(float).eps * BASE_VOLTAGE_V**2 / impedance_ohm)
+    return float(4.0 * EPSILON * BASE_VOLTAGE_V**2 / impedance_ohm)
 
 
 def gap_weight(start_m: float, end_m: float, impedance_ohm_per_m: complex) -> float:
     """Square of the power that a gap of the base voltage causes at a section's ends. [p.u.]"""
     impedance_ohm = abs(impedance_ohm_per_m) * max(SHORTEST_PIECE_M, end_m - start_m)
     return float((BASE_VOLTAGE_V**2 / impedance_ohm / BASE_POWER_VA) ** 2)
+
+
+_pattern = lru_cache(maxsize=64)(find_pattern)
+"""Patterns by the edges of networks, which share them; nobody changes one."""
 
 
 def assemble(
@@ -202,12 +209,12 @@ def assemble(
         At most one a node.
     """
     ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
-    pattern, place = find_pattern(n_nodes, ends)
+    pattern, place = _pattern(n_nodes, tuple(ends))
     impedances = [abs(z) for *_, z in branches]
     impedances += [abs(z) * max(SHORTEST_PIECE_M, b - a) for _, _, a, b, z, _ in sections]
     rounding = max(map(resolution_va, impedances)) / BASE_POWER_VA
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
-    source_of_node[sources.node] = np.arange(sources.size)
+    source_of_node[sources["node"]] = np.arange(sources.size)
 
     def blocks(a: int, b: int) -> tuple[int, int, int, int]:
         return place[a, a], place[a, b], place[b, a], place[b, b]
@@ -235,6 +242,6 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         blocks=blank_records(blocks, BLOCK),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
-    flow.sources.converters = network.sources.installed
-    flow.standing.train = np.arange(n_trains)
+    flow.sources["converters"] = network.sources["installed"]
+    flow.standing["train"] = np.arange(n_trains)
     return flow

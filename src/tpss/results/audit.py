@@ -5,7 +5,7 @@ forms the current of every piece of line and every branch from the voltages at i
 admittance equations), and compares the powers that this asks for with the recorded ones.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -89,7 +89,7 @@ class Audit:
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name."""
-        return {**asdict(self), "failures": list(self.failures), "passed": self.passed}
+        return {**vars(self), "failures": list(self.failures), "passed": self.passed}
 
 
 def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
@@ -142,7 +142,7 @@ def limits_of(model: Model) -> dict[str, float]:
     """
     limits = dict(LIMITS)
     blurred = model.network.tolerance / TOLERANCE
-    shortest_ohm = np.abs(model.network.sections.impedance_ohm_per_m).min() * SHORTEST_PIECE_M
+    shortest_ohm = np.abs(model.network.sections["impedance_ohm_per_m"]).min() * SHORTEST_PIECE_M
     limits["power_mismatch_va"] *= max(blurred, 2.0 * resolution_va(shortest_ohm) / JUDGED_VA)
     limits["converter_residual"] *= blurred
     limits["network_balance"] *= blurred

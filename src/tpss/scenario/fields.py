@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import lt
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
@@ -14,6 +15,7 @@ from pydantic import (
     GetJsonSchemaHandler,
     Strict,
 )
+from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
@@ -26,6 +28,14 @@ class Part(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_by_name=True
     )
+
+
+def fields_of(part: Any) -> dict[str, FieldInfo]:
+    """Fields of a part of a scenario, be it a model or a dataclass; nothing else has any."""
+    if isinstance(part, type) and issubclass(part, BaseModel):
+        return part.model_fields
+    found: dict[str, FieldInfo] = getattr(part, "__pydantic_fields__", {})
+    return found
 
 
 def _is_whole(value: Any) -> Any:
@@ -41,7 +51,7 @@ Flag = Annotated[bool, Strict()]
 
 
 def _is_one_line(name: str) -> str:
-    if any(ord(character) < 32 or ord(character) == 127 for character in name):
+    if not name.isprintable() and any(ord(c) < 32 or ord(c) == 127 for c in name):
         raise PydanticCustomError("control_character", "a control character in a name")
     return name
 
@@ -124,6 +134,8 @@ def ascending_numbers(field: str) -> AfterValidator:
 
 
 def _demand_ascending(values: Sequence[float], field: str) -> None:
+    if all(map(lt, values, values[1:])):
+        return
     for before, after in zip(values, values[1:], strict=False):
         if after <= before:
             raise PydanticCustomError(

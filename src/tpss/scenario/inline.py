@@ -14,6 +14,7 @@ from typing import Any
 from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.files import Profile, read_gradients, read_toml
+from tpss.scenario.override import copy_of
 
 Location = tuple[int | str, ...]
 
@@ -64,7 +65,10 @@ class Inlined:
 
 
 def inline_files(document: dict[str, Any], source: Path) -> Inlined:
-    """Replace the names of files in a document, which is changed, by what they hold."""
+    """Replace the names of files by what they hold: in a copy of the document if it names any."""
+    if not _names_files(document):
+        return Inlined(document, source)
+    document = copy_of(document)
     found = Inlined(document, source)
     for place in PLACES:
         for container, key, location in _named_files(document, place, ()):
@@ -74,6 +78,13 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
                 _insert_table(container, key, location, found)
     _insert_profile(found)
     return found
+
+
+def _names_files(document: dict[str, Any]) -> bool:
+    line = document.get("line")
+    return (isinstance(line, dict) and "gradients_file" in line) or any(
+        True for place in PLACES for _ in _named_files(document, place, ())
+    )
 
 
 def _named_files(

@@ -30,4 +30,4 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
     if {"scenario", "design"} <= document.keys():
         remedy = "run it by tpss sweep, or name the scenario that it varies"
         raise ScenarioError([Finding(str(source), "", "", "a study, not a scenario", remedy)])
-    return Scenario.from_document(override(document, changes or {}, source), source)
+    return Scenario.from_own_document(override(document, changes or {}, source), source)

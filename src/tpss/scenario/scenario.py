@@ -63,9 +63,19 @@ class Scenario(Part):
         ScenarioError
             The document has faults; the error lists all of them.
         """
-        own: dict[str, Any] = copy_of(document)
-        scenario = validate(cls, own, Path(source))
-        scenario._document = own
+        return cls.from_own_document(copy_of(document), source)
+
+    @classmethod
+    def from_own_document(cls, document: dict[str, Any], source: str | Path) -> Self:
+        """`from_document` for a document that nobody else holds, and so need not be copied.
+
+        Raises
+        ------
+        ScenarioError
+            As `from_document`.
+        """
+        scenario = validate(cls, document, Path(source))
+        scenario._document = document
         # A change of the working folder must not lead to other files.
         scenario._source = Path(source).absolute()
         return scenario
@@ -90,7 +100,7 @@ class Scenario(Part):
             The changed scenario has faults.
         """
         document = override(self._document, changes, self._source)
-        return type(self).from_document(document, self._source)
+        return type(self).from_own_document(document, self._source)
 
     def __eq__(self, other: object) -> bool:
         """Whether two scenarios say the same, wherever they were read from."""

@@ -9,8 +9,8 @@ from pydantic import BaseModel, Tag, ValidationError
 from tpss import units
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.cross_check import cross_check
+from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
-from tpss.scenario.override import copy_of
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -24,6 +24,7 @@ _PROBLEMS = {
     "finite_number": "not a finite number",
     "tuple_type": "not a list",
     "dict_type": "not a table",
+    "dataclass_type": "not a table",
     "model_type": "not a table, nor a name of the library",
     "string_too_short": "an empty name",
     "string_unicode": "not text in Unicode",
@@ -41,6 +42,7 @@ _REMEDIES = {
     "finite_number": "write a finite number",
     "tuple_type": "write a list in square brackets",
     "dict_type": "write a table",
+    "dataclass_type": "write a table",
     "model_type": "write a table",
     "string_too_short": "write a name",
     "string_unicode": "write text in UTF-8",
@@ -61,7 +63,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     ScenarioError
         The document has faults; the error lists all of them.
     """
-    inlined = inline_files(copy_of(document), source)
+    inlined = inline_files(document, source)
     findings = inlined.findings
     scenario = None
     try:
@@ -106,7 +108,7 @@ def _traced(finding: Finding, inlined: Inlined) -> Finding:
     return replace(finding, file=str(file), key=".".join(str(name) for name in place))
 
 
-def _finding(model: type[BaseModel], detail: dict[str, Any], inlined: Inlined) -> Finding:
+def _finding(model: type, detail: dict[str, Any], inlined: Inlined) -> Finding:
     part, location = _follow(model, detail["loc"])
     file, place = inlined.origin(location)
     problem, remedy = _explain(part, place, detail)
@@ -132,12 +134,12 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _explain(part: type[BaseModel], place: Location, detail: dict[str, Any]) -> tuple[str, str]:
+def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, str]:
     """What is wrong at a place of a file, and how to mend it."""
     kind, context, message = detail["type"], detail.get("ctx", {}), detail["msg"]
     words = [name for name in place if isinstance(name, str)]
     unit = units.label(words[-1]) if words else ""
-    if kind == "extra_forbidden":
+    if kind in ("extra_forbidden", "unexpected_keyword_argument"):
         return "unknown key", suggest(str(place[-1]), _keys(part))
     if kind == "unknown_name":
         own = f"; or name a file of your own that ends in {SUFFIX}"
@@ -163,18 +165,18 @@ def _explain(part: type[BaseModel], place: Location, detail: dict[str, Any]) -> 
     )
 
 
-def _keys(part: type[BaseModel]) -> list[str]:
+def _keys(part: type) -> list[str]:
     """Keys of a part, as they are written."""
-    return [field.alias or name for name, field in part.model_fields.items()]
+    return [field.alias or name for name, field in fields_of(part).items()]
 
 
-def _follow(model: type[BaseModel], location: Location) -> tuple[type[BaseModel], Location]:
+def _follow(model: type, location: Location) -> tuple[type, Location]:
     """Part of a scenario that holds a location, and the location as the user would write it.
 
     Pydantic's locations name the alternative that it took (a number or a curve) too.
     """
     part, within = model, model
-    choices: dict[str, type[BaseModel] | None] = {}
+    choices: dict[str, type | None] = {}
     written: list[int | str] = []
     for key in location:
         if key in choices:
@@ -183,16 +185,16 @@ def _follow(model: type[BaseModel], location: Location) -> tuple[type[BaseModel]
             continue
         written.append(key)
         part = within
-        fields = {field.alias or name: field for name, field in part.model_fields.items()}
+        fields = {field.alias or name: field for name, field in fields_of(part).items()}
         if key in fields:  # otherwise the number of a list's item, or the name of a train
             choices = _choices(fields[str(key)])
             within = _part_in(fields[str(key)].annotation) or part
     return part, tuple(written)
 
 
-def _choices(field: Any) -> dict[str, type[BaseModel] | None]:
+def _choices(field: Any) -> dict[str, type | None]:
     """Alternatives of a field by their tags, with their parts."""
-    found: dict[str, type[BaseModel] | None] = {}
+    found: dict[str, type | None] = {}
     waiting = [field.annotation]
     while waiting:
         annotation = waiting.pop()
@@ -202,8 +204,8 @@ def _choices(field: Any) -> dict[str, type[BaseModel] | None]:
     return found
 
 
-def _part_in(annotation: Any) -> type[BaseModel] | None:
+def _part_in(annotation: Any) -> type | None:
     """The part, if any, inside an annotation such as ``tuple[Station, ...]``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    if isinstance(annotation, type) and fields_of(annotation):
         return annotation
     return next((part for arg in get_args(annotation) if (part := _part_in(arg))), None)

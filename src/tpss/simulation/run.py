@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tpss.errors import TooLargeError
+from tpss.kernel import copy_of_records
 from tpss.physics.constants import NOMINAL_VOLTAGE_V
 from tpss.simulation.advance import advance
 from tpss.simulation.state import (
@@ -133,7 +134,7 @@ class Run:
         self.status = Status.RUNNING
         if records is None:
             records = train_records(trains, NOMINAL_VOLTAGE_V)
-        self.state = new_state(model, records.copy())
+        self.state = new_state(model, copy_of_records(records))
         self.with_journeys = with_journeys
         self.recording = new_recording(model, capacity, len(trains), memory, with_journeys)
 
@@ -197,9 +198,9 @@ def trains_already_running(model: Model, service: Service) -> list[Train]:
         run.advance_to(run.capacity)
     last = run.step - 1 if run.status == Status.FINISHED else run.step
     most = math.ceil((last * h + service.first_s) / service.headway_s) + 1
-    times_s = np.arange(1, most + 1) * service.headway_s - service.first_s
-    steps = np.rint(times_s / h).astype(int)
-    return trains_at(run.recording.journeys[steps[(steps >= 1) & (steps <= last)], 0], lone[0])
+    steps = (round((n * service.headway_s - service.first_s) / h) for n in range(1, most + 1))
+    passed = [step for step in steps if 1 <= step <= last]
+    return trains_at(run.recording.journeys[passed, 0], lone[0])
 
 
 def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
@@ -218,10 +219,10 @@ def trains_on_line(model: Model, services: list[Service]) -> list[Train]:
 def foreseen_steps(model: Model, service: Service) -> int:
     """Steps that a train of a service takes if little slows it down, with some to spare."""
     fastest = min(
-        float(model.limits.value.max()), float(model.types[service.train_type].highest_speed_m_s)
+        float(model.limits.value.max()), float(model.types["highest_speed_m_s"][service.train_type])
     )
     travel_s = (service.stops_m[-1] - service.start_m) / fastest
-    dwell = int(model.stops[service.route].dwell_steps.sum())
+    dwell = int(model.stops["dwell_steps"][service.route].sum())
     return (
         int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
     )

@@ -276,9 +276,9 @@ class Recording(NamedTuple):
 def new_state(model: Model, trains: Any) -> State:
     """State before the first step."""
     clock = blank_records(1, CLOCK)
-    clock.next_action_s = CONTROL_PERIOD_S
-    clock.stalled_train = -1
-    clock.carried_share = 1.0
+    clock["next_action_s"] = CONTROL_PERIOD_S
+    clock["stalled_train"] = -1
+    clock["carried_share"] = 1.0
     return State(
         trains=trains,
         machine=model.machine.copy(),

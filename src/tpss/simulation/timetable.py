@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from tpss.kernel import blank_records
-from tpss.simulation.state import DRIVING, JOURNEY, PENDING, TRAIN
+from tpss.simulation.state import DRIVING, PENDING, TRAIN
 
 DEPARTURE_ROUNDING_S = 1e-6
 """A train departs at the first instant that is no more than this before its time. [s]"""
@@ -48,9 +48,8 @@ class Service:
         return max(0, math.ceil((until_s - self.first_s) / self.headway_s))
 
 
-@dataclass(frozen=True)
-class Train:
-    """A train as it enters the simulation; fields are those of `TRAIN`."""
+class Train(NamedTuple):
+    """A train as it enters the simulation; fields are those of `TRAIN`, the last ones of `JOURNEY`."""
 
     name: str
     service: str
@@ -107,29 +106,28 @@ def placed_trains(service: Service) -> list[Train]:
     ]
 
 
-_STATE_FIELDS = [field.name for field in fields(Train) if field.name in (TRAIN.names or ())]
-
-
 def train_records(trains: list[Train], voltage_v: float) -> Any:
     """Records of `TRAIN`, in the order of the trains, with a first guess of their voltage."""
     rows = blank_records(len(trains), TRAIN)
-    for name in _STATE_FIELDS:
-        rows[name] = [getattr(train, name) for train in trains]
-    rows.arrival_step = -1
-    rows.voltage_v = voltage_v
-    rows.taken_speed_m_s = -1.0
+    for name, column in zip(Train._fields, zip(*trains, strict=True), strict=False):
+        if name in (TRAIN.names or ()) and any(column):
+            rows[name] = column
+    rows["arrival_step"] = -1
+    rows["voltage_v"] = voltage_v
+    rows["taken_speed_m_s"] = -1.0
     return rows
 
 
 def trains_at(journeys: Any, train: Train) -> list[Train]:
     """A train where it once was, by records of `JOURNEY`, ready to enter another run at its start."""
-    names = JOURNEY.names or ()
     return [
-        replace(
-            train,
-            name=f"{train.service} initial {number}",
-            departure_step=0,
-            **dict(zip(names, journey, strict=True)),
+        Train(
+            f"{train.service} initial {number}",
+            train.service,
+            train.train_type,
+            train.route,
+            0,
+            *journey,
         )
         for number, journey in enumerate(journeys.tolist(), 1)
     ]

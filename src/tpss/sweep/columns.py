@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any, get_type_hints
 
-import numpy as np
 import pyarrow as pa
 
 from tpss.results.audit import LIMITS
@@ -85,11 +84,11 @@ def schema_of(parameters: dict[str, Variation], names: Names) -> pa.Schema:
 
 def _parameter_type(parameter: Variation) -> pa.DataType:
     """Numbers are numbers, all else is text."""
+    if parameter.is_text:
+        return pa.string()
     values = parameter.ends
     if all(isinstance(value, bool) for value in values):
         return pa.bool_()
-    if any(isinstance(value, bool) or not isinstance(value, int | float) for value in values):
-        return pa.string()
     return pa.int64() if all(isinstance(value, int) for value in values) else pa.float64()
 
 
@@ -101,8 +100,10 @@ def _of_each(kind: str, names: Iterable[str], figures: type) -> dict[str, pa.Dat
 
 def parameter_columns(parameters: dict[str, Variation], values: dict[str, Any]) -> dict[str, Any]:
     """The values of the parameters in a case."""
-    is_text = {name: _parameter_type(each) == pa.string() for name, each in parameters.items()}
-    return {f"set.{name}": str(value) if is_text[name] else value for name, value in values.items()}
+    return {
+        f"set.{name}": str(value) if parameters[name].is_text else value
+        for name, value in values.items()
+    }
 
 
 def output_columns(figures: KeyFigures) -> dict[str, Any]:
@@ -161,12 +162,8 @@ def _highest(values: Iterable[float]) -> float:
 def table_of(rows: list[dict[str, Any]], schema: pa.Schema) -> pa.Table:
     """Table of cases; what a case does not have is null."""
     columns = {
-        field.name: pa.array([_known(row.get(field.name)) for row in rows], type=field.type)
+        # From pandas' point of view what is not a number is null, so that every reader sees the same.
+        field.name: pa.array([row.get(field.name) for row in rows], field.type, from_pandas=True)
         for field in schema
     }
     return pa.table(columns, schema=schema)
-
-
-def _known(value: Any) -> Any:
-    """None in place of what is not a number, so that every reader sees the same."""
-    return None if isinstance(value, float) and np.isnan(value) else value

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -49,7 +48,7 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
     if study.file.gradients is not None:
         number = values.get(PROFILE, case)
         draw_gradients(document, values[MEAN], values[DEVIATION], number, design)
-    return Scenario.from_document(document, study.base_source)
+    return Scenario.from_own_document(document, study.base_source)
 
 
 def draw_gradients(
@@ -75,7 +74,7 @@ def draw_gradients(
     rho = math.exp(-drawn.piece_km / drawn.correlation_km) if drawn.correlation_km > 0.0 else 0.0
     numbers = np.random.default_rng([design.study.file.seed, number]).standard_normal(pieces)
     numbers[1:] *= math.sqrt(1.0 - rho**2)
-    profile = np.array(list(accumulate(numbers.tolist(), lambda last, new: rho * last + new)))
+    profile = np.array(_correlated(numbers.tolist(), rho))
     profile -= share @ profile
     spread = math.sqrt(share @ profile**2)
     profile *= deviation / spread if spread > 0.0 else 0.0
@@ -83,3 +82,12 @@ def draw_gradients(
         {"from_km": km, "permille": permille}
         for km, permille in zip(from_km.tolist(), (profile + mean).tolist(), strict=True)
     ]
+
+
+def _correlated(numbers: list[float], rho: float) -> list[float]:
+    """Numbers of which each is ρ times the one before, and one of those given."""
+    found, last = [], 0.0
+    for number in numbers:
+        last = rho * last + number
+        found.append(last)
+    return found

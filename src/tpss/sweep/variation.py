@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -79,6 +80,15 @@ class Variation(Part):
             return list(self.values)
         ends = [self._low, self._high]
         return [int(end) for end in ends] if self.whole else list(ends)
+
+    @cached_property
+    def is_text(self) -> bool:
+        """Whether its values are text to a table: neither numbers alone nor flags alone."""
+        if all(isinstance(value, bool) for value in self.ends):
+            return False
+        return any(
+            isinstance(value, bool) or not isinstance(value, int | float) for value in self.ends
+        )
 
     def at(self, share: float) -> Any:
         """Value at a share of the way from the first to the last one, 0 <= share < 1."""
