@@ -186,9 +186,7 @@ def test_a_value_that_is_not_a_number_fails_the_audit(place, monkeypatch):
 
     def spoil(run, start):
         status = advance_to_end(run, start)
-        field = {"trains": "active_power", "nodes": "node_voltage"}.get(
-            place, "station_active_power"
-        )
+        field = {"trains": "active_power", "nodes": "node_real"}.get(place, "station_active_power")
         getattr(run.recording, place)[field][3, 0] = np.nan
         return status
 

@@ -59,10 +59,10 @@ def test_a_damaged_or_foreign_file_is_called_that(tmp_path):
 @pytest.mark.parametrize(
     ("group", "field", "forge", "figure"),
     [
-        ("nodes", "node_voltage", lambda x: np.nan, "power_mismatch_va"),
+        ("nodes", "node_real", lambda x: np.nan, "power_mismatch_va"),
         ("trains", "tractive_force", lambda x: 1.01 * x, "force_balance"),
         ("trains", "speed", lambda x: x + 0.01, "motion_error_m"),
-        ("trains", "pantograph_angle", lambda x: np.nan, "power_mismatch_va"),
+        ("trains", "pantograph_imag", lambda x: np.nan, "power_mismatch_va"),
     ],
 )
 def test_the_audit_sees_one_forged_value(group, field, forge, figure):

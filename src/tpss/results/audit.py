@@ -104,8 +104,9 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
         for the voltage range.
     """
     trains, nodes = outcome.recording.trains, outcome.recording.nodes
-    at_line_level = nodes["node_voltage"][:, node_level == 1.0]
-    voltages = np.concatenate([trains["pantograph_voltage"].ravel(), at_line_level.ravel()])
+    at_line_level = phasors(nodes, "node")[:, node_level == 1.0]
+    phasor = np.concatenate([phasors(trains, "pantograph").ravel(), at_line_level.ravel()])
+    voltages = np.sqrt(phasor.real**2 + phasor.imag**2)
     voltages = voltages[np.isfinite(voltages)]
     figures: dict[str, float] = {
         "power_mismatch_va": power_mismatch_va(outcome, model.network),
@@ -166,8 +167,9 @@ def _out_of_range(lowest_v: float | None, highest_v: float | None) -> list[str]:
     return [f"voltages leave the range of {low:g} to {high:g} V"]
 
 
-def _phasors(magnitude: Floats, angle: Floats) -> Complexes:
-    return np.asarray(magnitude * np.exp(1j * angle), dtype=complex)
+def phasors(rows: Any, place: str) -> Complexes:
+    """Recorded voltages of trains ("pantograph") or nodes ("node"). [V]"""
+    return np.asarray(rows[f"{place}_real"] + 1j * rows[f"{place}_imag"], dtype=complex)
 
 
 def _largest(values: npt.NDArray[Any]) -> float:
@@ -196,8 +198,7 @@ def power_mismatch_va(outcome: Outcome, network: Network) -> float:
     rows = slice(0, outcome.steps)
     trains, nodes = outcome.recording.trains[rows], outcome.recording.nodes[rows]
     stations = outcome.recording.stations[rows]
-    train_v = _phasors(trains["pantograph_voltage"], trains["pantograph_angle"])
-    node_v = _phasors(nodes["node_voltage"], nodes["node_angle"])
+    train_v, node_v = phasors(trains, "pantograph"), phasors(nodes, "node")
     train_a, leaving_a = _contact_line_currents(trains["position"], train_v, node_v, network)
     for branch in network.branches:
         current = node_v[:, branch.start_node] - node_v[:, branch.end_node]
@@ -278,9 +279,10 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     motor = np.arctan(x_motor * p / (square + x_motor * q50)) / 3
     generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
     angle = law.grid_angle_rad - grid - motor - generator
+    node_v = phasors(nodes, "node")[:, law.node]
     return max(
-        _largest((nodes["node_voltage"][:, law.node] - voltage) / BASE_VOLTAGE_V),
-        _largest(nodes["node_angle"][:, law.node] - angle),
+        _largest((np.abs(node_v) - voltage) / BASE_VOLTAGE_V),
+        _largest(np.angle(node_v) - angle),
         key=_nan_is_largest,
     )
 

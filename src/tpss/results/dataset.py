@@ -71,7 +71,11 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[np.float6
         for records in (recording.trains, recording.nodes, recording.stations)
         for name in records.dtype.names
     }
-    arrays["node_voltage"] = arrays["node_voltage"] * np.array(plan.node_level)
+    for place in ("pantograph", "node"):
+        real, imag = arrays[f"{place}_real"], arrays[f"{place}_imag"]
+        arrays[f"{place}_voltage"] = np.sqrt(real * real + imag * imag)
+        arrays[f"{place}_angle"] = np.arctan2(imag, real)
+    arrays["node_voltage"] *= np.array(plan.node_level)
     arrays["network_losses"] = recording.network_losses
     arrays["branch_current"] = recording.branch_current / np.array(plan.branch_levels())
     return arrays

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tpss.kernel import blank_records, inlined, kernel, records
+from tpss.powerflow.pairs import magnitude
 from tpss.simulation.balances import Scratch, audit_run, new_scratch
 from tpss.simulation.state import Model, Recording
 
@@ -158,7 +159,7 @@ def _gather_trains(
     run = figures.run[0]
     for i in range(figures.trains.size):
         row, train = recording.trains[step, i], figures.trains[i]
-        voltage = row.pantograph_voltage
+        voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.position, train)
         if math.isnan(voltage):
             continue
@@ -173,11 +174,11 @@ def _gather_trains(
             run.lowest_voltage_train = i
             run.lowest_voltage_step = step
         if in_window:
-            _note_useful_voltage(row, train, figures.zones)
+            _note_useful_voltage(voltage, row, train, figures.zones)
 
 
 @inlined
-def _note_useful_voltage(row: Any, train: Any, zones: Any) -> None:
+def _note_useful_voltage(voltage_v: float, row: Any, train: Any, zones: Any) -> None:
     """Add a train's voltage to its own useful voltage, and to that of the zone in which it is.
 
     References
@@ -187,12 +188,12 @@ def _note_useful_voltage(row: Any, train: Any, zones: Any) -> None:
     train.useful_steps += 1
     if row.tractive_force > 0.0:
         train.pulling_steps += 1
-        train.pulling_voltage_v += row.pantograph_voltage
+        train.pulling_voltage_v += voltage_v
     position_km = row.position / 1e3
     for z in range(zones.size):
         if zones[z].from_km <= position_km and position_km < zones[z].to_km:
             zones[z].steps += 1
-            zones[z].voltage_v += row.pantograph_voltage
+            zones[z].voltage_v += voltage_v
 
 
 @inlined
@@ -211,7 +212,8 @@ def _gather_network(
         station.peak_loading = max(station.peak_loading, row.converter_loading)
     for n in range(at_line_level.size):
         if at_line_level[n]:
-            voltage = recording.nodes[step, n].node_voltage
+            row = recording.nodes[step, n]
+            voltage = magnitude(complex(row.node_real, row.node_imag))
             run.lowest_node_v = min(run.lowest_node_v, voltage)
             run.highest_voltage_v = max(run.highest_voltage_v, voltage)
 

@@ -4,7 +4,6 @@
 from the recorded voltages by the admittances between neighbours, not by the chains of the solver.
 """
 
-import cmath
 import math
 from typing import Any, NamedTuple
 
@@ -123,7 +122,7 @@ def _audit_network(step: int, model: Model, recording: Recording, scratch: Scrat
     network, figures = model.network, scratch.balances[0]
     for n in range(scratch.node_v.size):
         row = recording.nodes[step, n]
-        scratch.node_v[n] = cmath.rect(row.node_voltage, row.node_angle)
+        scratch.node_v[n] = complex(row.node_real, row.node_imag)
         scratch.leaving_a[n] = 0.0
     for b in range(network.branches.size):
         branch = network.branches[b]
@@ -191,7 +190,7 @@ def _audit_section(
             row = recording.trains[step, scratch.order[k]]
             more = is_last or row.position < section.end_m
         if more:
-            ahead = cmath.rect(row.pantograph_voltage, row.pantograph_angle)
+            ahead = complex(row.pantograph_real, row.pantograph_imag)
             ahead_m = row.position
         else:
             ahead, ahead_m = scratch.node_v[section.end_node], section.end_m
@@ -245,9 +244,11 @@ def _audit_stations(step: int, model: Model, recording: Recording, scratch: Scra
         motor = math.atan(x_motor * p / (square + x_motor * q50)) / 3.0
         generator = math.atan(x_generator * p / (voltage * voltage + x_generator * q))
         node = recording.nodes[step, law.node]
-        off = (node.node_voltage - voltage) / BASE_VOLTAGE_V
+        off = (magnitude(complex(node.node_real, node.node_imag)) - voltage) / BASE_VOLTAGE_V
         figures.converter_residual = worst(figures.converter_residual, off)
-        off = node.node_angle - (law.grid_angle_rad - grid - motor - generator)
+        off = math.atan2(node.node_imag, node.node_real) - (
+            law.grid_angle_rad - grid - motor - generator
+        )
         figures.converter_residual = worst(figures.converter_residual, off)
 
 

@@ -70,6 +70,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
         for k in range(count):
             train = state.trains[flow.standing[k].train]
             train.voltage_v = fixed_v
+            flow.standing[k].voltage_v = fixed_v
             electrical_demand(fixed_v, model.types[train.train_type], train, state.machine[0])
         return 1.0, 0
     loads = Loads(state.trains, model.types, state.machine)

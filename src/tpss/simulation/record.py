@@ -1,6 +1,5 @@
 """Keep everything: states at the instants, forces and powers over the intervals between them."""
 
-import cmath
 import math
 from typing import Any
 
@@ -90,8 +89,8 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.running_resistance = train.running_resistance_n * train.moving_share
     row.gradient_force = train.gradient_force_n * train.moving_share
     row.motor_current = motor_current(current, kind.current_model)
-    row.pantograph_voltage = train.voltage_v
-    row.pantograph_angle = cmath.phase(state.flow.standing[k].voltage_v)
+    row.pantograph_real = state.flow.standing[k].voltage_v.real
+    row.pantograph_imag = state.flow.standing[k].voltage_v.imag
     row.active_power = train.active_power_w
     row.reactive_power = train.reactive_power_var
     row.holding_time = train.hold_s
@@ -143,8 +142,8 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
     network, flow = model.network, state.flow
     for n in range(flow.nodes.size):
-        recording.nodes[step, n].node_voltage = magnitude(flow.nodes[n].voltage_v)
-        recording.nodes[step, n].node_angle = cmath.phase(flow.nodes[n].voltage_v)
+        recording.nodes[step, n].node_real = flow.nodes[n].voltage_v.real
+        recording.nodes[step, n].node_imag = flow.nodes[n].voltage_v.imag
     for s in range(network.sources.size):
         row, power = recording.stations[step, s], station_power(s, model, state)
         row.station_active_power = power.real

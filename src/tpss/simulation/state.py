@@ -227,19 +227,21 @@ TRAIN_ROW = np.dtype(
         (name, float)
         for name in (
             "position", "speed", "acceleration", "tractive_force", "braking_force",
-            "running_resistance", "gradient_force", "motor_current", "pantograph_voltage",
-            "pantograph_angle", "active_power", "reactive_power", "holding_time",
+            "running_resistance", "gradient_force", "motor_current", "pantograph_real",
+            "pantograph_imag", "active_power", "reactive_power", "holding_time",
         )
     ],
     align=True,
 )  # fmt: skip
 """What is recorded of a train at an instant and over the interval that follows.
 
-Of an interval in which forces change these are the means; `holding_time` [s], at constant speed before
+Voltages are kept as the load flow has them: magnitude and angle are found where they are asked for.  Of
+an interval in which forces change these are the means; `holding_time` [s], at constant speed before
 the brakes, is there for the audit.
 """
 
-NODE_ROW = np.dtype([("node_voltage", float), ("node_angle", float)], align=True)
+NODE_ROW = np.dtype([("node_real", float), ("node_imag", float)], align=True)
+"""Voltage of a node, at the contact line's level."""
 
 STATION_ROW = np.dtype(
     [
