@@ -283,6 +283,7 @@ def test_a_train_that_cannot_hold_its_speed_before_a_lower_limit_brakes_uniforml
     result = run({**step(1.0), **LOWER, **placed(9.0, 60.0), **hill})
     way, found = journey(result, PLACED), row(result, 0)
     assert way.x[1] - way.x[0] == pytest.approx(30.0 * (way.v[0] + way.v[1]))
+    assert way.v[1] == pytest.approx(30 / 3.6)
     assert float(found.tractive_force) * float(found.braking_force) == 0.0
 
 

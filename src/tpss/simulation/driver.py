@@ -33,6 +33,7 @@ from tpss.simulation.state import (
     AGGRESSIVE,
     DRIVING,
     DWELLING,
+    LIMIT_FIRST,
     PLANNED,
     TO_LIMIT,
     TO_LIMIT_UNIFORMLY,
@@ -102,11 +103,12 @@ def target_speed(train: Any, kind: Any, sight: Sight) -> float:
 def allowed_speed(train: Any, target_m_s: float, retardation_m_s2: float, sight: Sight) -> float:
     """Highest speed after this step, up to the target, that lower limits ahead allow. [m/s]
 
-    Within steps, a train that has to slow down for one is put on its course.
+    Within steps, a train that has to slow down for one is put on its course.  One that cannot hold its
+    speed aims at the same speed uniformly, which takes less way.
     """
     limits, options, v = sight.limits, sight.options, train.speed_m_s
     manner = UNIFORM
-    if options.braking == WITHIN_STEP and train.phase == DRIVING and train.course == USUAL:
+    if options.braking == WITHIN_STEP and train.phase == DRIVING and train.course != LIMIT_FIRST:
         manner = HOLD_FIRST
     allowed = heed_limits_ahead(
         train.position_m, v, target_m_s, limits.from_m, limits.value,
@@ -117,7 +119,7 @@ def allowed_speed(train: Any, target_m_s: float, retardation_m_s2: float, sight:
             train.position_m, v, target_m_s, limits.from_m, limits.value,
             retardation_m_s2, options.step_s, UNIFORM,
         )  # fmt: skip
-    if manner == HOLD_FIRST and allowed < min(v, target_m_s):
+    if manner == HOLD_FIRST and train.course == USUAL and allowed < min(v, target_m_s):
         train.course = TO_LIMIT
     # A train that slows down to the rounding of a speed would creep on for days; it stops.
     return 0.0 if 0.0 < allowed < min(v, SLACK_M_S) else allowed
