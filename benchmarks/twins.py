@@ -49,7 +49,10 @@ def twins(study: Path, form: str, cases: int, profiles: int) -> pd.DataFrame:
 
 
 def matched(other: tpss.Scenario, design: Design, case: int) -> tpss.Scenario:
-    """The scenario with its profile bent until all statistics are those of the case's own one."""
+    """The scenario with its profile bent until all statistics are those of the case's own one.
+
+    Of a line with stations at its ends, and a train that runs all of it.
+    """
     values = design.values(case)
     edges_km, drawn = staircase(other.line)
     own = staircase(scenario_with(design, values, case).line)[1]

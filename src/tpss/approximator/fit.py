@@ -126,7 +126,7 @@ def _fit_one(
 def _beside_line(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> Member:
     """A network of what linear regression, its direct connections, leaves over."""
     with_one = np.column_stack([x, np.ones(len(x))])
-    line = np.linalg.lstsq(with_one, y)[0]
+    line: Array = np.asarray(np.linalg.lstsq(with_one, y)[0], dtype=np.float64)
     left = y - with_one @ line
     middle, half = (left.max(axis=0) + left.min(axis=0)) / 2.0, np.ptp(left, axis=0) / 2.0
     half[half == 0.0] = 1.0

@@ -45,11 +45,11 @@ def output_of(name: str, values: Array) -> Output:
 
 def known(values: Any, output: Output) -> Array:
     """What the networks know of values: themselves, their logarithm, or that of the drop to them."""
-    plain = np.asarray(values, dtype=float)
+    plain: Array = np.asarray(values, dtype=float)
     if output.scale == "log":
-        return np.log(plain)
-    if output.scale == "drop":
-        return -np.log(output.reference - plain)
+        plain = np.log(plain)
+    elif output.scale == "drop":
+        plain = -np.log(output.reference - plain)
     return plain
 
 
