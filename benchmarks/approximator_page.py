@@ -133,7 +133,8 @@ def score_table(model: Approximator, floor: pd.DataFrame) -> str:
 
 
 def coverage_table(model: Approximator, held: Held) -> str:
-    """Errors and coverage where the gradients vary little and much, and where voltages are low."""
+    """Errors and coverage by the gradients' deviation, the lowest voltage, and the supply."""
+    supplies = held.table.groupby(["catenary", "transformers"]).groups
     deviation, voltage = held.table["gradient_std_permille"], held.table["lowest_voltage_kv"]
     groups = {
         "standard deviation of gradients below 1 ‰": deviation < 1.0,
@@ -142,6 +143,10 @@ def coverage_table(model: Approximator, held: Held) -> str:
         "lowest voltage above 15 kV": voltage >= 15.0,
         "13.5 to 15 kV": (voltage >= 13.5) & (voltage < 15.0),
         "below 13.5 kV": voltage < 13.5,
+        **{
+            f"{catenary}, transformers: {transformers}": held.table.index.isin(rows)
+            for (catenary, transformers), rows in supplies.items()
+        },
     }
     shown = [output for output in model.file.outputs if output.name in TARGETS]
     heads = [

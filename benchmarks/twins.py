@@ -9,6 +9,7 @@ What differs between them no approximator can know that is told these: the noise
 
 import argparse
 from collections.abc import Iterator
+from itertools import count, islice
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ import pandas as pd
 import tpss
 from tpss.sweep.columns import output_columns
 from tpss.sweep.derive import scenario_with
-from tpss.sweep.design import DEVIATION, PROFILE, Design, design_of
+from tpss.sweep.design import PROFILE, Design, design_of
 from tpss.sweep.folder import read_manifest
 from tpss.sweep.gradients import Array, staircase, weights_of
 from tpss.sweep.study import study_of_json
@@ -31,32 +32,45 @@ def twins(study: Path, form: str, cases: int, profiles: int) -> pd.DataFrame:
     design = design_of(study_of_json(read_manifest(study)["study"]))
     # By chance: every sixteenth point of a Sobol sequence would lie in one corner of the space.
     chosen = np.random.default_rng(0).choice(design.cases, cases, replace=False).tolist()
-    pairs = [
-        (case, FIRST_PROFILE + case * profiles + k) for case in chosen for k in range(profiles)
-    ]
+    pairs: list[tuple[int, int]] = []
 
     def scenarios() -> Iterator[tpss.Scenario]:
-        for case, profile in pairs:
-            other = scenario_with(design, {**design.values(case), PROFILE: profile}, case)
-            yield other if form == "aggregated" else matched(other, design, case)
+        for case in chosen:
+            for number, scenario in islice(others(design, form, case, profiles), profiles):
+                pairs.append((case, number))
+                yield scenario
 
     rows = []
-    for (case, profile), figures in zip(pairs, tpss.simulate_many(scenarios()), strict=True):
-        rows.append({"case": case, "profile": profile, **output_columns(figures)})
+    for figures in tpss.simulate_many(scenarios()):
+        case, number = pairs[len(rows)]
+        rows.append({"case": case, "profile": number, **output_columns(figures)})
         if len(rows) % 100 == 0:
-            print(f"{len(rows):,} of {len(pairs):,} simulated", flush=True)
+            print(f"{len(rows):,} of {cases * profiles:,} simulated", flush=True)
     return pd.DataFrame(rows)
 
 
-def matched(other: tpss.Scenario, design: Design, case: int) -> tpss.Scenario:
+def others(
+    design: Design, form: str, case: int, profiles: int
+) -> Iterator[tuple[int, tpss.Scenario]]:
+    """Numbers of other profiles that a case may have, and its scenario with each."""
+    values = design.values(case)
+    for number in count(FIRST_PROFILE + case * profiles):
+        other = scenario_with(design, {**values, PROFILE: number}, case)
+        if form == "aggregated":
+            yield number, other
+        elif (same := matched(other, scenario_with(design, values, case), design)) is not None:
+            yield number, same
+
+
+def matched(other: tpss.Scenario, own: tpss.Scenario, design: Design) -> tpss.Scenario | None:
     """The scenario with its profile bent until all statistics are those of the case's own one.
 
     Of a line with stations at its ends, and a train that runs all of it.
     """
-    values = design.values(case)
     edges_km, drawn = staircase(other.line)
-    own = staircase(scenario_with(design, values, case).line)[1]
-    permille = bent(drawn, own, edges_km, values[DEVIATION], correlation_km(design))
+    permille = bent(drawn, staircase(own.line)[1], edges_km, correlation_km(design))
+    if permille is None:
+        return None
     pieces = zip(edges_km[:-1].tolist(), permille.tolist(), strict=True)
     return other.with_({"line.gradients": [{"from_km": km, "permille": g} for km, g in pieces]})
 
@@ -66,11 +80,12 @@ def correlation_km(design: Design) -> float:
     return design.study.file.gradients.correlation_km
 
 
-def bent(drawn: Array, own: Array, edges_km: Array, deviation: float, range_km: float) -> Array:
+def bent(drawn: Array, own: Array, edges_km: Array, range_km: float) -> Array | None:
     """A drawn profile with the weighted means of another one, and its standard deviation.
 
     The means are reached as kriging does: by the smallest change that the correlation of the gradients
-    allows.  What is left free is stretched until the standard deviation is right.
+    allows.  What is left free is stretched until the standard deviation is right; None if the means
+    alone ask for more.
     """
     means = np.column_stack(weights_of(edges_km, 0.0, edges_km[-1], (0.0, edges_km[-1])))
     middle_km = (edges_km[:-1] + edges_km[1:]) / 2.0
@@ -78,11 +93,13 @@ def bent(drawn: Array, own: Array, edges_km: Array, deviation: float, range_km: 
     gain = covariance @ means @ np.linalg.inv(means.T @ covariance @ means)
     given = gain @ (means.T @ own)
     free = drawn - gain @ (means.T @ drawn)
-    share, given_0 = means[:, 0], given - means[:, 0] @ own
-    # |given_0 + stretch · free|² = deviation²; the free part adds nothing to the mean.
-    a, b, c = share @ free**2, share @ (free * given_0), share @ given_0**2 - deviation**2
-    stretch = (np.sqrt(b * b - a * c) - b) / a
-    return given + stretch * free
+    share = means[:, 0]
+    mean, square = share @ own, share @ own**2
+    # share @ (given + stretch · free)² is that of the own profile; free adds nothing to the mean.
+    a, b, c = share @ free**2, share @ (free * (given - mean)), share @ given**2 - square
+    if b * b < a * c:
+        return None
+    return given + (np.sqrt(b * b - a * c) - b) / a * free
 
 
 if __name__ == "__main__":
