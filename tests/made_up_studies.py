@@ -17,8 +17,8 @@ def made_up_table(rows: int, seed: int = 1) -> pd.DataFrame:
     """Lines of 60 to 160 km between two stations, with a train every 5 to 30 minutes.
 
     A trip takes what the speed limit asks for, one part in fifty more for each per mille of climb, and
-    a random part that grows with the deviation of the gradients.  A BT line collapses with more than
-    1.2 trains on 10 km an hour.
+    a random part that grows with the deviation of the gradients: it is the starting gradient's.  A BT
+    line collapses with more than 1.2 trains on 10 km an hour.
     """
     draw = np.random.default_rng(seed)
     length = draw.uniform(60.0, 160.0, rows)
@@ -31,6 +31,7 @@ def made_up_table(rows: int, seed: int = 1) -> pd.DataFrame:
     noise = draw.standard_normal(rows)
     trip_noisy = trip * np.exp(NOISE * deviation / 3.0 * noise)
     energy = 0.08 * length * trip / headway * np.exp(NOISE * deviation / 3.0 * noise)
+    trend, middle = draw.standard_normal((2, rows))
     collapsed = (catenary == "BT") & (length / headway > 12.0)
     table = pd.DataFrame(
         {
@@ -56,6 +57,9 @@ def made_up_table(rows: int, seed: int = 1) -> pd.DataFrame:
             "gradient_mean_permille": mean,
             "gradient_std_permille": deviation,
             "steepest_permille": mean + 2.0 * deviation,
+            "starting_gradient_permille": mean + deviation * noise,
+            "gradient_trend_permille": deviation * trend,
+            "gradient_middle_permille": deviation * middle,
             "time_step_min": 0.1,
             "status": np.where(collapsed, "collapsed", "finished"),
             "audit_passed": True,

@@ -82,6 +82,11 @@ INPUTS = {
     "gradient_mean_permille": "mean gradient over the line",
     "gradient_std_permille": "standard deviation of the gradient over the line",
     "steepest_permille": "steepest rise",
+    "starting_gradient_permille": "mean over the first 2 km of the studied train's way",
+    "gradient_trend_permille": "rise of the straight line through the gradients, from the line's "
+    "beginning to its end",
+    "gradient_middle_permille": "how much steeper it is far from converter stations: mean, weighted by "
+    "$6u(1-u)$ at the share $u$ of the way between two of them, less the plain mean; null of one",
     "time_step_min": "time step",
 }
 

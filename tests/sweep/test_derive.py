@@ -145,7 +145,7 @@ def test_inputs_are_those_of_the_derived_scenario():
 
     Stations at 0 and 20 km, transformers at 5 and 15 km: feeding points 20 / 3 km apart. Limits 60 and
     40 km/h over 8 and 12 km: mean 48. Rises of 0 and 5 ‰ over 2 and 18 km: mean 4.5, standard
-    deviation √(0.1 · 4.5² + 0.9 · 0.5²) = 1.5.
+    deviation √(0.1 · 4.5² + 0.9 · 0.5²) = 1.5. `test_gradients.py` has the others.
     """
     scenario = short_line(
         {

@@ -11,13 +11,13 @@ import pandas as pd
 from tpss.approximator.calibrate import deviation
 from tpss.approximator.model_file import (
     ModelFile,
-    Output,
     check_target,
     read_model,
     text_of_model,
     write_bytes,
 )
 from tpss.approximator.network import Array, Ensemble, logistic
+from tpss.approximator.scales import unscaled
 from tpss.errors import Finding, ScenarioError
 
 COLLAPSE = "collapse_probability"
@@ -154,28 +154,6 @@ def load_approximator(path: str | Path) -> Approximator:
         It cannot be read, is no such file, or is damaged.
     """
     return Approximator(read_model(Path(path)))
-
-
-def scaled(values: Any, scale: str, low: float, high: float) -> Array:
-    """Values of an output scaled to [-1, 1].
-
-    References
-    ----------
-    [Boullanger2009]_, eq. (C.10).
-    """
-    known: Array = np.log(values) if scale == "log" else np.asarray(values, dtype=float)
-    return 2.0 * (known - low) / (high - low) - 1.0
-
-
-def unscaled(values: Array, output: Output) -> Array:
-    """Values of an output from scaled ones.
-
-    References
-    ----------
-    [Boullanger2009]_, eq. (F.10).
-    """
-    known = output.low + (output.high - output.low) * (values + 1.0) / 2.0
-    return np.exp(known) if output.scale == "log" else known
 
 
 def _refuse(objections: list[str], place: str) -> None:

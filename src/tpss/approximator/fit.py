@@ -7,7 +7,7 @@ that suits their size; only their weights are kept.
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ ROUNDS = 2
 MOST_STEPS = 800
 """Steps of L-BFGS; what comes later moves errors by less than the members differ."""
 
-PENALTY = {"figures": 1e-2, "noise": 1.0, "collapse": 1e-1}
+PENALTY = {"figures": 1e-1, "noise": 1.0, "collapse": 1e-1}
 """Weight of the squared weights in what is minimised (alpha of scikit-learn)."""
 
 NEURONS = {"figures": (16, 32, 48), "noise": (4, 8), "collapse": (4, 8)}
@@ -51,6 +51,16 @@ def fits_of(kind: str, x: Array, y: Array) -> int:
     return len(tried(kind, x, y)) * FOLDS + (ROUNDS - 1) * FOLDS
 
 
+class Member(NamedTuple):
+    """Weights of a network, by the names that `Ensemble` gives those of all."""
+
+    w0: Array
+    w1: Array
+    b1: Array
+    w2: Array
+    b2: Array
+
+
 @dataclass(frozen=True)
 class Fitted:
     """An ensemble, and what its members say of the cases that they have not seen."""
@@ -74,11 +84,11 @@ def fit(kind: str, x: Array, y: Array, seed: int, tick: Tick) -> Fitted:
         their errors; ``collapse``: 0 and 1, (cases, 1).
     """
     folds = _folds(kind, y, seed)
-    first: dict[int, list[Any]] = {}
+    first: dict[int, list[Member]] = {}
     errors: dict[int, float] = {}
     for neurons in tried(kind, x, y):
         first[neurons] = [_fit_one(kind, neurons, x, y, fold, seed, tick) for fold in folds]
-        unseen = _unseen(_ensemble(first[neurons]), x, folds)
+        unseen = _unseen(ensemble_of(first[neurons]), x, folds)
         errors[neurons] = _error(kind, unseen, y)
     best = min(errors, key=errors.__getitem__)
     networks = list(first[best])
@@ -86,7 +96,7 @@ def fit(kind: str, x: Array, y: Array, seed: int, tick: Tick) -> Fitted:
         left_out = _folds(kind, y, seed + again)
         networks += [_fit_one(kind, best, x, y, fold, seed + again, tick) for fold in left_out]
         folds += left_out
-    ensemble = _ensemble(networks)
+    ensemble = ensemble_of(networks)
     spread = ensemble.evaluate(x).std(axis=0)
     return Fitted(ensemble, _unseen(ensemble, x, folds), spread, errors)
 
@@ -102,12 +112,34 @@ def _folds(kind: str, y: Array, seed: int) -> list[Indices]:
 
 def _fit_one(
     kind: str, neurons: int, x: Array, y: Array, left_out: Indices, seed: int, tick: Tick
-) -> Any:
+) -> Member:
+    taken = np.setdiff1d(np.arange(len(x)), left_out)
+    random_state = seed * 1000 + int(left_out[0])
+    if kind == "collapse":
+        member = member_of(_trained(kind, neurons, x[taken], y[taken], random_state))
+    else:
+        member = _beside_line(kind, neurons, x[taken], y[taken], random_state)
+    tick()
+    return member
+
+
+def _beside_line(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> Member:
+    """A network of what linear regression, its direct connections, leaves over."""
+    with_one = np.column_stack([x, np.ones(len(x))])
+    line: Array = np.asarray(np.linalg.lstsq(with_one, y)[0], dtype=np.float64)
+    left = y - with_one @ line
+    middle, half = (left.max(axis=0) + left.min(axis=0)) / 2.0, np.ptp(left, axis=0) / 2.0
+    half[half == 0.0] = 1.0
+    found = member_of(_trained(kind, neurons, x, (left - middle) / half, random_state))
+    return found._replace(w0=line[:-1], w2=found.w2 * half, b2=found.b2 * half + middle + line[-1])
+
+
+def _trained(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> Any:
+    """A network of scikit-learn, fitted."""
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.neural_network import MLPClassifier, MLPRegressor
     from threadpoolctl import threadpool_limits
 
-    taken = np.setdiff1d(np.arange(len(x)), left_out)
     network = (MLPClassifier if kind == "collapse" else MLPRegressor)(
         hidden_layer_sizes=(neurons,),
         activation="tanh",
@@ -116,25 +148,23 @@ def _fit_one(
         max_iter=MOST_STEPS,
         max_fun=10 * MOST_STEPS,
         tol=1e-7,
-        random_state=seed * 1000 + int(left_out[0]),
+        random_state=random_state,
     )
-    targets = y[taken] if y.shape[1] > 1 else y[taken, 0]
     # Threads cost more than they save on matrices of this size.
     with threadpool_limits(1), warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)  # to stop early is meant
-        network.fit(x[taken], targets)
-    tick()
-    return network
+        return network.fit(x, y if y.shape[1] > 1 else y[:, 0])
 
 
-def _ensemble(networks: Sequence[Any]) -> Ensemble:
-    """Ensemble of the weights of scikit-learn's networks."""
-    return Ensemble(
-        w1=np.array([network.coefs_[0] for network in networks]),
-        b1=np.array([network.intercepts_[0] for network in networks]),
-        w2=np.array([network.coefs_[1] for network in networks]),
-        b2=np.array([network.intercepts_[1] for network in networks]),
-    )
+def member_of(network: Any) -> Member:
+    """Weights of a network of scikit-learn, which has no direct connections."""
+    (w1, w2), (b1, b2) = network.coefs_, network.intercepts_
+    return Member(np.zeros((len(w1), len(b2))), w1, b1, w2, b2)
+
+
+def ensemble_of(members: Sequence[Member]) -> Ensemble:
+    """Ensemble of networks."""
+    return Ensemble(*(np.array(parts) for parts in zip(*members, strict=True)))
 
 
 def _unseen(ensemble: Ensemble, x: Array, folds: Sequence[Indices]) -> Array:

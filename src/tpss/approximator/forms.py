@@ -1,7 +1,7 @@
 """What an approximator is asked, and what it answers, by the columns of a study's table."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
@@ -11,6 +11,12 @@ TRAINS, TRAINS_SPEED = "trains", "trains_speed_kmh"
 _SUPPLY = ("converters_per_station", "converters", "converter_rating_mva", "transformers")
 _CATENARY = ("catenary_r_ohm_per_km", "catenary_x_ohm_per_km", "connection_x_ohm")
 _GRADIENTS = ("gradient_mean_permille", "gradient_std_permille")
+_PROFILE = (
+    "starting_gradient_permille",
+    "gradient_trend_permille",
+    "gradient_middle_permille",
+)
+"""What is told of where it is steep, beyond mean and standard deviation."""
 
 
 @dataclass(frozen=True)
@@ -33,34 +39,37 @@ class Form:
         return [*self.outputs, *stations]
 
 
-FORMS = {
-    "aggregated": Form(
-        numbers=(
-            "station_distance_km",
-            "length_km",
-            "route_km",
-            "converter_stations",
-            "stops",
-            *_SUPPLY,
-            *_CATENARY,
-            "headway_min",
-            "speed_limit_kmh",
-            "mean_speed_limit_kmh",
-            "train_mass_t",
-            "max_motor_current_a",
-            *_GRADIENTS,
-        ),
-        choices=("catenary", "high_voltage_line"),
-        outputs=(
-            "mean_speed_kmh",
-            "trip_time_min",
-            "total_energy_mwh",
-            "losses_mwh",
-            "lowest_voltage_kv",
-            "peak_loading",
-        ),
-        with_stations=True,
+_AGGREGATED = Form(
+    numbers=(
+        "station_distance_km",
+        "length_km",
+        "route_km",
+        "converter_stations",
+        "stops",
+        *_SUPPLY,
+        *_CATENARY,
+        "headway_min",
+        "speed_limit_kmh",
+        "mean_speed_limit_kmh",
+        "train_mass_t",
+        "max_motor_current_a",
+        *_GRADIENTS,
     ),
+    choices=("catenary", "high_voltage_line"),
+    outputs=(
+        "mean_speed_kmh",
+        "trip_time_min",
+        "total_energy_mwh",
+        "losses_mwh",
+        "lowest_voltage_kv",
+        "peak_loading",
+    ),
+    with_stations=True,
+)
+
+FORMS = {
+    "aggregated": _AGGREGATED,
+    "profile": replace(_AGGREGATED, numbers=(*_AGGREGATED.numbers, *_PROFILE)),
     "original": Form(
         numbers=(
             "station_distance_km",
@@ -75,7 +84,9 @@ FORMS = {
         with_stations=False,
     ),
 }
-"""``original``: what TPSA was first meant for, the highest mean speed of a train added to a line."""
+"""``profile``: told where it is steep, too.  ``original``: what TPSA was first meant for, the highest
+mean speed of a train added to a line.
+"""
 
 NAMED_CATENARY, OWN = "catenary", "own"
 

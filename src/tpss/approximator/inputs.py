@@ -25,6 +25,8 @@ class NumberInput(Part):
 
     kind: Literal["number"] = "number"
     name: Name
+    scale: Literal["linear", "log"] = "linear"
+    """Whether the networks know the value or its logarithm."""
     low: Real
     high: Real
     edges: tuple[Real, ...]
@@ -45,13 +47,17 @@ class NumberInput(Part):
         return (values >= self.low - slack) & (values <= self.high + slack)
 
     def scaled(self, values: Any) -> Array:
-        """Values scaled to [-1, 1], a column.
+        """Values scaled to [-1, 1], a column; NaN where a logarithm does not exist.
 
         References
         ----------
         [Boullanger2009]_, eq. (C.1).
         """
-        found: Array = 2.0 * (values - self.low) / (self.high - self.low) - 1.0
+        low, high = self.low, self.high
+        if self.scale == "log":
+            values = np.log(np.where(values > 0.0, values, np.nan))
+            low, high = math.log(low), math.log(high)
+        found: Array = 2.0 * (values - low) / (high - low) - 1.0
         return found[:, None]
 
     @property
@@ -327,6 +333,8 @@ def _multiple(
 
 def _number_input(name: str, column: Array) -> NumberInput:
     low, high = float(column.min()), float(column.max())
+    # Loads and impedances are products; gradients, though, are counted from the level.
+    scale = "log" if low > 0.0 and not name.endswith("_permille") else "linear"
     levels = np.unique(column)
     if len(levels) <= FEW:
         edges = (levels[:-1] + levels[1:]) / 2.0
@@ -334,4 +342,4 @@ def _number_input(name: str, column: Array) -> NumberInput:
         # A dozen cases in each cell of two inputs leave none of them empty by chance.
         cells = max(1, min(FEW, math.isqrt(len(column) // 12)))
         edges = np.linspace(low, high, cells + 1)[1:-1]
-    return NumberInput(name=name, low=low, high=high, edges=tuple(edges.tolist()))
+    return NumberInput(name=name, scale=scale, low=low, high=high, edges=tuple(edges.tolist()))

@@ -12,10 +12,10 @@ from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError
-from tpss.scenario.fields import Name, Part, Real, Version, Whole, fault
+from tpss.scenario.fields import Name, Part, Real, Whole, fault
 from tpss.whole_file import write_whole
 
-FORMAT, VERSION = "tpss-approximator", 1
+FORMAT, VERSION = "tpss-approximator", 2
 
 MOST_BYTES = 200_000_000
 """Longest file that is read: a hundred times as long as those that are written."""
@@ -24,6 +24,7 @@ MOST_BYTES = 200_000_000
 class Weights(Part):
     """Weights of an `Ensemble`."""
 
+    w0: tuple[tuple[tuple[Real, ...], ...], ...]
     w1: tuple[tuple[tuple[Real, ...], ...], ...]
     b1: tuple[tuple[Real, ...], ...]
     w2: tuple[tuple[tuple[Real, ...], ...], ...]
@@ -33,15 +34,15 @@ class Weights(Part):
     def _have_one_shape(self) -> Self:
         try:
             shapes = [np.array(each, dtype=float).shape for each in self._all()]
-            (m, _, n), (m1, n1), (m2, n2, o), (m3, o3) = shapes
+            (m0, i0, o0), (m, i, n), (m1, n1), (m2, n2, o), (m3, o3) = shapes
         except ValueError:
             raise fault("weights that are no tables of numbers", REMEDY) from None
-        if not (m and m == m1 == m2 == m3 and n == n1 == n2 and o == o3):
+        if not (m and m == m0 == m1 == m2 == m3 and i == i0 and n == n1 == n2 and o == o0 == o3):
             raise fault(f"weights of shapes {shapes}, which do not fit together", REMEDY)
         return self
 
     def _all(self) -> tuple[Any, ...]:
-        return self.w1, self.b1, self.w2, self.b2
+        return self.w0, self.w1, self.b1, self.w2, self.b2
 
     def ensemble(self) -> Ensemble:
         """The ensemble."""
@@ -55,11 +56,13 @@ class Output(Part):
     """What an approximator puts out, and how sure it is."""
 
     name: Name
-    scale: Literal["linear", "log"]
-    """Whether the networks know the value or its logarithm."""
+    scale: Literal["linear", "log", "drop"]
+    """Whether the networks know the value, its logarithm, or that of its distance below `reference`."""
+    reference: Real
+    """What drops are counted from."""
     low: Real
     high: Real
-    """What is scaled to -1 and 1, after the logarithm."""
+    """What is scaled to -1 and 1, of what the networks know."""
     usual: Annotated[Real, Field(gt=0)]
     """How far the members disagree at most in most cases, in sizes of the errors."""
     factor: Annotated[Real, Field(ge=0)]
@@ -119,7 +122,7 @@ class ModelFile(Part):
     """An approximator."""
 
     format: Literal["tpss-approximator"]
-    version: Version
+    version: Literal[2]
     made_by: dict[Name, Name]
     """Versions of the programs that trained it."""
     form: Name
@@ -148,6 +151,11 @@ class ModelFile(Part):
             raise fault("a multiple by 0", REMEDY)
         if any(each.kind == "number" and not each.low < each.high for each in self.inputs.varying):
             raise fault("an input without a range", REMEDY)
+        logs = [
+            each for each in self.inputs.varying if each.kind == "number" and each.scale == "log"
+        ]
+        if any(each.low <= 0.0 for each in logs):
+            raise fault("a logarithm of what is not positive", REMEDY)
         if not fits(self.domain, self.inputs):
             raise fault("a domain of other inputs", REMEDY)
         count = len(self.outputs)

@@ -1,9 +1,13 @@
-r"""Ensembles of feed-forward networks with one hidden tanh layer.
+r"""Ensembles of feed-forward networks with one hidden tanh layer beside direct connections.
 
-.. math:: y_o = b^2_o + \sum_l w^2_{l,o} \, \tanh\Big(b^1_l + \sum_k w^1_{k,l} \hat x_k\Big)
+.. math::
 
-Inputs and outputs are scaled to [-1, 1].  The members of an ensemble have the same shape and have
-seen different cases; how far they differ tells how much the answer depends on that.
+    y_o = b^2_o + \sum_k w^0_{k,o} \hat x_k
+        + \sum_l w^2_{l,o} \, \tanh\Big(b^1_l + \sum_k w^1_{k,l} \hat x_k\Big)
+
+Inputs and outputs are scaled to [-1, 1].  The direct connections, which the source does not have, take
+over what is linear, so that the neurons are there for the rest.  The members of an ensemble have the
+same shape and have seen different cases; how far they differ tells how much the answer depends on that.
 
 References
 ----------
@@ -23,8 +27,10 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Weights of all members: of inputs and neurons, then of neurons and outputs."""
+    """Weights of all members: of inputs and outputs, of inputs and neurons, of neurons and outputs."""
 
+    w0: Array
+    """Shape (members, inputs, outputs): direct connections."""
     w1: Array
     """Shape (members, inputs, neurons)."""
     b1: Array
@@ -54,14 +60,14 @@ class Ensemble:
         [Boullanger2009]_, eq. (B.1)-(B.3).
         """
         found = np.empty((self.size, len(x), self.b2.shape[1]))
-        w1, b1, w2 = (part.astype(np.float32) for part in (self.w1, self.b1, self.w2))
+        w0, w1, b1, w2 = (part.astype(np.float32) for part in (self.w0, self.w1, self.b1, self.w2))
         single = x.astype(np.float32)
         for first in range(0, len(x), BLOCK):
             rows = slice(first, first + BLOCK)
             neurons = single[rows] @ w1
             neurons += b1[:, None, :]
             np.tanh(neurons, out=neurons)
-            found[:, rows] = neurons @ w2
+            found[:, rows] = neurons @ w2 + single[rows] @ w0
         found += self.b2[:, None, :]
         return found
 

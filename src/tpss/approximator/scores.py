@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tpss.approximator.approximator import COLLAPSE, LIKELY, Approximator
 from tpss.approximator.model_file import CollapseScore, Score
 from tpss.approximator.network import Array
+from tpss.approximator.scales import scaled, unscaled
 
 Flags = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
@@ -109,11 +110,10 @@ class Simple:
         from sklearn.neighbors import KNeighborsClassifier, KNeighborsRegressor
 
         carried = trained.of(np.flatnonzero(trained.carried))
-        self._is_log = [output.scale == "log" for output in approximator.file.outputs]
-        y = np.column_stack([carried.y[output.name] for output in approximator.file.outputs])
-        known = np.where(self._is_log, np.log(np.where(self._is_log, y, 1.0)), y)
-        self._linear = LinearRegression().fit(carried.x, known)
-        self._nearest = KNeighborsRegressor(1).fit(carried.x, known)
+        self._outputs = approximator.file.outputs
+        y = np.column_stack([scaled(carried.y[each.name], each) for each in self._outputs])
+        self._linear = LinearRegression().fit(carried.x, y)
+        self._nearest = KNeighborsRegressor(1).fit(carried.x, y)
         if not trained.carried.all():
             self._line = LogisticRegression(C=1e3, max_iter=1000).fit(trained.x, ~trained.carried)
             self._neighbour = KNeighborsClassifier(1).fit(trained.x, ~trained.carried)
@@ -136,5 +136,5 @@ class Simple:
         found: Flags = self._neighbour.predict(x)
         return found
 
-    def _plain(self, known: Array) -> Array:
-        return np.where(self._is_log, np.exp(np.where(self._is_log, known, 0.0)), known)
+    def _plain(self, y: Array) -> Array:
+        return np.column_stack([unscaled(y[:, k], each) for k, each in enumerate(self._outputs)])

@@ -10,13 +10,14 @@ import numpy as np
 import pandas as pd
 
 from tpss.approximator import fit as fitting
-from tpss.approximator.approximator import Approximator, scaled
+from tpss.approximator.approximator import Approximator
 from tpss.approximator.calibrate import deviation, factor_of, log_sizes, usual_spread
 from tpss.approximator.domain import Domain, domain_of
 from tpss.approximator.forms import FORMS, with_traffic
 from tpss.approximator.inputs import Inputs, inputs_of_table
 from tpss.approximator.model_file import VERSION, Data, ModelFile, Output, Weights
 from tpss.approximator.network import Array, Ensemble
+from tpss.approximator.scales import output_of, scaled
 from tpss.approximator.scores import Cases, Simple, score_collapse, score_figures
 from tpss.errors import ApproximatorError
 
@@ -44,7 +45,8 @@ def train_approximator(
     folder : str or Path
         Folder that `tpss.run_study` has written; the study need not be finished.
     form : str
-        ``aggregated``, or ``original``: the highest mean speed of a train added to a line.
+        ``aggregated``; ``profile``: told more of the gradients than their mean and standard deviation;
+        or ``original``: the highest mean speed of a train added to a line.
     seed : int
         What all draws follow from.
     report : callable, optional
@@ -142,8 +144,8 @@ def _train(
     kept = np.setdiff1d(np.arange(len(used)), held_out)
     trained, tested = cases.of(kept), cases.of(held_out)
     carried = trained.of(np.flatnonzero(trained.carried))
-    outputs = [_scaling(name, carried.y[name]) for name in names]
-    y = np.column_stack([scaled(carried.y[o.name], o.scale, o.low, o.high) for o in outputs])
+    outputs = [output_of(name, carried.y[name]) for name in names]
+    y = np.column_stack([scaled(carried.y[output.name], output) for output in outputs])
     classes = (~trained.carried[:, None]).astype(np.float64)
     tasks = {"figures": (carried.x, y), "noise": (carried.x, y)}
     if not trained.carried.all():
@@ -225,25 +227,12 @@ def cases_of(table: pd.DataFrame, x: Array, names: list[str]) -> Cases:
     return Cases(x, {k: np.where(carried, v, np.nan) for k, v in y.items()}, carried)
 
 
-def _scaling(name: str, values: Array) -> Output:
-    """How an output is scaled: relative errors count for what is positive, except a voltage."""
-    if not np.isfinite(values).all():
-        raise ApproximatorError(f"the table lacks {name} in a case that finished: run it again")
-    is_log = not name.endswith("_kv") and bool((values > 0.0).all())
-    known = np.log(values) if is_log else values
-    low, high = float(known.min()), float(known.max())
-    if not low < high:
-        raise ApproximatorError(f"{name} is the same in all cases: there is nothing to learn")
-    scale = "log" if is_log else "linear"
-    return Output(name=name, scale=scale, low=low, high=high, usual=1.0, factor=0.0)
-
-
 def _domain(inputs: Inputs, values: dict[str, Array], kept: fitting.Indices) -> Domain:
     return domain_of({name: each[kept] for name, each in values.items()}, inputs)
 
 
 def _weights(ensemble: Ensemble) -> Weights:
-    parts = {name: getattr(ensemble, name).tolist() for name in ("w1", "b1", "w2", "b2")}
+    parts = {name: getattr(ensemble, name).tolist() for name in ("w0", "w1", "b1", "w2", "b2")}
     return Weights.model_validate(parts)
 
 

@@ -19,6 +19,7 @@ class FormName(StrEnum):
     """What an approximator is asked and answers."""
 
     AGGREGATED = "aggregated"
+    PROFILE = "profile"
     ORIGINAL = "original"
 
 
@@ -46,7 +47,8 @@ def train(
         FormName,
         typer.Option(
             metavar="FORM",
-            help="aggregated; or original: the highest mean speed of a train added to a line, from "
+            help="aggregated; profile: told where it is steep too, beyond mean and standard deviation "
+            "of the gradients; or original: the highest mean speed of a train added to a line, from "
             "the number and the speed of those that run there.",
         ),
     ] = FormName.AGGREGATED,

@@ -6,13 +6,11 @@ from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
-import numpy as np
-
 from tpss import library
 from tpss.model.supply import transformer_positions_km
-from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Catenary
+from tpss.sweep.gradients import gradient_statistics
 
 
 class Inputs(NamedTuple):
@@ -57,6 +55,12 @@ class Inputs(NamedTuple):
     """Standard deviation over the line."""
     steepest_permille: float
     """Steepest rise."""
+    starting_gradient_permille: float
+    """Mean over the first 2 km of the studied train's way."""
+    gradient_trend_permille: float
+    """Rise of the straight line through the gradients, from the line's beginning to its end."""
+    gradient_middle_permille: float
+    """How much steeper it is far from converter stations than on average; NaN of a single one."""
     time_step_min: float
 
 
@@ -73,7 +77,7 @@ def inputs_of(scenario: Scenario) -> Inputs:
     headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]
     limits = _over([(s.from_km, s.speed_kmh) for s in line.speed_limits], begin_km, end_km)
     limits = [(way, min(speed, train.max_speed_kmh)) for way, speed in limits]
-    mean, deviation, steepest = _gradients(line)
+    gradients = gradient_statistics(line, begin_km, end_km, stations_km)
     return Inputs(
         length_km=line.length_km,
         route_km=end_km - begin_km,
@@ -99,9 +103,12 @@ def inputs_of(scenario: Scenario) -> Inputs:
         mean_speed_limit_kmh=sum(way * speed for way, speed in limits) / (end_km - begin_km),
         train_mass_t=train.mass_t,
         max_motor_current_a=_or_nan(train.max_motor_current_a),
-        gradient_mean_permille=mean,
-        gradient_std_permille=deviation,
-        steepest_permille=steepest,
+        gradient_mean_permille=gradients.mean,
+        gradient_std_permille=gradients.deviation,
+        steepest_permille=gradients.steepest,
+        starting_gradient_permille=gradients.starting,
+        gradient_trend_permille=gradients.trend,
+        gradient_middle_permille=gradients.middle,
         time_step_min=scenario.simulation.time_step_min,
     )
 
@@ -126,19 +133,6 @@ def _over(
         for (place, value), end in zip(staircase, ends, strict=True)
     ]
     return [(way, value) for way, value in ways if way > 0.0]
-
-
-def _gradients(line: Line) -> tuple[float, float, float]:
-    """Mean, standard deviation and highest gradient over the line. [‰]"""
-    from_km = np.array([gradient.from_km for gradient in line.gradients])
-    permille = np.array([gradient.permille for gradient in line.gradients])
-    # The outer gradients go on beyond the profile's ends.
-    from_km[0] = min(from_km[0], 0.0)
-    ends = np.clip(np.append(from_km, np.inf), 0.0, line.length_km)
-    share = np.diff(ends) / line.length_km
-    mean = float(share @ permille)
-    deviation = math.sqrt(float(share @ (permille - mean) ** 2))
-    return mean, deviation, float(permille[share > 0.0].max())
 
 
 @cache
