@@ -55,8 +55,8 @@ def on_page_content(content: str, page: Page, **_: Any) -> str:
 
 
 def _line_of(function: str, text: str) -> int:
-    """Line of a file on which a function begins, or 0."""
+    """Line of a file on which a function or a method begins, or 0."""
     for number, line in enumerate(text.splitlines(), 1):
-        if line.startswith(f"def {function}("):
+        if line.lstrip().startswith(f"def {function}("):
             return number
     return 0
