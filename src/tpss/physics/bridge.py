@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined
 from tpss.physics.motor import NEW, line_voltage_factor, motor_voltage
 from tpss.physics.reactive_power import (
     TRANSFORMER_RATIO,
@@ -39,7 +39,7 @@ def train_bridge_sine(voltage_v: float, kind: Any, train: Any, machine: Any) -> 
     return sine, slope
 
 
-@kernel
+@fused
 def bridge_ratio(voltage_v: float, kind: Any, train: Any, machine: Any) -> tuple[float, float]:
     """Reactive power of the bridges over the motors' current at full line voltage, and its slope.
 
@@ -54,10 +54,12 @@ def bridge_ratio(voltage_v: float, kind: Any, train: Any, machine: Any) -> tuple
     ----------
     [Boullanger2009]_, eq. (2.19) and (F.24).
     """
-    factor = line_voltage_factor(voltage_v, kind.voltage_model)
     sine, sine_slope = train_bridge_sine(voltage_v, kind, train, machine)
-    unit = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO, 1.0 / factor, 1.0)
-    slope = unit * sine_slope
-    if factor == 1.0:  # below the knee of the former voltage, current times voltage is constant
-        slope += unit * sine / voltage_v
-    return unit * sine, slope
+    if kind.voltage_model != NEW:
+        factor = line_voltage_factor(voltage_v, kind.voltage_model)
+        if factor < 1.0:  # below the knee of the former voltage, current times voltage is constant
+            unit = bridge_reactive_power(voltage_v * TRANSFORMER_RATIO / factor, 1.0, 1.0)
+            return unit * sine, unit * sine_slope
+    per_volt = bridge_reactive_power(TRANSFORMER_RATIO, 1.0, 1.0)
+    unit = voltage_v * per_volt
+    return unit * sine, unit * sine_slope + per_volt * sine

@@ -104,7 +104,7 @@ def bridge_reactive_power(
     ----------
     [Boullanger2009]_, eq. (2.19), (3.1), (3.2) and (F.24).
     """
-    return locomotive_voltage_v * armature_current_a * math.sqrt(2.0) / math.pi * sine
+    return locomotive_voltage_v * armature_current_a * (math.sqrt(2.0) / math.pi) * sine
 
 
 @inlined

@@ -47,7 +47,6 @@ from tpss.powerflow.pairs import (
     compose,
     determinant,
     inverse,
-    magnitude,
     scaled,
     squared,
 )
@@ -285,12 +284,13 @@ def _close_gaps(flow: Flow) -> None:
 @inlined
 def voltages_are_plausible(flow: Flow) -> bool:
     """Whether every node and train lies in the band that a sound line never leaves."""
-    low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V
+    low = (LOWEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
+    high = (HIGHEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
     for n in range(flow.nodes.size):
-        if not low <= magnitude(flow.nodes[n].voltage_v) <= high:
+        if not low <= squared(flow.nodes[n].voltage_v) <= high:
             return False
     for k in range(flow.sections[flow.sections.size - 1].end):
-        if not low <= magnitude(flow.standing[k].voltage_v) <= high:
+        if not low <= squared(flow.standing[k].voltage_v) <= high:
             return False
     return True
 
