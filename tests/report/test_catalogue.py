@@ -12,7 +12,7 @@ from tpss.report.figures.catalogue import NothingToDrawError
 from tpss.report.figures.effort import machine_limit
 from tpss.report.figures.energy import used_by_trains
 
-from scenarios import run, short_line
+from scenarios import run, short_line, stops
 
 HILLY = {
     "line.gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 5.0, "permille": -1.0}],
@@ -81,6 +81,34 @@ def test_the_bars_of_the_energy_have_one_length(hilly):
     total = hilly.summary["total_energy_mwh"]
     for end in ends.values():  # parts below 0.05 % each are left out
         assert end == pytest.approx(total, rel=5e-3)
+
+
+def braking_within_steps(permille, step_min):
+    """Three stops on 20 km of one gradient."""
+    return {
+        "line.gradients": [{"from_km": 0.0, "permille": permille}],
+        **stops((5.0, 1.0), (10.0, 1.0), (15.0, 1.0)),
+        "simulation.braking": "within-step",
+        "simulation.time_step_min": step_min,
+    }
+
+
+@pytest.mark.parametrize("permille", [0.0, 8.0, -8.0])
+def test_trains_that_hold_and_brake_in_a_step_keep_no_kinetic_energy_at_their_destination(permille):
+    """What motors give, resistances, climb and brakes take, in steps of a minute too."""
+    used = used_by_trains(run(braking_within_steps(permille, 1.0)))
+    assert used["kinetic energy"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("permille", [0.0, 8.0])
+def test_energy_of_long_steps_that_hold_and_brake_is_that_of_short_ones(permille):
+    """Mean forces of a minute times its way, in place of work, would put the motors 5 % too high."""
+    long, short = (
+        used_by_trains(run(braking_within_steps(permille, step_min))) for step_min in (1.0, 0.02)
+    )
+    total = sum(short.values())
+    for name in ("motors and gears", "running resistance", "climb", "brakes"):
+        assert long[name] == pytest.approx(short[name], abs=0.02 * total), name
 
 
 def test_gravity_feeds_where_trains_run_downhill():

@@ -34,6 +34,7 @@ OF_TRAINS = {
     "pantograph_angle": (("time", "train"), "rad"),
     "active_power": (("time", "train"), "W"),
     "reactive_power": (("time", "train"), "var"),
+    "holding_time": (("time", "train"), "s"),
 }
 OF_THE_SUPPLY = {
     "node_voltage": (("time", "node"), "V"),

@@ -24,6 +24,7 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "pantograph_angle": (("time", "train"), "rad", "voltage angle at the pantograph"),
     "active_power": (("time", "train"), "W", "active power drawn at the pantograph"),
     "reactive_power": (("time", "train"), "var", "reactive power drawn at the pantograph"),
+    "holding_time": (("time", "train"), "s", "time at constant speed, before braking in the step"),
     "node_voltage": (("time", "node"), "V", "node voltage, at its own level"),
     "node_angle": (("time", "node"), "rad", "node voltage angle"),
     "station_active_power": (("time", "station"), "W", "active power fed into the railway"),

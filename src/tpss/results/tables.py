@@ -83,6 +83,7 @@ TRAIN_STEPS = {
     "motor_current_a": ("motor_current", 1.0),
     "active_power_mw": ("active_power", 1e-6),
     "reactive_power_mvar": ("reactive_power", 1e-6),
+    "holding_time_s": ("holding_time", 1.0),
 }
 """Columns of `train_steps` that are numbers."""
 

@@ -236,8 +236,8 @@ TRAIN_ROW = np.dtype(
 """What is recorded of a train at an instant and over the interval that follows.
 
 Voltages are kept as the load flow has them: magnitude and angle are found where they are asked for.  Of
-an interval in which forces change these are the means; `holding_time` [s], at constant speed before
-the brakes, is there for the audit.
+an interval in which forces change these are the means; `holding_time` [s] is that at constant speed
+before the brakes, from which work follows.
 """
 
 NODE_ROW = np.dtype([("node_real", float), ("node_imag", float)], align=True)

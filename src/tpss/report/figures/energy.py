@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import xarray as xr
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -13,6 +15,8 @@ from tpss.report.palette import COLOURS
 from tpss.report.style import STYLE, as_text, legend, panels
 from tpss.results.result import Result
 from tpss.results.tables import J_PER_MWH
+
+Floats = npt.NDArray[np.float64]
 
 Parts = dict[str, tuple[float, Any]]
 """Energy of the parts of a bar [MWh], and their colours."""
@@ -93,18 +97,11 @@ def used_by_trains(result: Result) -> dict[str, float]:
     """
     data, scenario = result.dataset, result.scenario
     h = float(data.attrs["time_step_s"])
-    speed = data.speed.to_numpy()
-    way_m = h * (speed[:-1] + speed[1:]) / 2.0
-
-    def work(name: str) -> float:
-        return float(np.nansum(data[name].to_numpy()[:-1] * way_m))
-
     kind_of = {entry.name: scenario.trains[entry.train] for entry in scenario.traffic}
     auxiliary_w = [1e3 * kind_of[str(s)].auxiliary_power_kw for s in data.service.to_numpy()]
     active_w = data.active_power.to_numpy()[:-1]
     auxiliaries = float((np.isfinite(active_w) * np.array(auxiliary_w)).sum()) * h
-    wheel, running = work("tractive_force"), work("running_resistance")
-    climb, brakes = work("gradient_force"), work("braking_force")
+    wheel, running, climb, brakes = (float(np.nansum(work_j)) for work_j in work_of_forces(data))
     joules = {
         "auxiliaries": auxiliaries,
         "motors and gears": float(np.nansum(active_w)) * h - auxiliaries - wheel,
@@ -114,6 +111,36 @@ def used_by_trains(result: Result) -> dict[str, float]:
         "kinetic energy": wheel - running - climb - brakes,
     }
     return {name: value / J_PER_MWH for name, value in joules.items()}
+
+
+def work_of_forces(data: xr.Dataset) -> tuple[Floats, Floats, Floats, Floats]:
+    """Work of motors, running resistance, gradients and brakes. [J], shape (steps, trains) each
+
+    Recorded forces are means over time.  In a step of constant acceleration they work along its way.
+    A step that holds the speed v for τ and then brakes over β to v' has its motors at work at v; the
+    resistances are the same all along; the brakes hold the train on a descent, then slow it down.
+    From its way x, β = 2 (x - v τ)/(v + v').
+    """
+    h = float(data.attrs["time_step_s"])
+    force = {
+        name: data[name].to_numpy()[:-1]
+        for name in ("tractive_force", "running_resistance", "gradient_force", "braking_force")
+    }
+    traction, running, climb, brakes = force.values()
+    speed, hold_s = data.speed.to_numpy(), data.holding_time.to_numpy()[:-1]
+    v, mean = speed[:-1], (speed[:-1] + speed[1:]) / 2.0
+    way_m = np.diff(data.position.to_numpy(), axis=0)
+    held = hold_s > 0.0
+    moving_s = np.where(held, hold_s, np.nan)
+    moving_s = moving_s + np.divide(way_m - v * hold_s, mean, where=held, out=np.zeros_like(v))
+    along_m = np.where(held, way_m * h / moving_s, mean * h)
+    holding_ns = np.where(held, np.maximum(0.0, -(running + climb)) * h * hold_s / moving_s, 0.0)
+    return (
+        traction * np.where(held, v, mean) * h,
+        running * along_m,
+        climb * along_m,
+        holding_ns * v + (brakes * h - holding_ns) * mean,
+    )
 
 
 def _bar(panel: Axes, row: int, start: float, parts: Parts, width: float) -> None:
