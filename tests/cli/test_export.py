@@ -53,7 +53,7 @@ def damage_dataset(folder):
 
 def summary_of_another_version(folder):
     text = json.loads((folder / "summary.json").read_text("utf-8"))
-    text["result_format"] = 2
+    text["result_format"] = 3
     text["provenance"]["tpss_version"] = "0.9.0"
     (folder / "summary.json").write_text(json.dumps(text))
 
@@ -66,7 +66,7 @@ def summary_of_an_old_version(folder):
 
 def dataset_of_another_version(folder):
     dataset = xr.load_dataset(folder / "result.nc", engine="netcdf4")
-    dataset.attrs["result_format"] = 2
+    dataset.attrs["result_format"] = 3
     dataset.to_netcdf(folder / "result.nc", engine="netcdf4")
 
 
@@ -77,9 +77,9 @@ def dataset_of_another_version(folder):
          "demo is not a result folder: result.nc missing; name a folder that tpss run has written"),
         (damage_dataset, "demo is damaged ("),
         (summary_of_another_version,
-         "demo was written by another version of TPSS (0.9.0): its format is 2, this version reads 1; "
+         "demo was written by another version of TPSS (0.9.0): its format is 3, this version reads 2; "
          "run the scenario again (tpss run demo/scenario.toml), or read it with that version"),
-        (summary_of_an_old_version, "its format is older than any number, this version reads 1"),
+        (summary_of_an_old_version, "its format is older than any number, this version reads 2"),
         (dataset_of_another_version, "result.nc and summary.json are not of the same version"),
     ],
     ids=["missing", "truncated", "newer", "older", "mixed"],

@@ -183,7 +183,7 @@ def test_attributes_carry_the_totals(main_line):
     assert attributes["station_energy_mwh"].tolist() == energies
     assert attributes["losses_mwh"] == summary["losses_mwh"]
     assert attributes["time_step_s"] == 30.0
-    assert attributes["result_format"] == summary["result_format"] == 1
+    assert attributes["result_format"] == summary["result_format"] == 2
     assert json.loads(attributes["audit"]) == main_line.audit
 
 

@@ -20,7 +20,7 @@ from tpss.results.contents import DATASET, SCENARIO, SUMMARY, carry_over
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
 
-FORMAT_KEY, FORMAT = "result_format", 1
+FORMAT_KEY, FORMAT = "result_format", 2
 """Name and value of what a result says of the way in which it is written.
 
 It grows when something is renamed, taken away or newly relied upon, not when something is added.
