@@ -53,6 +53,14 @@ def press_ctrl_c_while_saving(monkeypatch: pytest.MonkeyPatch, times: int) -> No
     monkeypatch.setattr(store, "_write", interrupted)
 
 
+@pytest.fixture(autouse=True)
+def ctrl_c_interrupts():
+    """A process that a shell has started in the background ignores Ctrl-C, and so do its children."""
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, usual)
+
+
 def started(folder: Path, *command: object, **environment: str) -> "subprocess.Popen[str]":
     """A Python process in a folder, which can be read from and interrupted."""
     return subprocess.Popen(
