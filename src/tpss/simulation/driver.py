@@ -4,13 +4,7 @@ from typing import Any
 
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_length
-from tpss.driving.speed_limits import (
-    HOLD_FIRST,
-    OUT_OF_REACH,
-    SLACK_M_S,
-    UNIFORM,
-    heed_limits_ahead,
-)
+from tpss.driving.speed_limits import HOLD_FIRST, OUT_OF_REACH, UNIFORM, heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.driving.within_step import highest_speed_that_stops_within
 from tpss.kernel import inlined, kernel
@@ -121,8 +115,7 @@ def allowed_speed(train: Any, target_m_s: float, retardation_m_s2: float, sight:
         )  # fmt: skip
     if manner == HOLD_FIRST and train.course == USUAL and allowed < min(v, target_m_s):
         train.course = TO_LIMIT
-    # A train that slows down to the rounding of a speed would creep on for days; it stops.
-    return 0.0 if 0.0 < allowed < min(v, SLACK_M_S) else allowed
+    return allowed
 
 
 @inlined
