@@ -104,16 +104,6 @@ def test_stops_are_met_to_a_nanometre_whatever_the_step(step_min):
     assert {10_000.0, 14_700.0, 14_710.0, 20_000.0} <= set(way.x[way.v == 0.0])
 
 
-@pytest.mark.parametrize("step_min", STEPS_MIN)
-@pytest.mark.parametrize("mass_t", [100.0, 1470.0])
-def test_stops_closer_together_than_a_braking_distance(step_min, mass_t):
-    places = stops((10.0, step_min), (10.05, step_min), (10.06, step_min), (10.061, step_min))
-    result = run({**step(step_min), **places, "trains.freight.mass_t": mass_t})
-    assert result.status == "finished"
-    way = journey(result)
-    assert way.x[way.state == STATE_DWELLING].tolist() == [10_000.0, 10_050.0, 10_060.0, 10_061.0]
-
-
 def test_a_dwell_begins_with_the_instant_after_the_stop():
     result = run({**step(0.3), **stops((10.0, 0.9))})
     way = journey(result)

@@ -18,12 +18,14 @@ def step(minutes: float) -> dict[str, float]:
     return {"simulation.time_step_min": minutes}
 
 
-@pytest.mark.parametrize("step_min", STEPS_MIN)
+@pytest.mark.parametrize("step_min", [*STEPS_MIN, 0.1])
 @pytest.mark.parametrize("mass_t", [100.0, 1470.0])
-def test_stops_closer_together_than_a_braking_distance(step_min, mass_t):
+@pytest.mark.parametrize("braking", ["whole-steps", "within-step"])
+def test_stops_closer_together_than_a_braking_distance(step_min, mass_t, braking):
     """50 m, then 10 m, then 1 m: to stop from 60 km/h takes 163 m."""
     places = stops((10.0, step_min), (10.05, step_min), (10.06, step_min), (10.061, step_min))
-    result = run({**step(step_min), **places, "trains.freight.mass_t": mass_t})
+    manner = {"simulation.braking": braking, "trains.freight.mass_t": mass_t}
+    result = run({**step(step_min), **places, **manner})
     assert result.status == "finished"
     way = journey(result)
     standing = way.x[way.state == 4]

@@ -210,6 +210,7 @@ def prepare(train: Any, machine: Machine, model: Model) -> None:
     train.driven_share = train.moving_share = 1.0
     train.hold_s = 0.0
     train.course = USUAL
+    # Adhesion hangs on the speed alone, as does what `take_speed` evaluates when that has changed.
     if train.speed_m_s != train.taken_speed_m_s:
         speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
         train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import blank_records, inlined, record_type
+from tpss.kernel import blank_records, copy_of_records, inlined, record_type
 from tpss.physics.locomotive import DEMAND
 from tpss.powerflow.network import Flow, Network, new_flow
 
@@ -283,7 +283,7 @@ def new_state(model: Model, trains: Any) -> State:
     clock["carried_share"] = 1.0
     return State(
         trains=trains,
-        machine=model.machine.copy(),
+        machine=copy_of_records(model.machine),
         flow=new_flow(model.network, trains.size),
         clock=clock,
     )
