@@ -14,12 +14,11 @@ from tpss.many import key_figures
 from tpss.results.audit import limits_of
 from tpss.results.key_figures import KeyFigures
 
-from conftest import EXAMPLES, SHARED
+from conftest import EXAMPLE_SCENARIOS, SHARED
 from properties.strategies import sound_scenarios
 from scenarios import gradients, short_line
 
-FOLDER = SHARED / "scenarios" if SHARED.is_dir() else EXAMPLES
-FILES = sorted(FOLDER.glob("*.toml"))
+FILES = sorted((SHARED / "scenarios").glob("*.toml")) or EXAMPLE_SCENARIOS
 STALL = {"trains.freight.mass_t": 4000.0, **gradients((0.0, 0.0), (5.0, 30.0))}
 
 SUMS = 1e-12
