@@ -27,14 +27,20 @@ _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # nobody calls a kernel from C
     "_nrt": False,  # kernels allocate nothing, so no references need counting
+    # Not fast-math: a product and the sum that it enters may be rounded once in place of twice, and
+    # nothing else.  NaN, infinities and the order of operations stay what they are.
+    "fastmath": {"contract"},
 }
 
 KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation")
 
 
 def source_digest(package_folder: Path) -> str:
-    """Digest of every kernel source below `package_folder` and of numba's version."""
+    """Digest of every kernel source below `package_folder`, of how it is compiled, and of numba's
+    version.
+    """
     digest = hashlib.sha256(numba.__version__.encode())
+    digest.update((package_folder / Path(__file__).name).read_bytes())
     for name in KERNEL_PACKAGES:
         for file in sorted((package_folder / name).glob("*.py")):
             digest.update(file.name.encode())
@@ -70,7 +76,7 @@ def kernels_are_compiled(last: str = "advance") -> bool:
 def kernel(function: _Function) -> _Function:
     """Compile `function` at its first call and keep the result on disk.
 
-    Division by zero gives inf or NaN, as in numpy; NaN checks stay (no fast-math); the global
+    Division by zero gives inf or NaN, as in numpy; NaN checks stay; the global
     interpreter lock is released.  Kernels allocate nothing, so they are compiled without the
     counting of references to arrays, which would cost as much as the arithmetic.  Under
     ``NUMBA_DISABLE_JIT=1`` the function stays plain Python.

@@ -21,6 +21,15 @@ def test_an_edit_in_any_kernel_source_changes_the_digest(tmp_path):
     assert len(digests) == len(KERNEL_PACKAGES) + 1
 
 
+def test_kernels_that_are_compiled_otherwise_have_another_digest(tmp_path):
+    shutil.copytree(SOURCE, tmp_path / "tpss")
+    before, options = source_digest(tmp_path / "tpss"), tmp_path / "tpss" / "kernel.py"
+    text = options.read_text("utf-8")
+    assert '"fastmath": {"contract"}' in text
+    options.write_text(text.replace('"fastmath": {"contract"}', '"fastmath": False'), "utf-8")
+    assert source_digest(tmp_path / "tpss") != before
+
+
 def test_an_edited_formula_takes_effect_in_the_kernels_that_call_it(tmp_path):
     """Gravity is edited in another file than the compiled, cached `adhesion_limit` that uses it."""
     shutil.copytree(SOURCE, tmp_path / "tpss")
