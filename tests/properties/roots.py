@@ -16,7 +16,7 @@ from tpss.powerflow.newton import HIGHEST_VOLTAGE, SOLVED, newton
 from tpss.powerflow.solve import start_flat
 from tpss.simulation.advance import begin_step
 from tpss.simulation.coupling import settle
-from tpss.simulation.driver import aim
+from tpss.simulation.driver import decide
 from tpss.simulation.run import Run, trains_on_line
 from tpss.simulation.state import Model, State, sight_of
 from tpss.simulation.timetable import departing_trains
@@ -60,7 +60,11 @@ class Replay:
 
 def solve_step_slowly(count: int, model: Model, state: State) -> float:
     """As the clock does it, but every load flow begins without load; return the share carried."""
-    while (share := raise_loads(model, state)) == 1.0:
+    while True:
+        decide(count, state.flow.standing, state.trains, sight_of(model))
+        share = raise_loads(model, state)
+        if share < 1.0:
+            return share
         planned = False
         for place in state.flow.standing[:count]:
             train = state.trains[place.train]
@@ -68,11 +72,10 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
             settle(train, model)
             if must_plan(train, model):
                 begin_plan(train, model)
-                aim(train, sight_of(model))
+                train.decided = False
                 planned = True
         if not planned:
-            break
-    return share
+            return share
 
 
 def raise_loads(model: Model, state: State) -> float:

@@ -24,8 +24,9 @@ from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.simulation.advance import begin_step, end_step
 from tpss.simulation.coupling import settle_all
+from tpss.simulation.driver import decide
 from tpss.simulation.record import record_instant
-from tpss.simulation.state import Model, Recording, State, Status
+from tpss.simulation.state import Model, Recording, State, Status, sight_of
 
 SHORTEST_MOVE = 1e-8
 """The minimum is reached where a step changes the unknowns by less than this share of them.  Close to a
@@ -54,6 +55,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     """Solve a step until every driver's decision stands; see `simulation.coupling.solve_step`."""
     evaluations = 0
     while True:
+        decide(count, state.flow.standing, state.trains, sight_of(model))
         share, more = solve_network(count, warm, model, state)
         evaluations += more
         if share < 1.0 or settle_all(count, model, state):

@@ -165,6 +165,14 @@ def acceleration(force_n: float, resistance_n: float, inertia_kg: float) -> floa
     return (force_n - resistance_n) / inertia_kg
 
 
+@inlined
+def speed_is_taken(voltage_v: float, train: Demand) -> bool:
+    """Whether `take_speed` has nothing to do: the speed is the same, the voltage within its band."""
+    if train.speed_m_s != train.taken_speed_m_s:
+        return False
+    return not 0.0 < train.free_band_v <= abs(voltage_v - train.free_voltage_v)
+
+
 @kernel
 def take_speed(
     voltage_v: float, kind: TrainType, train: Demand, machine: Machine, points: Points
@@ -174,10 +182,11 @@ def take_speed(
     A train that holds its speed limit has the same speed, to the last digit, step after step.  What
     the machine gives is evaluated anew at `voltage_v` too, if that has left the band of the last step.
     """
+    if speed_is_taken(voltage_v, train):
+        return
+    train.free_voltage_v = voltage_v
     if train.speed_m_s == train.taken_speed_m_s:
-        if 0.0 < train.free_band_v <= abs(voltage_v - train.free_voltage_v):
-            train.free_voltage_v = voltage_v
-            train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
+        train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
         return
     speed = train.taken_speed_m_s = train.speed_m_s
     efficiency = curve_at(speed, kind.efficiency.first, kind.efficiency.points, points)
@@ -190,7 +199,6 @@ def take_speed(
         train.reactive_ratio = reactive_ratio(factor)
     train.sine.reach_8 = 0.0
     take_effort(kind, train, machine, points)
-    train.free_voltage_v = voltage_v
     train.free_force_n, _ = highest_force(voltage_v, kind, train, machine)
 
 

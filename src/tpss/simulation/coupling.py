@@ -12,7 +12,7 @@ from tpss.physics.locomotive import acceleration, electrical_demand
 from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
 from tpss.powerflow.solve import solve
-from tpss.simulation.driver import aim
+from tpss.simulation.driver import decide
 from tpss.simulation.state import DWELLING, Model, State, is_on_course, sight_of
 from tpss.simulation.stopping import settle_course
 from tpss.simulation.traffic import begin_plan, must_plan
@@ -38,6 +38,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     """
     passes = 0
     while True:
+        decide(count, state.flow.standing, state.trains, sight_of(model))
         share, more = solve_network(count, warm, model, state)
         passes += more
         if share < 1.0 or settle_all(count, model, state):
@@ -57,7 +58,7 @@ def settle_all(count: int, model: Model, state: State) -> bool:
         settle(train, model)
         if must_plan(train, model):
             begin_plan(train, model)
-            aim(train, sight_of(model))
+            train.decided = False
             stands = False
     return stands
 

@@ -16,6 +16,7 @@ from tpss.physics.locomotive import (
     acceleration,
     note_cap,
     prove_free_band,
+    speed_is_taken,
     take_speed,
 )
 from tpss.physics.running_resistance import (
@@ -35,7 +36,6 @@ from tpss.simulation.state import (
     WITHIN_STEP,
     Model,
     Sight,
-    sight_of,
 )
 from tpss.simulation.stopping import drive_uniformly, steer_to_limit, steer_to_stop
 from tpss.simulation.traffic import distance_to_stop
@@ -175,7 +175,7 @@ def aim_usually(train: Any, kind: Any, sight: Sight) -> None:
     train.wanted_force_n = wanted
 
 
-@kernel
+@inlined
 def aim(train: Any, sight: Sight) -> None:
     """Set the target of a train, and the force that adhesion and driver allow at most.
 
@@ -197,9 +197,19 @@ def aim(train: Any, sight: Sight) -> None:
     note_cap(kind, train)
 
 
+@kernel
+def decide(count: int, standing: Any, trains: Any, sight: Sight) -> None:
+    """Let those drivers decide who have not done so in this step, of the first `count` trains."""
+    for k in range(count):
+        train = trains[standing[k].train]
+        if not train.decided:
+            aim(train, sight)
+            train.decided = True
+
+
 @inlined
 def prepare(train: Any, machine: Machine, model: Model) -> None:
-    """Everything about a train that stays fixed while this step is solved.
+    """Everything about a train that stays fixed while this step is solved, but what its driver decides.
 
     References
     ----------
@@ -214,6 +224,7 @@ def prepare(train: Any, machine: Machine, model: Model) -> None:
     if train.speed_m_s != train.taken_speed_m_s:
         speed = train.speed_m_s * 3.6 if options.adhesion_in_km_h else train.speed_m_s
         train.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
-    take_speed(train.voltage_v, kind, train, machine, model.points)
+    if not speed_is_taken(train.voltage_v, train):
+        take_speed(train.voltage_v, kind, train, machine, model.points)
     oppose(train, kind, model)
-    aim(train, sight_of(model))
+    train.decided = False

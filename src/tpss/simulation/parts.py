@@ -14,7 +14,7 @@ from tpss.powerflow.chain import WARM, place_trains
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import newton
 from tpss.powerflow.solve import continue_from_zero
-from tpss.simulation.driver import aim
+from tpss.simulation.driver import decide
 from tpss.simulation.record import record_instant
 from tpss.simulation.state import Model, new_recording, new_state, sight_of
 from tpss.simulation.stopping import move_on_course
@@ -41,7 +41,7 @@ def driving(model: Model) -> list[Call]:
     state, recording = new_state(model, trains), new_recording(model, 0, trains.size)
     train, kind, step = trains[0], model.types[0], switch(0)
     return [
-        (aim, (train, sight_of(model))),
+        (decide, (step, flow.standing, trains, sight_of(model))),
         (take_speed, (1.0, kind, train, model.machine[0], model.points)),
         (shortest_stop, (1.0, 1.0, 1.0)),
         (begin_plan, (train, model)),

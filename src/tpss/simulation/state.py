@@ -89,6 +89,7 @@ TRAIN = np.dtype(
         ("plan_first", float),
         ("plan_full", np.int64),
         ("plan_last", float),
+        ("decided", np.bool_),  # whether its driver has decided about the present step
         ("course", np.int64),  # braking within steps; the next three are of the present step
         ("hold_s", float),  # at constant speed
         ("brake_s", float),  # then braking
