@@ -108,6 +108,10 @@ def _compiled(function: _Function, inline: str, forceinline: bool = False) -> _F
     return compiled
 
 
+at = np.uint64
+"""Index that is not negative: compiled code need not ask whether it counts from the end."""
+
+
 def switch(value: int) -> int:
     """Constant that selects what a kernel does when it runs.
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel, records
+from tpss.kernel import at, kernel, records
 from tpss.powerflow.pairs import apply, compose, determinant, inverse
 
 Indices = npt.NDArray[np.int64]
@@ -136,29 +136,31 @@ def solve_blocks(pattern: Pattern, blocks: Any, nodes: Any) -> float:
     sign = 1.0
     # 1. Eliminate forwards; each pivot's inverse replaces it.
     for k in range(pattern.pivots.size):
-        pivot = pattern.pivots[k]
-        own, target = blocks[pivot.node], pivot.update
+        pivot = pattern.pivots[at(k)]
+        own, target = blocks[at(pivot.node)], pivot.update
         sign *= math.copysign(1.0, determinant(own.p, own.q))
         own.p, own.q = inverse(own.p, own.q)
         for a in range(pivot.first, pivot.end):
-            neighbour = pattern.neighbours[a]
-            low = blocks[neighbour.lower]
+            neighbour = pattern.neighbours[at(a)]
+            low = blocks[at(neighbour.lower)]
             lp, lq = compose(low.p, low.q, own.p, own.q)
             for b in range(pivot.first, pivot.end):
-                up = blocks[pattern.neighbours[b].upper]
-                changed = blocks[pattern.places[target]]
+                up = blocks[at(pattern.neighbours[at(b)].upper)]
+                changed = blocks[at(pattern.places[at(target)])]
                 dp, dq = compose(lp, lq, up.p, up.q)
                 changed.p -= dp
                 changed.q -= dq
                 target += 1
-            nodes[neighbour.node].right_side -= apply(lp, lq, nodes[pivot.node].right_side)
+            right_side = nodes[at(pivot.node)].right_side
+            nodes[at(neighbour.node)].right_side -= apply(lp, lq, right_side)
     # 2. Substitute backwards.
     for k in range(pattern.pivots.size - 1, -1, -1):
-        pivot = pattern.pivots[k]
-        rest = nodes[pivot.node].right_side
+        pivot = pattern.pivots[at(k)]
+        rest = nodes[at(pivot.node)].right_side
         for a in range(pivot.first, pivot.end):
-            neighbour = pattern.neighbours[a]
-            up = blocks[neighbour.upper]
-            rest -= apply(up.p, up.q, nodes[neighbour.node].right_side)
-        nodes[pivot.node].right_side = apply(blocks[pivot.node].p, blocks[pivot.node].q, rest)
+            neighbour = pattern.neighbours[at(a)]
+            up = blocks[at(neighbour.upper)]
+            rest -= apply(up.p, up.q, nodes[at(neighbour.node)].right_side)
+        own = blocks[at(pivot.node)]
+        nodes[at(pivot.node)].right_side = apply(own.p, own.q, rest)
     return sign

@@ -22,7 +22,7 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import inlined, kernel, switch
+from tpss.kernel import at, inlined, kernel, switch
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
@@ -72,19 +72,19 @@ def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
     k = 0
     last = network.sections.size - 1
     for s in range(last + 1):
-        section = network.sections[s]
+        section = network.sections[at(s)]
         before_m = section.start_m
-        flow.sections[s].first = k
+        flow.sections[at(s)].first = k
         while k < count and (
-            s == last or trains[flow.standing[k].train].position_m < section.end_m
+            s == last or trains[flow.standing[at(k)].train].position_m < section.end_m
         ):
-            at_m = trains[flow.standing[k].train].position_m
-            flow.standing[k].piece_m = max(SHORTEST_PIECE_M, at_m - before_m)
+            at_m = trains[flow.standing[at(k)].train].position_m
+            flow.standing[at(k)].piece_m = max(SHORTEST_PIECE_M, at_m - before_m)
             short += at_m - before_m < SHORTEST_PIECE_M
             before_m = at_m
             k += 1
-        flow.sections[s].end = k
-        flow.sections[s].closing_m = max(SHORTEST_PIECE_M, section.end_m - before_m)
+        flow.sections[at(s)].end = k
+        flow.sections[at(s)].closing_m = max(SHORTEST_PIECE_M, section.end_m - before_m)
         short += section.end_m - before_m < SHORTEST_PIECE_M
     return short
 
@@ -110,9 +110,9 @@ def train_current(
         voltage = complex(BASE_VOLTAGE_V, 0.0)
     square = squared(voltage)
     magnitude = math.sqrt(square)
-    train = loads.trains[i]
+    train = loads.trains[at(i)]
     p, q, p_slope, q_slope = electrical_demand(
-        magnitude, loads.types[train.train_type], train, loads.machine[0]
+        magnitude, loads.types[at(train.train_type)], train, loads.machine[0]
     )
     per_square = 1.0 / square
     reciprocal = scaled(voltage, per_square)  # 1 / conj(V)
@@ -150,9 +150,9 @@ def run_chain(
     Writes the trains' voltages and the end current into `flow`, the sensitivities of end voltage
     and end current into `flow.sensitivity`.
     """
-    section, found = network.sections[s], flow.sections[s]
+    section, found = network.sections[at(s)], flow.sections[at(s)]
     z, half_b = section.impedance_ohm_per_m, 0.5 * section.susceptance_s_per_m
-    voltage = flow.nodes[section.start_node].voltage_v
+    voltage = flow.nodes[at(section.start_node)].voltage_v
     current = found.current_a
     # Sensitivities: a of the voltage and c of the current to the start voltage, b and d to the
     # start current.
@@ -161,19 +161,19 @@ def run_chain(
     # 1. The half shunt at the start of the first piece.
     ahead_m = found.closing_m
     if found.first < found.end:
-        ahead_m = flow.standing[found.first].piece_m
+        ahead_m = flow.standing[at(found.first)].piece_m
     shunt = complex(0.0, half_b * ahead_m)
     current -= shunt * voltage
     c_p -= shunt
     for k in range(found.first, found.end):
         # 2. The piece before the train.
-        place = flow.standing[k]
+        place = flow.standing[at(k)]
         piece_m = ahead_m
         impedance = scaled(z, piece_m)
         voltage -= impedance * current
         place.voltage_v = voltage
         # 3. The train, and the half shunts of the pieces that meet there.
-        ahead_m = found.closing_m if k + 1 == found.end else flow.standing[k + 1].piece_m
+        ahead_m = found.closing_m if k + 1 == found.end else flow.standing[at(k + 1)].piece_m
         shunt = complex(0.0, half_b * (piece_m + ahead_m))
         load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
         current -= load + shunt * voltage

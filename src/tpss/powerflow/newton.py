@@ -36,7 +36,7 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.physics.converter import converter_voltage, terminal_voltage
 from tpss.powerflow.block_lu import solve_blocks
@@ -80,7 +80,7 @@ def source_law(
     """
     power = voltage * current.conjugate()
     magnitude, direction, by_q, angle_by_p, angle_by_q = terminal_voltage(
-        power.real, power.imag, flow.sources[s].converters, network.sources[s]
+        power.real, power.imag, flow.sources[at(s)].converters, network.sources[at(s)]
     )
     law = scaled(direction, magnitude)
     turned = complex(-law.imag, law.real)
@@ -99,18 +99,18 @@ def _add(block: Any, p: complex, q: complex) -> None:
 @inlined
 def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     """Add a section's blocks and gap currents to the node system; return the sign of det B."""
-    section, found, w = network.sections[s], flow.sections[s], flow.sensitivity
+    section, found, w = network.sections[at(s)], flow.sections[at(s)], flow.sensitivity
     a_p, a_q = w[0, 0, 0], w[0, 0, 1]
     bi_p, bi_q = inverse(w[0, 1, 0], w[0, 1, 1])
     ba_p, ba_q = compose(bi_p, bi_q, a_p, a_q)
     db_p, db_q = compose(w[1, 1, 0], w[1, 1, 1], bi_p, bi_q)
     dba_p, dba_q = compose(db_p, db_q, a_p, a_q)
-    _add(flow.blocks[section.block_aa], -ba_p, -ba_q)
-    _add(flow.blocks[section.block_ab], bi_p, bi_q)
-    _add(flow.blocks[section.block_ba], dba_p - w[1, 0, 0], dba_q - w[1, 0, 1])
-    _add(flow.blocks[section.block_bb], -db_p, -db_q)
-    flow.nodes[section.start_node].right_side += apply(bi_p, bi_q, found.gap_v)
-    flow.nodes[section.end_node].right_side -= apply(db_p, db_q, found.gap_v)
+    _add(flow.blocks[at(section.block_aa)], -ba_p, -ba_q)
+    _add(flow.blocks[at(section.block_ab)], bi_p, bi_q)
+    _add(flow.blocks[at(section.block_ba)], dba_p - w[1, 0, 0], dba_q - w[1, 0, 1])
+    _add(flow.blocks[at(section.block_bb)], -db_p, -db_q)
+    flow.nodes[at(section.start_node)].right_side += apply(bi_p, bi_q, found.gap_v)
+    flow.nodes[at(section.end_node)].right_side -= apply(db_p, db_q, found.gap_v)
     found.inverse_p, found.inverse_q = bi_p, bi_q
     found.transfer_p, found.transfer_q = a_p, a_q
     return math.copysign(1.0, determinant(w[0, 1, 0], w[0, 1, 1]))
@@ -120,10 +120,10 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
 def _leave_by_branches(network: Network, flow: Flow) -> None:
     """Start the nodes' leaving currents with those into the lumped branches."""
     for n in range(flow.nodes.size):
-        flow.nodes[n].leaving_current_a = 0.0
+        flow.nodes[at(n)].leaving_current_a = 0.0
     for b in range(network.branches.size):
-        branch = network.branches[b]
-        start, end = flow.nodes[branch.start_node], flow.nodes[branch.end_node]
+        branch = network.branches[at(b)]
+        start, end = flow.nodes[at(branch.start_node)], flow.nodes[at(branch.end_node)]
         current = (start.voltage_v - end.voltage_v) * branch.admittance_s
         start.leaving_current_a += current
         end.leaving_current_a -= current
@@ -133,16 +133,16 @@ def _leave_by_branches(network: Network, flow: Flow) -> None:
 def _stamp_branches(network: Network, flow: Flow) -> None:
     """Start the linear system with the lumped branches."""
     for k in range(flow.blocks.size):
-        flow.blocks[k].p = 0.0
-        flow.blocks[k].q = 0.0
+        flow.blocks[at(k)].p = 0.0
+        flow.blocks[at(k)].q = 0.0
     for n in range(flow.nodes.size):
-        flow.nodes[n].right_side = 0.0
+        flow.nodes[at(n)].right_side = 0.0
     for b in range(network.branches.size):
-        branch = network.branches[b]
-        flow.blocks[branch.block_aa].p += branch.admittance_s
-        flow.blocks[branch.block_ab].p -= branch.admittance_s
-        flow.blocks[branch.block_ba].p -= branch.admittance_s
-        flow.blocks[branch.block_bb].p += branch.admittance_s
+        branch = network.branches[at(b)]
+        flow.blocks[at(branch.block_aa)].p += branch.admittance_s
+        flow.blocks[at(branch.block_ab)].p -= branch.admittance_s
+        flow.blocks[at(branch.block_ba)].p -= branch.admittance_s
+        flow.blocks[at(branch.block_bb)].p += branch.admittance_s
 
 
 @inlined
@@ -150,11 +150,11 @@ def _turn_source_row(
     number: int, law: complex, s1: complex, s2: complex, network: Network, flow: Flow
 ) -> None:
     """Replace the current balance of a source's node by the converter law, linearised."""
-    node, own = flow.nodes[number], flow.blocks[number]
+    node, own = flow.nodes[at(number)], flow.blocks[at(number)]
     voltage, current = node.voltage_v, node.leaving_current_a
     t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
-    for k in range(network.pattern.row_start[number], network.pattern.row_start[number + 1]):
-        block = flow.blocks[network.pattern.places[k]]
+    for k in range(network.pattern.row_start[at(number)], network.pattern.row_start[at(number + 1)]):
+        block = flow.blocks[network.pattern.places[at(k)]]
         p, q = compose(t_p, t_q, block.p, block.q)
         block.p, block.q = -p, -q
     own.p += 1.0 - s1 * current.conjugate()
@@ -171,7 +171,7 @@ def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
     ----------
     [Boullanger2009]_, eq. (F.29), (F.30), (F.33), (F.37)-(F.41).
     """
-    node, s = flow.nodes[n], network.source_of_node[n]
+    node, s = flow.nodes[at(n)], network.source_of_node[at(n)]
     if s < 0:
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * (BASE_VOLTAGE_V / BASE_POWER_VA) ** 2
@@ -210,11 +210,11 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        section, found = network.sections[s], flow.sections[s]
+        section, found = network.sections[at(s)], flow.sections[at(s)]
         gap = run_chain(s, scale, start, network, flow, loads)
-        found.gap_v = gap - flow.nodes[section.end_node].voltage_v
-        flow.nodes[section.start_node].leaving_current_a += found.current_a
-        flow.nodes[section.end_node].leaving_current_a -= found.end_current_a
+        found.gap_v = gap - flow.nodes[at(section.end_node)].voltage_v
+        flow.nodes[at(section.start_node)].leaving_current_a += found.current_a
+        flow.nodes[at(section.end_node)].leaving_current_a -= found.end_current_a
         if start != CHECK:
             sign *= _stamp_section(s, network, flow)
         square = squared(found.gap_v) * PER_SQUARE_VOLT
@@ -235,11 +235,11 @@ def _find_direction(network: Network, flow: Flow) -> float:
     """Solve for the Newton step; return the sign of the node system's determinant."""
     sign = solve_blocks(network.pattern, flow.blocks, flow.nodes)
     for n in range(flow.nodes.size):
-        flow.nodes[n].direction_v = flow.nodes[n].right_side
+        flow.nodes[at(n)].direction_v = flow.nodes[at(n)].right_side
     for s in range(network.sections.size):
-        section, found = network.sections[s], flow.sections[s]
-        start_v = flow.nodes[section.start_node].direction_v
-        end_v = flow.nodes[section.end_node].direction_v
+        section, found = network.sections[at(s)], flow.sections[at(s)]
+        start_v = flow.nodes[at(section.start_node)].direction_v
+        end_v = flow.nodes[at(section.end_node)].direction_v
         change = end_v - apply(found.transfer_p, found.transfer_q, start_v) - found.gap_v
         found.direction_a = apply(found.inverse_p, found.inverse_q, change)
     return sign
@@ -248,18 +248,18 @@ def _find_direction(network: Network, flow: Flow) -> float:
 @inlined
 def _mark_base(flow: Flow) -> None:
     for node in range(flow.nodes.size):
-        flow.nodes[node].base_v = flow.nodes[node].voltage_v
+        flow.nodes[at(node)].base_v = flow.nodes[at(node)].voltage_v
     for s in range(flow.sections.size):
-        flow.sections[s].base_a = flow.sections[s].current_a
+        flow.sections[at(s)].base_a = flow.sections[at(s)].current_a
 
 
 @kernel
 def _take_step(size: float, flow: Flow) -> None:
     for n in range(flow.nodes.size):
-        node = flow.nodes[n]
+        node = flow.nodes[at(n)]
         node.voltage_v = node.base_v + size * node.direction_v
     for s in range(flow.sections.size):
-        section = flow.sections[s]
+        section = flow.sections[at(s)]
         section.current_a = section.base_a + size * section.direction_a
 
 
@@ -271,14 +271,14 @@ def _close_gaps(flow: Flow) -> None:
     a visible current; spread over the whole section it is none.
     """
     for s in range(flow.sections.size):
-        section = flow.sections[s]
+        section = flow.sections[at(s)]
         total_m = section.closing_m
         for k in range(section.first, section.end):
-            total_m += flow.standing[k].piece_m
+            total_m += flow.standing[at(k)].piece_m
         passed_m = 0.0
         for k in range(section.first, section.end):
-            passed_m += flow.standing[k].piece_m
-            flow.standing[k].voltage_v -= section.gap_v * (passed_m / total_m)
+            passed_m += flow.standing[at(k)].piece_m
+            flow.standing[at(k)].voltage_v -= section.gap_v * (passed_m / total_m)
 
 
 @inlined
@@ -287,10 +287,10 @@ def voltages_are_plausible(flow: Flow) -> bool:
     low = (LOWEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
     high = (HIGHEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
     for n in range(flow.nodes.size):
-        if not low <= squared(flow.nodes[n].voltage_v) <= high:
+        if not low <= squared(flow.nodes[at(n)].voltage_v) <= high:
             return False
-    for k in range(flow.sections[flow.sections.size - 1].end):
-        if not low <= squared(flow.standing[k].voltage_v) <= high:
+    for k in range(flow.sections[at(flow.sections.size - 1)].end):
+        if not low <= squared(flow.standing[at(k)].voltage_v) <= high:
             return False
     return True
 
@@ -303,10 +303,10 @@ def sources_are_plausible(network: Network, flow: Flow) -> bool:
     some hundred times the reactive power of their machines.
     """
     for s in range(network.sources.size):
-        law = network.sources[s]
-        node = flow.nodes[law.node]
+        law = network.sources[at(s)]
+        node = flow.nodes[at(law.node)]
         reactive_var = (node.voltage_v * node.leaving_current_a.conjugate()).imag
-        if converter_voltage(reactive_var, flow.sources[s].converters, law) <= 0.0:
+        if converter_voltage(reactive_var, flow.sources[at(s)].converters, law) <= 0.0:
             return False
     return True
 
