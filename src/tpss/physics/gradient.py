@@ -7,7 +7,7 @@ on beyond the profile's ends.
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 
 Array = npt.NDArray[np.float64]
 
@@ -28,9 +28,9 @@ def step_index(position_m: float, from_m: Array) -> int:
 @inlined
 def stair_ahead(stair: int, position_m: float, from_m: Array) -> int:
     """`step_index`, found from a stair that held not far behind: a search mispredicts its branches."""
-    if from_m[stair] > position_m:
+    if from_m[at(stair)] > position_m:
         return step_index(position_m, from_m)
-    while stair + 1 < from_m.size and from_m[stair + 1] <= position_m:
+    while stair + 1 < from_m.size and from_m[at(stair + 1)] <= position_m:
         stair += 1
     return stair
 
@@ -61,13 +61,13 @@ def mean_gradient(
     [Boullanger2009]_, the inclination of eq. (F.3).
     """
     if way_m <= 0.0:
-        return gradient[stair]
+        return gradient[at(stair)]
     end_m = position_m + way_m
     climb_m = 0.0
     at_m = position_m
-    while stair + 1 < from_m.size and from_m[stair + 1] < end_m:
-        climb_m += gradient[stair] * (from_m[stair + 1] - at_m)
-        at_m = from_m[stair + 1]
+    while stair + 1 < from_m.size and from_m[at(stair + 1)] < end_m:
+        climb_m += gradient[at(stair)] * (from_m[at(stair + 1)] - at_m)
+        at_m = from_m[at(stair + 1)]
         stair += 1
-    climb_m += gradient[stair] * (end_m - at_m)
+    climb_m += gradient[at(stair)] * (end_m - at_m)
     return climb_m / way_m

@@ -114,10 +114,6 @@ DEMAND = np.dtype(
         ("free_force_n", float),  # what the machine gives there
         ("free_band_v", float),  # how far from it that is proven; negative: nowhere
         ("steepest_n_per_v", float),  # bound of the slope of the machine's force over voltage
-        ("effort", SERIES),  # the tractive-effort network over the line voltage [N], [V]
-        ("sine", SERIES),  # the bridge network over the locomotive's voltage [1], [V]
-        ("row_force_n", float, (MOST_VOLTAGES,)),  # of a table's rows, or by limits the first
-        ("row_slope_n_per_v", float, (MOST_VOLTAGES,)),
         ("cap_power_w", float),  # of the motors at the force cap
         ("cap_current_a", float),
         ("wheel_force_n", float),  # what the motors give at the voltage last tried
@@ -125,6 +121,10 @@ DEMAND = np.dtype(
         ("reactive_power_var", float),
         ("machine_force_n", float),  # of all motors at most, before clipping
         ("bridge_sine", float),  # β, before clipping
+        ("sine", SERIES),  # the bridge network over the locomotive's voltage [1], [V]
+        ("effort", SERIES),  # the tractive-effort network over the line voltage [N], [V]
+        ("row_force_n", float, (MOST_VOLTAGES,)),  # of a table's rows, or by limits the first
+        ("row_slope_n_per_v", float, (MOST_VOLTAGES,)),
     ],
     align=True,
 )

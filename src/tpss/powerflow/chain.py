@@ -44,17 +44,17 @@ def sort_by_position(standing: Any, count: int, trains: Any) -> None:
     visits each of them once.
     """
     for k in range(1, count):
-        train = standing[k].train
-        at_m = trains[train].position_m
-        at = k
-        while at > 0:
-            other = standing[at - 1].train
-            other_m = trains[other].position_m
+        train = standing[at(k)].train
+        at_m = trains[at(train)].position_m
+        place = k
+        while place > 0:
+            other = standing[at(place - 1)].train
+            other_m = trains[at(other)].position_m
             if other_m < at_m or (other_m == at_m and other < train):
                 break
-            standing[at].train = other
-            at -= 1
-        standing[at].train = train
+            standing[at(place)].train = other
+            place -= 1
+        standing[at(place)].train = train
 
 
 @kernel
@@ -76,9 +76,9 @@ def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
         before_m = section.start_m
         flow.sections[at(s)].first = k
         while k < count and (
-            s == last or trains[flow.standing[at(k)].train].position_m < section.end_m
+            s == last or trains[at(flow.standing[at(k)].train)].position_m < section.end_m
         ):
-            at_m = trains[flow.standing[at(k)].train].position_m
+            at_m = trains[at(flow.standing[at(k)].train)].position_m
             flow.standing[at(k)].piece_m = max(SHORTEST_PIECE_M, at_m - before_m)
             short += at_m - before_m < SHORTEST_PIECE_M
             before_m = at_m

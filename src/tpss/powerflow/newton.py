@@ -154,7 +154,7 @@ def _turn_source_row(
     voltage, current = node.voltage_v, node.leaving_current_a
     t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
     for k in range(network.pattern.row_start[at(number)], network.pattern.row_start[at(number + 1)]):
-        block = flow.blocks[network.pattern.places[at(k)]]
+        block = flow.blocks[at(network.pattern.places[at(k)])]
         p, q = compose(t_p, t_q, block.p, block.q)
         block.p, block.q = -p, -q
     own.p += 1.0 - s1 * current.conjugate()
@@ -275,10 +275,11 @@ def _close_gaps(flow: Flow) -> None:
         total_m = section.closing_m
         for k in range(section.first, section.end):
             total_m += flow.standing[at(k)].piece_m
+        per_metre = scaled(section.gap_v, 1.0 / total_m)
         passed_m = 0.0
         for k in range(section.first, section.end):
             passed_m += flow.standing[at(k)].piece_m
-            flow.standing[at(k)].voltage_v -= section.gap_v * (passed_m / total_m)
+            flow.standing[at(k)].voltage_v -= scaled(per_metre, passed_m)
 
 
 @inlined

@@ -7,7 +7,7 @@
    exists on that branch, and the share of the load that could be carried is the result.
 """
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Flow, Loads, Network
@@ -23,10 +23,10 @@ SHORTEST_STEP = 1e-4
 def predict(flow: Flow) -> None:
     """Start from the straight line through the solutions of the last two time steps."""
     for n in range(flow.nodes.size):
-        node = flow.nodes[n]
+        node = flow.nodes[at(n)]
         node.voltage_v = 2.0 * node.last_v - node.before_v
     for s in range(flow.sections.size):
-        section = flow.sections[s]
+        section = flow.sections[at(s)]
         section.current_a = 2.0 * section.last_a - section.before_a
 
 
@@ -34,11 +34,11 @@ def predict(flow: Flow) -> None:
 def remember(first: int, flow: Flow) -> None:
     """Keep the solution of a time step for the prediction of the next; `first`: there is no other."""
     for n in range(flow.nodes.size):
-        node = flow.nodes[n]
+        node = flow.nodes[at(n)]
         node.before_v = node.voltage_v if first else node.last_v
         node.last_v = node.voltage_v
     for s in range(flow.sections.size):
-        section = flow.sections[s]
+        section = flow.sections[at(s)]
         section.before_a = section.current_a if first else section.last_a
         section.last_a = section.current_a
 
@@ -47,25 +47,25 @@ def remember(first: int, flow: Flow) -> None:
 def start_flat(flow: Flow) -> None:
     """Set the state without load: base voltage everywhere, no current."""
     for n in range(flow.nodes.size):
-        flow.nodes[n].voltage_v = BASE_VOLTAGE_V
+        flow.nodes[at(n)].voltage_v = BASE_VOLTAGE_V
     for s in range(flow.sections.size):
-        flow.sections[s].current_a = 0.0
+        flow.sections[at(s)].current_a = 0.0
 
 
 @kernel
 def _keep(flow: Flow) -> None:
     for n in range(flow.nodes.size):
-        flow.nodes[n].good_v = flow.nodes[n].voltage_v
+        flow.nodes[at(n)].good_v = flow.nodes[at(n)].voltage_v
     for s in range(flow.sections.size):
-        flow.sections[s].good_a = flow.sections[s].current_a
+        flow.sections[at(s)].good_a = flow.sections[at(s)].current_a
 
 
 @kernel
 def _restore(flow: Flow) -> None:
     for n in range(flow.nodes.size):
-        flow.nodes[n].voltage_v = flow.nodes[n].good_v
+        flow.nodes[at(n)].voltage_v = flow.nodes[at(n)].good_v
     for s in range(flow.sections.size):
-        flow.sections[s].current_a = flow.sections[s].good_a
+        flow.sections[at(s)].current_a = flow.sections[at(s)].good_a
 
 
 @kernel

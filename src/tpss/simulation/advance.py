@@ -1,6 +1,6 @@
 """The clock: the order of things in a step, and when a run ends."""
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.chain import place_trains, sort_by_position
 from tpss.powerflow.solve import predict, remember
 from tpss.simulation.converter_control import control_converters, note_loading
@@ -24,8 +24,8 @@ from tpss.simulation.traffic import depart, list_trains, move, remove_arrived
 def find_stalled(count: int, state: State) -> bool:
     """Whether a train would roll back, or stands with no force to start; note the first one."""
     for k in range(count):
-        i = state.flow.standing[k].train
-        train = state.trains[i]
+        i = state.flow.standing[at(k)].train
+        train = state.trains[at(i)]
         if train.phase == DWELLING:
             continue
         powerless = train.speed_m_s <= 0.0 and train.force_n < train.wanted_force_n
@@ -53,7 +53,7 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     short = place_trains(count, state.trains, model.network, state.flow)
     recording.counters[Counter.SHORT_PIECE] += short
     for k in range(count):
-        prepare(state.trains[state.flow.standing[k].train], state.machine[0], model)
+        prepare(state.trains[at(state.flow.standing[at(k)].train)], state.machine[0], model)
     return count
 
 
@@ -83,7 +83,7 @@ def end_step(
     int
         With `Status.COLLAPSED` and `Status.STALLED` the step is not carried out.
     """
-    recording.passes[step] = passes
+    recording.passes[at(step)] = passes
     if share < 1.0:
         state.clock[0].carried_share = share
         return Status.COLLAPSED
@@ -96,13 +96,13 @@ def end_step(
         record_network(step, model, state, recording)
         note_loading(model, state)
     for k in range(count):
-        train = state.trains[state.flow.standing[k].train]
+        train = state.trains[at(state.flow.standing[at(k)].train)]
         if is_on_course(train.course):
             move_on_course(step, train, model, state)
         else:
             move(step, train, model, state)
     studied = model.options.studied_train
-    if studied >= 0 and state.trains[studied].arrival_step == step + 1:
+    if studied >= 0 and state.trains[at(studied)].arrival_step == step + 1:
         return Status.FINISHED
     return Status.RUNNING
 

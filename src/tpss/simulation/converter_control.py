@@ -1,8 +1,9 @@
 """Converter stations switch converters on and off by their loading, every three minutes."""
 
 import math
+from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, fused, inlined, kernel
 from tpss.powerflow.pairs import magnitude
 from tpss.simulation.state import CONTROL_PERIOD_S, Model, State
 
@@ -63,7 +64,7 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
     if time_s < clock.next_action_s - TIME_ROUNDING_S:
         return
     for s in range(model.network.sources.size):
-        source, found = model.network.sources[s], state.flow.sources[s]
+        source, found = model.network.sources[at(s)], state.flow.sources[at(s)]
         if source.controlled:
             mean = found.loading_sum / clock.loading_steps
             found.converters = converters_needed(mean, found.converters, source.installed)
@@ -73,10 +74,9 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
     clock.next_action_s = (periods + 1.0) * CONTROL_PERIOD_S
 
 
-@kernel
-def station_power(s: int, model: Model, state: State) -> complex:
-    """Power P + jQ that a station feeds into the railway. [VA]"""
-    node = state.flow.nodes[model.network.sources[s].node]
+@fused
+def station_power(node: Any) -> complex:
+    """Power P + jQ that the station at a node feeds into the railway. [VA]"""
     return node.voltage_v * node.leaving_current_a.conjugate()
 
 
@@ -84,7 +84,7 @@ def station_power(s: int, model: Model, state: State) -> complex:
 def note_loading(model: Model, state: State) -> None:
     """Add this step's loading of each station to the mean that decides the next action."""
     for s in range(model.network.sources.size):
-        source, found = model.network.sources[s], state.flow.sources[s]
-        power = station_power(s, model, state)
+        source, found = model.network.sources[at(s)], state.flow.sources[at(s)]
+        power = station_power(state.flow.nodes[at(source.node)])
         found.loading_sum += station_loading(power, found.converters, source.rating_va)
     state.clock[0].loading_steps += 1

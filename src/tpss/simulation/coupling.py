@@ -7,7 +7,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 
 from typing import Any
 
-from tpss.kernel import inlined
+from tpss.kernel import at, inlined
 from tpss.physics.locomotive import acceleration, electrical_demand
 from tpss.powerflow.network import Loads
 from tpss.powerflow.pairs import magnitude
@@ -54,7 +54,7 @@ def settle_all(count: int, model: Model, state: State) -> bool:
     """
     stands = True
     for k in range(count):
-        train = state.trains[state.flow.standing[k].train]
+        train = state.trains[at(state.flow.standing[at(k)].train)]
         settle(train, model)
         if must_plan(train, model):
             begin_plan(train, model)
@@ -69,15 +69,15 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     fixed_v, flow = model.options.fixed_voltage_v, state.flow
     if fixed_v > 0.0:
         for k in range(count):
-            train = state.trains[flow.standing[k].train]
+            train = state.trains[at(flow.standing[at(k)].train)]
             train.voltage_v = fixed_v
-            flow.standing[k].voltage_v = fixed_v
-            electrical_demand(fixed_v, model.types[train.train_type], train, state.machine[0])
+            flow.standing[at(k)].voltage_v = fixed_v
+            electrical_demand(fixed_v, model.types[at(train.train_type)], train, state.machine[0])
         return 1.0, 0
     loads = Loads(state.trains, model.types, state.machine)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
-        state.trains[flow.standing[k].train].voltage_v = magnitude(flow.standing[k].voltage_v)
+        state.trains[at(flow.standing[at(k)].train)].voltage_v = magnitude(flow.standing[at(k)].voltage_v)
     return share, passes
 
 
@@ -92,7 +92,7 @@ def settle(train: Any, model: Model) -> None:
     ----------
     [Boullanger2009]_, eq. (2.7), (2.11), (F.19), (F.20).
     """
-    kind = model.types[train.train_type]
+    kind = model.types[at(train.train_type)]
     # Of the load flow's last pass, as the powers: near a knee the last roundings of the voltage count.
     force, wanted = min(train.wheel_force_n, train.adhesion_n), train.wanted_force_n
     train.force_n = force

@@ -7,7 +7,7 @@ from tpss.driving.braking import highest_speed_that_stops, plan_fraction, plan_l
 from tpss.driving.speed_limits import HOLD_FIRST, OUT_OF_REACH, UNIFORM, heed_limits_ahead
 from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
 from tpss.driving.within_step import highest_speed_that_stops_within
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.gradient import mean_gradient, stair_ahead, step_index
 from tpss.physics.locomotive import (
@@ -183,7 +183,7 @@ def aim(train: Any, sight: Sight) -> None:
     ----------
     [Boullanger2009]_, eq. (2.6), (F.5), (F.20).
     """
-    kind, options = sight.types[train.train_type], sight.options
+    kind, options = sight.types[at(train.train_type)], sight.options
     train.force_cap_n = 0.0
     train.target_speed_m_s = 0.0
     train.wanted_force_n = 0.0
@@ -201,7 +201,7 @@ def aim(train: Any, sight: Sight) -> None:
 def decide(count: int, standing: Any, trains: Any, sight: Sight) -> None:
     """Let those drivers decide who have not done so in this step, of the first `count` trains."""
     for k in range(count):
-        train = trains[standing[k].train]
+        train = trains[at(standing[at(k)].train)]
         if not train.decided:
             aim(train, sight)
             train.decided = True
@@ -215,7 +215,7 @@ def prepare(train: Any, machine: Machine, model: Model) -> None:
     ----------
     [Boullanger2009]_, appendix F.1.
     """
-    kind, options = model.types[train.train_type], model.options
+    kind, options = model.types[at(train.train_type)], model.options
     train.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
     train.driven_share = train.moving_share = 1.0
     train.hold_s = 0.0

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.physics.curve import outside_curve
 from tpss.physics.locomotive import armature_demand, machine_force
 from tpss.physics.machine import effort_extrapolates
@@ -53,14 +53,14 @@ def note_journey(train: Any, row: Any) -> None:
 def record_instant(step: int, trains: Any, recording: Recording) -> None:
     """Position and speed of every train on the line, those that have just arrived included."""
     for i in range(trains.size):
-        train = trains[i]
+        train = trains[at(i)]
         if is_on_line(train.phase) or train.phase == ARRIVED:
-            recording.trains[step, i].position = train.position_m
-            recording.trains[step, i].speed = train.speed_m_s
+            recording.trains[at(step), at(i)].position = train.position_m
+            recording.trains[at(step), at(i)].speed = train.speed_m_s
             if train.phase == ARRIVED:
-                recording.train_state[step, i] = STATE_ARRIVED
+                recording.train_state[at(step), at(i)] = STATE_ARRIVED
             if recording.journeys.size > 0:
-                note_journey(train, recording.journeys[step, i])
+                note_journey(train, recording.journeys[at(step), at(i)])
 
 
 @inlined
@@ -76,21 +76,21 @@ def state_code(train: Any) -> int:
 @inlined
 def record_train(step: int, k: int, model: Model, state: State, recording: Recording) -> None:
     """Forces, voltage and powers of the `k`-th train along the line."""
-    i = state.flow.standing[k].train
-    train, row = state.trains[i], recording.trains[step, i]
-    kind = model.types[train.train_type]
+    i = state.flow.standing[at(k)].train
+    train, row = state.trains[at(i)], recording.trains[at(step), at(i)]
+    kind = model.types[at(train.train_type)]
     current, _ = armature_demand(train.wheel_force_n, 0.0, kind, train)
     if kind.voltage_model != NEW:
         current /= line_voltage_factor(train.voltage_v, kind.voltage_model)
-    recording.train_state[step, i] = state_code(train)
+    recording.train_state[at(step), at(i)] = state_code(train)
     row.acceleration = (train.next_speed_m_s - train.speed_m_s) / model.options.step_s
     row.tractive_force = train.force_n
     row.braking_force = train.braking_force_n
     row.running_resistance = train.running_resistance_n * train.moving_share
     row.gradient_force = train.gradient_force_n * train.moving_share
     row.motor_current = motor_current(current, kind.current_model)
-    row.pantograph_real = state.flow.standing[k].voltage_v.real
-    row.pantograph_imag = state.flow.standing[k].voltage_v.imag
+    row.pantograph_real = state.flow.standing[at(k)].voltage_v.real
+    row.pantograph_imag = state.flow.standing[at(k)].voltage_v.imag
     row.active_power = train.active_power_w
     row.reactive_power = train.reactive_power_var
     row.holding_time = train.hold_s
@@ -142,42 +142,43 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
     network, flow = model.network, state.flow
     for n in range(flow.nodes.size):
-        recording.nodes[step, n].node_real = flow.nodes[n].voltage_v.real
-        recording.nodes[step, n].node_imag = flow.nodes[n].voltage_v.imag
+        recording.nodes[at(step), at(n)].node_real = flow.nodes[at(n)].voltage_v.real
+        recording.nodes[at(step), at(n)].node_imag = flow.nodes[at(n)].voltage_v.imag
     for s in range(network.sources.size):
-        row, power = recording.stations[step, s], station_power(s, model, state)
+        row = recording.stations[at(step), at(s)]
+        power = station_power(flow.nodes[at(network.sources[at(s)].node)])
         row.station_active_power = power.real
         row.station_reactive_power = power.imag
-        row.active_converters = flow.sources[s].converters
-        rating_va = network.sources[s].rating_va
-        row.converter_loading = station_loading(power, flow.sources[s].converters, rating_va)
+        row.active_converters = flow.sources[at(s)].converters
+        rating_va = network.sources[at(s)].rating_va
+        row.converter_loading = station_loading(power, flow.sources[at(s)].converters, rating_va)
     losses = 0.0
     for b in range(network.branches.size):
-        branch = network.branches[b]
-        drop = flow.nodes[branch.start_node].voltage_v - flow.nodes[branch.end_node].voltage_v
+        branch = network.branches[at(b)]
+        drop = flow.nodes[at(branch.start_node)].voltage_v - flow.nodes[at(branch.end_node)].voltage_v
         square = squared(drop) / squared(branch.impedance_ohm)
-        recording.branch_current[step, b] = math.sqrt(square)
+        recording.branch_current[at(step), at(b)] = math.sqrt(square)
         losses += square * branch.impedance_ohm.real
     lumped = network.branches.size
     for s in range(network.sections.size):
-        found = flow.sections[s]
-        recording.branch_current[step, lumped + 2 * s] = magnitude(found.current_a)
-        recording.branch_current[step, lumped + 2 * s + 1] = magnitude(found.end_current_a)
+        found = flow.sections[at(s)]
+        recording.branch_current[at(step), at(lumped + 2 * s)] = magnitude(found.current_a)
+        recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(found.end_current_a)
         losses += section_losses(s, model, state)
-    recording.network_losses[step] = losses
+    recording.network_losses[at(step)] = losses
 
 
 @inlined
 def section_losses(s: int, model: Model, state: State) -> float:
     """Losses of a contact-line section, I²R piece by piece. [W]"""
-    section, found, flow = model.network.sections[s], state.flow.sections[s], state.flow
-    voltage = flow.nodes[section.start_node].voltage_v
+    section, found, flow = model.network.sections[at(s)], state.flow.sections[at(s)], state.flow
+    voltage = flow.nodes[at(section.start_node)].voltage_v
     losses = 0.0
     for k in range(found.first, found.end + 1):
         if k < found.end:
-            after, length_m = flow.standing[k].voltage_v, flow.standing[k].piece_m
+            after, length_m = flow.standing[at(k)].voltage_v, flow.standing[at(k)].piece_m
         else:
-            after, length_m = flow.nodes[section.end_node].voltage_v, found.closing_m
+            after, length_m = flow.nodes[at(section.end_node)].voltage_v, found.closing_m
         z = section.impedance_ohm_per_m
         losses += squared(voltage - after) / squared(z) * z.real / length_m
         voltage = after

@@ -81,7 +81,6 @@ TRAIN = np.dtype(
         ("phase", np.int64),
         ("position_m", float),
         ("stair", np.int64),  # of the gradients, under it
-        *((name, DEMAND[name]) for name in DEMAND.names or ()),
         ("next_stop", np.int64),
         ("dwell_left", np.int64),
         ("plan_step", np.int64),
@@ -103,6 +102,7 @@ TRAIN = np.dtype(
         ("force_n", float),  # what came of it: passed on by the rails
         ("braking_force_n", float),
         ("next_speed_m_s", float),
+        *((name, DEMAND[name]) for name in DEMAND.names or ()),
     ],
     align=True,
 )

@@ -5,7 +5,7 @@ from typing import Any
 from tpss.driving.braking import braking_plan, plan_length, shortest_stop
 from tpss.driving.speed_limits import SLACK_M
 from tpss.driving.within_step import braking_distance, way_of_part
-from tpss.kernel import fused, inlined, kernel
+from tpss.kernel import at, fused, inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.simulation.state import (
     ARRIVED,
@@ -31,16 +31,16 @@ from tpss.simulation.state import (
 def depart(step: int, trains: Any) -> None:
     """Put trains on the line whose departure has come."""
     for i in range(trains.size):
-        if trains[i].phase == PENDING and trains[i].departure_step <= step:
-            trains[i].phase = DRIVING
+        if trains[at(i)].phase == PENDING and trains[at(i)].departure_step <= step:
+            trains[at(i)].phase = DRIVING
 
 
 @inlined
 def remove_arrived(trains: Any) -> None:
     """Take trains off the line that stand at their destination."""
     for i in range(trains.size):
-        if trains[i].phase == ARRIVED:
-            trains[i].phase = GONE
+        if trains[at(i)].phase == ARRIVED:
+            trains[at(i)].phase = GONE
 
 
 @kernel
@@ -56,10 +56,10 @@ def list_trains(trains: Any, flow: Flow) -> int:
     """
     count = 0
     for k in range(trains.size):
-        i = flow.standing[k].train
-        if is_on_line(trains[i].phase):
-            flow.standing[k].train = flow.standing[count].train
-            flow.standing[count].train = i
+        i = flow.standing[at(k)].train
+        if is_on_line(trains[at(i)].phase):
+            flow.standing[at(k)].train = flow.standing[at(count)].train
+            flow.standing[at(count)].train = i
             count += 1
     return count
 
@@ -67,7 +67,7 @@ def list_trains(trains: Any, flow: Flow) -> int:
 @fused
 def distance_to_stop(train: Any, stops: Any) -> float:
     """Way of a train to its next stop. [m]"""
-    return stops[train.route, train.next_stop].position_m - train.position_m
+    return stops[at(train.route), at(train.next_stop)].position_m - train.position_m
 
 
 @inlined
@@ -107,7 +107,7 @@ def must_plan(train: Any, model: Model) -> bool:
     way_m = h * (train.speed_m_s + train.next_speed_m_s) / 2.0
     if train.course == TO_LIMIT:
         way_m = way_of_part(train.speed_m_s, speed, train.hold_s, train.brake_s)
-    retardation = model.types[train.train_type].highest_retardation_m_s2
+    retardation = model.types[at(train.train_type)].highest_retardation_m_s2
     needed_m = least_room(speed, retardation, model.options)
     return distance_to_stop(train, model.stops) - way_m < needed_m
 
@@ -128,7 +128,7 @@ def begin_plan(train: Any, model: Model) -> None:
     hold, first, full, last = braking_plan(
         train.speed_m_s,
         distance_to_stop(train, model.stops),
-        model.types[train.train_type].highest_retardation_m_s2,
+        model.types[at(train.train_type)].highest_retardation_m_s2,
         model.options.step_s,
     )
     train.phase = PLANNED
@@ -169,7 +169,7 @@ def move(step: int, train: Any, model: Model, state: State) -> None:
 @kernel
 def stand_at_stop(step: int, train: Any, model: Model) -> None:
     """A train has come to its stop: it has arrived, dwells, or goes on at once."""
-    stop = model.stops[train.route, train.next_stop]
+    stop = model.stops[at(train.route), at(train.next_stop)]
     train.position_m = stop.position_m
     train.speed_m_s = 0.0
     if stop.destination:
