@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import at, kernel, records
+from tpss.kernel import at, inlined, records
 from tpss.powerflow.pairs import apply, compose, determinant, inverse
 
 Indices = npt.NDArray[np.int64]
@@ -121,7 +121,7 @@ def _blocks_by_row(n_nodes: int, place: dict[tuple[int, int], int]) -> list[list
     return rows
 
 
-@kernel
+@inlined
 def solve_blocks(pattern: Pattern, blocks: Any, nodes: Any) -> float:
     """Solve the system in place and return the sign of its determinant (0 or NaN: singular).
 

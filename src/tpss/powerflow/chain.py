@@ -22,7 +22,7 @@ References
 import math
 from typing import Any
 
-from tpss.kernel import at, inlined, kernel, switch
+from tpss.kernel import at, inlined, switch
 from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import electrical_demand
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
@@ -57,7 +57,7 @@ def sort_by_position(standing: Any, count: int, trains: Any) -> None:
         standing[at(place)].train = train
 
 
-@kernel
+@inlined
 def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
     """Assign sorted trains to sections, measure the pieces between them, count those too short.
 

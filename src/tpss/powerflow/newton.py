@@ -312,7 +312,7 @@ def sources_are_plausible(network: Network, flow: Flow) -> bool:
     return True
 
 
-@kernel
+@inlined
 def _conclude(sign: float, network: Network, flow: Flow) -> int:
     """Status of a state without mismatch."""
     _close_gaps(flow)
@@ -336,16 +336,14 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     passes = 1
     while passes < MOST_PASSES and math.isfinite(merit):
         sign = chains * _find_direction(network, flow)
-        if mismatch < network.tolerance and start == WARM:
-            return _conclude(sign, network, flow), passes
         _mark_base(flow)
-        if mismatch < CLOSE and start == WARM:
+        if network.tolerance <= mismatch and mismatch < CLOSE and start == WARM:
             # One step from here is likely the solution: look, without derivatives, before going on.
             _take_step(1.0, flow)
             mismatch, _, _ = evaluate(scale, CHECK, network, flow, loads)
             passes += 1
-            if mismatch < network.tolerance:
-                return _conclude(sign, network, flow), passes
+        if mismatch < network.tolerance and start == WARM:
+            return _conclude(sign, network, flow), passes
         size = 1.0
         for _ in range(MOST_HALVINGS):
             _take_step(size, flow)

@@ -10,7 +10,7 @@ import numba
 from tpss.driving.braking import shortest_stop
 from tpss.kernel import switch
 from tpss.physics.locomotive import take_speed
-from tpss.powerflow.chain import WARM, place_trains
+from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import newton
 from tpss.powerflow.solve import continue_from_zero
@@ -48,7 +48,6 @@ def driving(model: Model) -> list[Call]:
         (move_on_course, (step, train, model, state)),
         (stand_at_stop, (step, train, model)),
         (list_trains, (trains, flow)),
-        (place_trains, (step, trains, model.network, flow)),
         (record_instant, (step, trains, recording)),
     ]
 

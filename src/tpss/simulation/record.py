@@ -156,7 +156,7 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     for b in range(network.branches.size):
         branch = network.branches[at(b)]
         drop = flow.nodes[at(branch.start_node)].voltage_v - flow.nodes[at(branch.end_node)].voltage_v
-        square = squared(drop) / squared(branch.impedance_ohm)
+        square = squared(drop) * squared(branch.admittance_s)
         recording.branch_current[at(step), at(b)] = math.sqrt(square)
         losses += square * branch.impedance_ohm.real
     lumped = network.branches.size
@@ -172,14 +172,13 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
 def section_losses(s: int, model: Model, state: State) -> float:
     """Losses of a contact-line section, I²R piece by piece. [W]"""
     section, found, flow = model.network.sections[at(s)], state.flow.sections[at(s)], state.flow
-    voltage = flow.nodes[at(section.start_node)].voltage_v
-    losses = 0.0
+    voltage, z = flow.nodes[at(section.start_node)].voltage_v, section.impedance_ohm_per_m
+    sum_v2_per_m = 0.0
     for k in range(found.first, found.end + 1):
         if k < found.end:
             after, length_m = flow.standing[at(k)].voltage_v, flow.standing[at(k)].piece_m
         else:
             after, length_m = flow.nodes[at(section.end_node)].voltage_v, found.closing_m
-        z = section.impedance_ohm_per_m
-        losses += squared(voltage - after) / squared(z) * z.real / length_m
+        sum_v2_per_m += squared(voltage - after) / length_m
         voltage = after
-    return losses
+    return sum_v2_per_m * z.real / squared(z)
