@@ -181,7 +181,7 @@ def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
     return squared(node.voltage_v - law) * PER_SQUARE_VOLT
 
 
-@kernel
+@inlined
 def evaluate(
     scale: float, start: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[float, float, float]:
@@ -253,7 +253,7 @@ def _mark_base(flow: Flow) -> None:
         flow.sections[at(s)].base_a = flow.sections[at(s)].current_a
 
 
-@kernel
+@inlined
 def _take_step(size: float, flow: Flow) -> None:
     for n in range(flow.nodes.size):
         node = flow.nodes[at(n)]
@@ -332,33 +332,31 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     start : int
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
     """
-    mismatch, merit, chains = evaluate(scale, start, network, flow, loads)
-    passes = 1
-    while passes < MOST_PASSES and math.isfinite(merit):
-        sign = chains * _find_direction(network, flow)
-        _mark_base(flow)
-        if network.tolerance <= mismatch and mismatch < CLOSE and start == WARM:
-            # One step from here is likely the solution: look, without derivatives, before going on.
-            _take_step(1.0, flow)
-            mismatch, _, _ = evaluate(scale, CHECK, network, flow, loads)
-            passes += 1
-        if mismatch < network.tolerance and start == WARM:
-            return _conclude(sign, network, flow), passes
-        size = 1.0
-        for _ in range(MOST_HALVINGS):
-            _take_step(size, flow)
-            mismatch, trial, chains = evaluate(scale, WARM, network, flow, loads)
-            passes += 1
-            # After a flat pass the merits belong to different equations.
-            if (
-                trial < merit
-                or mismatch < network.tolerance
-                or (start == FLAT and math.isfinite(trial))
-            ):
-                break
-            size /= 2.0
+    kind, passes, after_flat = start, 0, False
+    merit, sign, size, trials = math.inf, 1.0, 1.0, 1
+    while passes < MOST_PASSES:
+        mismatch, trial, chains = evaluate(scale, kind, network, flow, loads)
+        passes += 1
+        solved = mismatch < network.tolerance and kind != FLAT
+        if kind == CHECK:
+            if not solved:
+                kind = WARM  # the derivatives at the same place
+                continue
+        # After a flat pass the merits belong to different equations.
+        elif trial < merit or solved or (after_flat and math.isfinite(trial)):
+            sign = chains * _find_direction(network, flow)
+        elif merit == math.inf or trials == MOST_HALVINGS:
+            break
         else:
-            return NOT_CONVERGED, passes
-        merit = trial
-        start = WARM
+            size, trials = size / 2.0, trials + 1
+            _take_step(size, flow)
+            continue
+        if solved:
+            return _conclude(sign, network, flow), passes
+        # One step from close by is likely the solution: look, without derivatives, before going on.
+        after_flat, merit = kind == FLAT, trial
+        kind = CHECK if mismatch < CLOSE and kind == WARM else WARM
+        size, trials = 1.0, 1
+        _mark_base(flow)
+        _take_step(size, flow)
     return NOT_CONVERGED, passes
