@@ -50,10 +50,6 @@ BRANCH = np.dtype(
         ("end_node", np.int64),
         ("impedance_ohm", complex),
         ("admittance_s", complex),
-        ("block_aa", np.int64),
-        ("block_ab", np.int64),
-        ("block_ba", np.int64),
-        ("block_bb", np.int64),
     ],
     align=True,
 )
@@ -140,6 +136,8 @@ class Network(NamedTuple):
     source_of_node: Indices
     """Index of the source at each node, or -1."""
     pattern: Pattern
+    admittance_s: Complexes
+    """What the branches put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
 
@@ -219,27 +217,31 @@ def assemble(
     def blocks(a: int, b: int) -> tuple[int, int, int, int]:
         return place[a, a], place[a, b], place[b, a], place[b, b]
 
+    admittance_s = np.zeros(len(place), dtype=complex)
+    for a, b, z in branches:
+        admittance_s[list(blocks(a, b))] += np.array([1.0, -1.0, -1.0, 1.0]) / z
+
     return Network(
         sections=records(
             [(*each, *blocks(*each[:2]), gap_weight(*each[2:5])) for each in sections], SECTION
         ),
-        branches=records([(a, b, z, 1.0 / z, *blocks(a, b)) for a, b, z in branches], BRANCH),
+        branches=records([(a, b, z, 1.0 / z) for a, b, z in branches], BRANCH),
         sources=sources,
         source_of_node=source_of_node,
         pattern=pattern,
+        admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
     )
 
 
 def new_flow(network: Network, n_trains: int) -> Flow:
     """State of a load flow with room for `n_trains`, all converters running."""
-    blocks = network.source_of_node.size + 2 * network.pattern.neighbours.size
     flow = Flow(
         nodes=blank_records(network.source_of_node.size, NODE_FLOW),
         sections=blank_records(network.sections.size, SECTION_FLOW),
         standing=blank_records(n_trains, STANDING),
         sources=blank_records(network.sources.size, SOURCE_FLOW),
-        blocks=blank_records(blocks, BLOCK),
+        blocks=blank_records(network.admittance_s.size, BLOCK),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
     flow.sources["converters"] = network.sources["installed"]

@@ -133,16 +133,10 @@ def _leave_by_branches(network: Network, flow: Flow) -> None:
 def _stamp_branches(network: Network, flow: Flow) -> None:
     """Start the linear system with the lumped branches."""
     for k in range(flow.blocks.size):
-        flow.blocks[at(k)].p = 0.0
+        flow.blocks[at(k)].p = network.admittance_s[at(k)]
         flow.blocks[at(k)].q = 0.0
     for n in range(flow.nodes.size):
         flow.nodes[at(n)].right_side = 0.0
-    for b in range(network.branches.size):
-        branch = network.branches[at(b)]
-        flow.blocks[at(branch.block_aa)].p += branch.admittance_s
-        flow.blocks[at(branch.block_ab)].p -= branch.admittance_s
-        flow.blocks[at(branch.block_ba)].p -= branch.admittance_s
-        flow.blocks[at(branch.block_bb)].p += branch.admittance_s
 
 
 @inlined
