@@ -147,7 +147,8 @@ def _turn_source_row(
     node, own = flow.nodes[at(number)], flow.blocks[at(number)]
     voltage, current = node.voltage_v, node.leaving_current_a
     t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
-    for k in range(network.pattern.row_start[at(number)], network.pattern.row_start[at(number + 1)]):
+    begin, end = network.pattern.row_start[at(number)], network.pattern.row_start[at(number + 1)]
+    for k in range(begin, end):
         block = flow.blocks[at(network.pattern.places[at(k)])]
         p, q = compose(t_p, t_q, block.p, block.q)
         block.p, block.q = -p, -q

@@ -77,7 +77,8 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     loads = Loads(state.trains, model.types, state.machine)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
-        state.trains[at(flow.standing[at(k)].train)].voltage_v = magnitude(flow.standing[at(k)].voltage_v)
+        place = flow.standing[at(k)]
+        state.trains[at(place.train)].voltage_v = magnitude(place.voltage_v)
     return share, passes
 
 

@@ -155,7 +155,8 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
     losses = 0.0
     for b in range(network.branches.size):
         branch = network.branches[at(b)]
-        drop = flow.nodes[at(branch.start_node)].voltage_v - flow.nodes[at(branch.end_node)].voltage_v
+        start, end = flow.nodes[at(branch.start_node)], flow.nodes[at(branch.end_node)]
+        drop = start.voltage_v - end.voltage_v
         square = squared(drop) * squared(branch.admittance_s)
         recording.branch_current[at(step), at(b)] = math.sqrt(square)
         losses += square * branch.impedance_ohm.real
