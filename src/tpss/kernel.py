@@ -98,11 +98,19 @@ def fused(function: _Function) -> _Function:
     return _compiled(function, inline="never", forceinline=True)
 
 
-def _compiled(function: _Function, inline: str, forceinline: bool = False) -> _Function:
+def fused_like_numpy(function: _Function) -> _Function:
+    """`fused` with every product rounded before it enters a sum, as numpy does it: for what has to be
+    the same, to the last digit, as what arrays give.
+    """
+    return _compiled(function, inline="never", forceinline=True, fastmath=False)
+
+
+def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
+    options = {**_OPTIONS, **others}
     folder_before = _config.CACHE_DIR
     _config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = _njit(inline=inline, forceinline=forceinline, **_OPTIONS)(function)
+        compiled: _Function = _njit(inline=inline, **options)(function)
     finally:
         _config.CACHE_DIR = folder_before
     return compiled

@@ -84,8 +84,9 @@ def test_every_function_of_physics_cites_a_source():
     """Helpers that compute no equation of their own are named here."""
     helpers = {
         "step_index", "stair_ahead", "reaches", "series_at", "prepare_series", "outside", "exponential",
-        "effort_outside_training", "bridge_outside_training", "take_speed", "prove_free_band",
-        "train_armature_current", "train_bridge_sine", "note_cap", "motor_power_demand",
+        "effort_outside_training", "bridge_outside_training", "take_speed", "speed_is_taken",
+        "prove_free_band", "train_armature_current", "train_bridge_sine", "note_cap",
+        "motor_power_demand",
         "armature_demand", "outside_curve", "take_rows", "outside_table", "take_effort",
         "highest_force", "_described_force", "effort_extrapolates",
     }  # fmt: skip

@@ -11,10 +11,10 @@ composition (p₁p₂ + q₁q̄₂, p₁q₂ + q₁p̄₂), determinant |p|² - 
 
 import math
 
-from tpss.kernel import fused, inlined
+from tpss.kernel import fused, fused_like_numpy, inlined
 
 
-@fused
+@fused_like_numpy
 def squared(z: complex) -> float:
     """|z|²."""
     return z.real * z.real + z.imag * z.imag
