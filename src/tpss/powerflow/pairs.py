@@ -14,16 +14,16 @@ import math
 from tpss.kernel import fused, fused_like_numpy, inlined
 
 
-@fused_like_numpy
+@fused
 def squared(z: complex) -> float:
     """|z|²."""
     return z.real * z.real + z.imag * z.imag
 
 
-@fused
+@fused_like_numpy
 def magnitude(z: complex) -> float:
     """|z|, without the care for overflow that makes `abs` five times slower."""
-    return math.sqrt(squared(z))
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @inlined
