@@ -330,6 +330,8 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
     kind, passes, after_flat = start, 0, False
     merit, sign, size, trials = math.inf, 1.0, 1.0, 1
     while passes < MOST_PASSES:
+        if passes > 0:
+            _take_step(size, flow)
         mismatch, trial, chains = evaluate(scale, kind, network, flow, loads)
         passes += 1
         solved = mismatch < network.tolerance and kind != FLAT
@@ -344,7 +346,6 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
             break
         else:
             size, trials = size / 2.0, trials + 1
-            _take_step(size, flow)
             continue
         if solved:
             return _conclude(sign, network, flow), passes
@@ -353,5 +354,4 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
         kind = CHECK if mismatch < CLOSE and kind == WARM else WARM
         size, trials = 1.0, 1
         _mark_base(flow)
-        _take_step(size, flow)
     return NOT_CONVERGED, passes
