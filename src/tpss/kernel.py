@@ -8,7 +8,7 @@ therefore named after a digest of *all* kernel sources.
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,6 +17,7 @@ import numba
 import numpy as np
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
+_Int = TypeVar("_Int", bound=int)
 
 _config: Any = numba.config
 _njit: Any = numba.njit
@@ -32,7 +33,10 @@ _OPTIONS: dict[str, Any] = {
     "fastmath": {"contract"},
 }
 
-KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation")
+KERNEL_PACKAGES = (
+    "numerics", "physics", "vehicle", "sources", "powerflow", "driving", "step", "audit",
+)  # fmt: skip
+"""Packages that hold kernels."""
 
 
 def source_digest(package_folder: Path) -> str:
@@ -40,10 +44,11 @@ def source_digest(package_folder: Path) -> str:
     version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    digest.update((package_folder / Path(__file__).name).read_bytes())
+    for file in (Path(__file__).name, "record.py"):
+        digest.update((package_folder / file).read_bytes())
     for name in KERNEL_PACKAGES:
-        for file in sorted((package_folder / name).glob("*.py")):
-            digest.update(file.name.encode())
+        for file in sorted((package_folder / name).rglob("*.py")):
+            digest.update(file.relative_to(package_folder).as_posix().encode())
             digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -62,7 +67,7 @@ def cache_folder() -> Path:
     return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / name
 
 
-def kernels_are_compiled(last: str = "advance") -> bool:
+def kernels_are_compiled(last: str) -> bool:
     """Whether compiled kernels of exactly this source exist on disk (or compilation is off).
 
     Parameters
@@ -120,7 +125,7 @@ at = np.uint64
 """Index that is not negative: compiled code need not ask whether it counts from the end."""
 
 
-def switch(value: int) -> int:
+def switch(value: _Int) -> _Int:
     """Constant that selects what a kernel does when it runs.
 
     numba compiles a kernel once more for each plain number or boolean that it is called with.
@@ -132,29 +137,3 @@ def plain(function: _Function) -> _Function:
     """The plain Python of a kernel, for the few calls of a set-up, which no compilation would repay."""
     python: _Function = getattr(function, "py_func", function)
     return python
-
-
-def records(rows: Iterable[tuple[Any, ...]], dtype: np.dtype[Any]) -> Any:
-    """Array of records whose fields are attributes, in compiled and in plain Python.
-
-    To compiled code such an array is one argument, and one of its records a pointer, however many
-    fields they have.
-    """
-    return np.array(list(rows), dtype=record_type(dtype)).view(np.recarray)
-
-
-def blank_records(count: int, dtype: np.dtype[Any]) -> Any:
-    """Array of records, all zero."""
-    return np.zeros(count, dtype=record_type(dtype)).view(np.recarray)
-
-
-def copy_of_records(array: Any) -> Any:
-    """Copy of an array of records, as bytes; numpy would copy field by field."""
-    as_bytes = array.view(np.ndarray).view(f"V{array.dtype.itemsize}")
-    return as_bytes.copy().view(array.dtype).view(np.recarray)
-
-
-@cache
-def record_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """The type of `dtype`'s records, which numpy would find out anew for each array that it views."""
-    return np.dtype((np.record, dtype))

@@ -1,144 +1,243 @@
-r"""Braking to a stop that may begin and end in the midst of a step.
+"""Braking that may begin and end within a step, to a stop or to a lower limit.
 
-Derivation
-----------
-A train has speed v and distance d to its stop, b is its highest retardation.  Braking with b takes the
-time v/b and the way v²/2b.  So the latest that a train can do is to hold its speed for
-
-    τ = (d - v²/2b) / v,
-
-and then to brake with b: it stands at its stop after τ + v/b.  Of this course a step of length h sees
-the part τ' = min(τ, h) at constant speed and σ' = min(v/b, h - τ') with the brakes,
-
-    v' = v - b σ',      way = v τ' + (v + v') σ' / 2,
-
-and if it has come to an end, the train stands for what is left of the step.  A step later the course is
-found anew from v' and d - way; that it is the same one, d - way = v'²/2b once the brakes act, is what
-the formulas say.
-
-A train must begin if this step, driven as usual, would leave d' < v'²/2b.  Then τ < h, or the usual
-step would have accelerated it and it holds on for a while: in a uniform step that does not accelerate,
-way ≤ v h, and d ≥ way + v'²/2b follows from τ ≥ h.
-
-If the machine cannot hold the speed, or would have to drive against a hill that slows the train down
-by more than b, the train brakes evenly with β = v²/2d ≤ b, which leads to its stop too.  A train that
-even so slows down by more, by a ≥ β, stops short: d' = d - way and v'² = v² - 2 a way give
-
-    v'²/2d' ≤ v²/2d ≤ b,
-
-so its stop stays within reach, and it drives on from there.
-
-Mean forces
------------
-Within the step the resistances F_res are constant as ever.  The motors give F_res for τ', the brakes
-M b - F_res for σ'; over the step that is
-
-    F = F_res τ'/h,      F_brake = (M b - F_res) σ'/h,      F_res (τ' + σ')/h
-
-(a train that runs downhill, F_res < 0, holds its speed with the brakes).  Their sum is M (v' - v)/h:
-the momentum balance holds exactly.  Work is not mean force times way, as force and speed change
-together; motors draw power for the share τ'/h of the step, at the speed v.
+The interface is stated in `driving.manners`; the formulas are those of `driving.course`.
 """
 
-import math
-
-from tpss.driving.braking import ROUNDING
-from tpss.driving.speed_limits import SLACK_M
+from tpss.driving.course import (
+    braking_distance,
+    distance_of_part,
+    even_braking,
+    latest_braking,
+    mean_braking_force,
+    part_of_step,
+)
+from tpss.driving.data import DrivingData
+from tpss.driving.motion import (
+    drive_uniformly,
+    move_uniformly,
+    set_wish,
+    settle_uniformly,
+    update_gradient,
+)
+from tpss.driving.speed_limits import (
+    HOLD_FIRST,
+    OUT_OF_REACH,
+    UNIFORM,
+    respect_limits_ahead,
+    slows_down,
+)
+from tpss.driving.stops import distance_to_stop, stand_at_stop
 from tpss.kernel import inlined, kernel
+from tpss.physics.locomotive import acceleration
+from tpss.vehicle.train import Course, Phase, Train, brakes_within_step
+from tpss.vehicle.train_type import TrainType
+
+
+@inlined
+def allowed_speed(train: Train, kind: TrainType, target_m_s: float, data: DrivingData) -> float:
+    """Highest speed after this step, up to the target, that lower limits ahead allow. [m/s]
+
+    A train that has to slow down for one is put on its course.  One that cannot hold its speed aims at
+    the same speed uniformly, which takes less distance.
+    """
+    limits, v, decision = data.limits, train.motion.speed_m_s, train.decision
+    holds = train.motion.phase == Phase.DRIVING and decision.course != Course.LIMIT_FIRST
+    slowing = HOLD_FIRST if holds else UNIFORM
+    allowed = respect_limits_ahead(
+        train.motion.position_m, v, target_m_s, limits.from_m, limits.value,
+        kind.highest_retardation_m_s2, data.options.step_s, slowing,
+    )  # fmt: skip
+    if allowed == OUT_OF_REACH:
+        return respect_limits_ahead(
+            train.motion.position_m, v, target_m_s, limits.from_m, limits.value,
+            kind.highest_retardation_m_s2, data.options.step_s, UNIFORM,
+        )  # fmt: skip
+    if holds and decision.course == Course.UNIFORM and allowed < min(v, target_m_s):
+        decision.course = Course.TO_LIMIT
+    return allowed
 
 
 @kernel
-def braking_distance(speed_m_s: float, retardation_m_s2: float) -> float:
-    """Way in which a train stops with its highest retardation, v²/2b. [m]"""
-    return speed_m_s**2 / (2.0 * retardation_m_s2)
+def _follow(
+    hold_s: float, brake_s: float, train: Train, kind: TrainType, data: DrivingData
+) -> None:
+    """Take this step's part of a course."""
+    decision, v, h = train.decision, train.motion.speed_m_s, data.options.step_s
+    part = part_of_step(v, hold_s, brake_s, h)
+    decision.hold_s, decision.brake_s, decision.target_speed_m_s = part
+    decision.moving_share = (decision.hold_s + decision.brake_s) / h
+    distance_m = distance_of_part(
+        v, decision.target_speed_m_s, decision.hold_s, decision.brake_s
+    )
+    update_gradient(train, kind, distance_m, data)
 
 
 @kernel
-def even_braking(speed_m_s: float, distance_m: float, retardation_m_s2: float) -> float:
-    """Time of braking that begins at once and is even down to the stop, 2 d/v. [s]
+def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
+    """Set the course of a train that brakes to its stop, and the force that it takes.
 
-    Over less than a nanometre, where distances are roundings, the brakes take what they need.
+    Return whether the course holds.  If not, a lower limit before the stop asks for less speed: it goes
+    first, and the step is driven as usual.  Where there is such a limit, the train brakes evenly, as
+    limits are met in uniform steps.
     """
-    if distance_m <= SLACK_M:
-        return speed_m_s / retardation_m_s2
-    return 2.0 * distance_m / speed_m_s
+    h, retardation = data.options.step_s, kind.highest_retardation_m_s2
+    v, distance_m = train.motion.speed_m_s, distance_to_stop(train, data.stops)
+    limits, position_m, decision = data.limits, train.motion.position_m, train.decision
+    limited = slows_down(v, position_m, position_m + distance_m, limits.from_m, limits.value)
+    if decision.course != Course.EVEN and not limited:
+        decision.course = Course.LATEST
+        hold_s, brake_s = latest_braking(v, distance_m, retardation)
+        _follow(hold_s, brake_s, train, kind, data)
+        if train.demand.resistance_n > kind.inertia_kg * retardation:
+            decision.course = Course.EVEN  # the machine would have to drive while the train brakes
+    else:
+        decision.course = Course.EVEN
+    driven_s, wanted = decision.hold_s, train.demand.resistance_n
+    if decision.course == Course.EVEN:
+        _follow(0.0, even_braking(v, distance_m, retardation), train, kind, data)
+        target = decision.target_speed_m_s
+        if limited and target > respect_limits_ahead(
+            position_m, v, target, limits.from_m, limits.value, retardation, h, UNIFORM
+        ):
+            train.motion.phase = Phase.DRIVING
+            decision.course = Course.LIMIT_FIRST
+            drive_uniformly(train, kind, data)
+            return False
+        driven_s = decision.brake_s
+        wanted = train.demand.resistance_n - kind.inertia_kg * (v - target) / driven_s
+    elif driven_s == 0.0:
+        wanted = 0.0
+    _set_wish_for(driven_s, wanted, train, data)
+    return True
 
 
 @inlined
-def latest_braking(
-    speed_m_s: float, distance_m: float, retardation_m_s2: float
-) -> tuple[float, float]:
-    """Time at the present speed, and of braking after it, that end at the stop. [s]
+def aim_to_limit(train: Train, kind: TrainType, target_m_s: float, data: DrivingData) -> bool:
+    """Set the course of a train that brakes to a lower limit, and the force that it takes.
 
-    Parameters
-    ----------
-    speed_m_s : float
-        Speed now, positive. [m/s]
-    distance_m : float
-        Distance to the stop, at least `braking_distance`; the brakes make up for a shortage by
-        rounding. [m]
-    retardation_m_s2 : float
-        Highest retardation, positive. [m/s²]
+    It holds its speed, then brakes with its highest retardation to the end of the step.  Return whether
+    it may: not if the brakes take all of the step, or the machine would have to drive while the train
+    brakes.
     """
-    needed_m = braking_distance(speed_m_s, retardation_m_s2)
-    hold_s = max(0.0, distance_m - needed_m) / speed_m_s
-    return hold_s, even_braking(speed_m_s, min(distance_m, needed_m), retardation_m_s2)
+    decision, v, h = train.decision, train.motion.speed_m_s, data.options.step_s
+    retardation = kind.highest_retardation_m_s2
+    decision.brake_s = min(h, (v - target_m_s) / retardation)
+    decision.hold_s = h - decision.brake_s
+    distance_m = distance_of_part(v, target_m_s, decision.hold_s, decision.brake_s)
+    update_gradient(train, kind, distance_m, data)
+    resistance_n = train.demand.resistance_n
+    if decision.hold_s == 0.0 or resistance_n > kind.inertia_kg * retardation:
+        decision.course = Course.UNIFORM
+        drive_uniformly(train, kind, data)
+        return False
+    decision.target_speed_m_s = target_m_s
+    _set_wish_for(decision.hold_s, resistance_n, train, data)
+    return True
 
 
 @inlined
-def part_of_step(
-    speed_m_s: float, hold_s: float, brake_s: float, step_s: float
-) -> tuple[float, float, float]:
-    """What a step sees of a course: times of holding and braking [s], and the speed after it [m/s].
-
-    A course that is longer than the step by a rounding ends with it.
-    """
-    if hold_s + brake_s <= step_s * (1.0 + ROUNDING):
-        return hold_s, brake_s, 0.0
-    held_s = min(hold_s, step_s)
-    braked_s = step_s - held_s
-    return held_s, braked_s, speed_m_s * (1.0 - braked_s / brake_s)
+def _set_wish_for(driven_s: float, wanted_n: float, train: Train, data: DrivingData) -> None:
+    """Note the force that a train on a course wants, and for how long."""
+    demand = train.demand
+    demand.driven_share = driven_s / data.options.step_s
+    demand.mean_speed_weight_s = driven_s / 2.0 if data.options.mean_power else 0.0
+    set_wish(train, wanted_n, min(wanted_n, demand.adhesion_n), train.decision.target_speed_m_s)
 
 
 @kernel
-def way_of_part(speed_m_s: float, next_speed_m_s: float, hold_s: float, brake_s: float) -> float:
-    """Way of a step that holds, then brakes. [m]"""
-    return speed_m_s * hold_s + (speed_m_s + next_speed_m_s) / 2.0 * brake_s
+def _settle_course(train: Train, kind: TrainType, step_s: float) -> None:
+    """`settle` of a train on a course.
+
+    A train that lacks the force for even braking runs on as it can.  Its step is a whole one: where
+    even braking ends in the midst of a step, less force would make it roll back.
+    """
+    decision, forces, v = train.decision, train.forces, train.motion.speed_m_s
+    resistance_n = train.demand.resistance_n
+    if decision.course == Course.EVEN and forces.tractive_n < decision.force_n:
+        a = acceleration(forces.tractive_n, resistance_n, kind.inertia_kg)
+        forces.next_speed_m_s = v + a * step_s
+        return
+    forces.tractive_n *= train.demand.driven_share
+    forces.next_speed_m_s = decision.target_speed_m_s
+    forces.braking_n = mean_braking_force(
+        v - forces.next_speed_m_s, decision.hold_s, decision.brake_s, step_s,
+        resistance_n, kind.inertia_kg,
+    )  # fmt: skip
 
 
 @inlined
-def mean_braking_force(
-    slowing_m_s: float, hold_s: float, brake_s: float, step_s: float,
-    resistance_n: float, inertia_kg: float,
-) -> float:  # fmt: skip
-    """Force of the brakes, mean over a step that holds, then brakes; never negative. [N]
-
-    Parameters
-    ----------
-    slowing_m_s : float
-        Speed at the start less speed at the end of the step. [m/s]
-    resistance_n, inertia_kg : float
-        Running resistance and gradient force [N]; mass with rotating parts [kg].
-    """
-    holding_ns = max(0.0, -resistance_n) * hold_s
-    stopping_ns = max(0.0, inertia_kg * slowing_m_s - resistance_n * brake_s)
-    return (holding_ns + stopping_ns) / step_s
+def settle(train: Train, kind: TrainType, step_s: float) -> None:
+    """Brakes and next speed of a train, whose `forces.tractive_n` is what the rails pass on."""
+    if brakes_within_step(train.decision.course):
+        _settle_course(train, kind, step_s)
+    else:
+        settle_uniformly(train, kind, step_s)
 
 
 @inlined
-def highest_speed_that_stops_within(
-    speed_m_s: float, distance_m: float, retardation_m_s2: float, step_s: float
-) -> float:
-    r"""Highest speed after a uniform step from which the train can still stop at its stop. [m/s]
+def _cannot_hold(train: Train) -> bool:
+    """Whether a train that is to hold its speed before it brakes cannot do so."""
+    course = train.decision.course
+    if course != Course.LATEST and course != Course.TO_LIMIT:
+        return False
+    return bool(train.forces.tractive_n < train.decision.force_n * train.demand.driven_share)
 
-    .. math:: d - h (v + v')/2 = v'^2 / 2b
-              \;\Rightarrow\; v' = \sqrt{(b h / 2)^2 + 2 b (d - h v / 2)} - b h / 2
 
-    Parameters
-    ----------
-    speed_m_s, distance_m, retardation_m_s2, step_s : float
-        As in `latest_braking`; the speed may be zero.
+@inlined
+def must_replan(train: Train, kind: TrainType, data: DrivingData) -> bool:
+    """Whether a train cannot hold its speed as it is to, or has too little distance left to stop."""
+    decision, forces, v = train.decision, train.forces, train.motion.speed_m_s
+    if _cannot_hold(train):
+        return True
+    if train.motion.phase != Phase.DRIVING or decision.course == Course.LIMIT_FIRST or v <= 0.0:
+        return False
+    next_v = max(forces.next_speed_m_s, 0.0)
+    distance_m = data.options.step_s * (v + forces.next_speed_m_s) / 2.0
+    if decision.course == Course.TO_LIMIT:
+        distance_m = distance_of_part(v, next_v, decision.hold_s, decision.brake_s)
+    needed_m = braking_distance(next_v, kind.highest_retardation_m_s2)
+    return distance_to_stop(train, data.stops) - distance_m < needed_m
+
+
+@kernel
+def replan(train: Train, kind: TrainType, data: DrivingData) -> None:
+    """Let a train brake to its stop; one that cannot hold its speed brakes evenly."""
+    decision = train.decision
+    if decision.course == Course.TO_LIMIT and _cannot_hold(train):
+        decision.course = Course.TO_LIMIT_UNIFORMLY
+        drive_uniformly(train, kind, data)
+        return
+    decision.course = Course.EVEN if decision.course == Course.LATEST else Course.UNIFORM
+    train.motion.phase = Phase.PLANNED
+
+
+@kernel
+def _move_on_course(step: int, train: Train, data: DrivingData) -> float:
+    """`move` of a train on a course."""
+    motion, decision, next_v = train.motion, train.decision, train.forces.next_speed_m_s
+    if next_v < decision.target_speed_m_s:
+        move_uniformly(train, data.options.step_s)
+        motion.phase = Phase.DRIVING  # the machine could not follow
+        return 0.0
+    motion.position_m += distance_of_part(
+        motion.speed_m_s, next_v, decision.hold_s, decision.brake_s
+    )
+    motion.speed_m_s = next_v
+    if next_v > 0.0:
+        return 0.0
+    error_m = abs(distance_to_stop(train, data.stops))
+    train.timetable.stood_s = max(0.0, data.options.step_s * (1.0 - decision.moving_share))
+    stand_at_stop(step + 1, train, data.stops)
+    return error_m
+
+
+@inlined
+def move(step: int, train: Train, data: DrivingData) -> float:
+    """Bring a train to the next instant; it may stand there, at its stop.
+
+    Return how far its stop is from where it came to stand, 0 unless it has. [m]
     """
-    half = retardation_m_s2 * step_s / 2.0
-    room = 2.0 * retardation_m_s2 * max(0.0, distance_m - step_s * speed_m_s / 2.0)
-    return room / (math.sqrt(half**2 + room) + half)
+    if brakes_within_step(train.decision.course):
+        return _move_on_course(step, train, data)
+    move_uniformly(train, data.options.step_s)
+    return 0.0

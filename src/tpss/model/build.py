@@ -1,26 +1,19 @@
 """Assemble the model of a scenario from its parts."""
 
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
 
+from tpss.driving.data import Braking, Driver, Options, Profile, Stop
+from tpss.kernel import switch
 from tpss.model.supply import SupplyPlan, build_supply
-from tpss.model.trains import build_machine, build_train_types
-from tpss.physics.adhesion import DRY, WET
+from tpss.model.trains import build_train_types
+from tpss.physics.adhesion import Rail
+from tpss.record import Records
 from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.state import (
-    AGGRESSIVE,
-    REGULATED,
-    STOP,
-    WHOLE_STEPS,
-    WITHIN_STEP,
-    Model,
-    Options,
-    Profile,
-)
+from tpss.step.model import Model, RunControl
 from tpss.units import si, si_of_each
 
 STEP_ROUNDING = 1e-9
@@ -42,23 +35,19 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     types, points = build_train_types(list(scenario.trains.values()))
     model = Model(
         options=_options(scenario),
+        control=RunControl(),
         gradients=_gradients(scenario.line),
         limits=_limits(scenario.line),
         stops=_stops(scenario),
         types=types,
-        machine=_machine(),
         points=points,
         network=network,
     )
     return model, Layout(
         supply=plan,
-        stations=tuple(station.name for station in scenario.supply.converter_stations),
-        station_m=tuple(si(s, "position_km") for s in scenario.supply.converter_stations),
+        stations=tuple(station.name for station in scenario.supply.stations),
+        station_m=tuple(si(s, "position_km") for s in scenario.supply.stations),
     )
-
-
-_machine = cache(build_machine)
-"""The networks of the library, which every model reads and none changes."""
 
 
 def steps_of(duration_s: float, step_s: float) -> int:
@@ -73,12 +62,15 @@ def _options(scenario: Scenario) -> Options:
         mean_power=simulation.power_sampling == "mean",
         mean_gradient=simulation.gradient_sampling == "mean",
         adhesion_in_km_h=simulation.adhesion_speed_unit == "km/h",
-        rail=WET if simulation.rail == "wet" else DRY,
-        driver=AGGRESSIVE if simulation.driver == "aggressive" else REGULATED,
-        braking=WITHIN_STEP if simulation.braking == "within-step" else WHOLE_STEPS,
-        fixed_voltage_v=0.0,
-        studied_train=-1,
+        rail=switch(Rail[_member(simulation.rail)]),
+        driver=switch(Driver[_member(simulation.driver)]),
+        braking=switch(Braking[_member(simulation.braking)]),
     )
+
+
+def _member(choice: str) -> str:
+    """Name of the member of an enum that a choice of the scenario stands for."""
+    return choice.upper().replace("-", "_")
 
 
 def _gradients(line: Line) -> Profile:
@@ -95,15 +87,16 @@ def _limits(line: Line) -> Profile:
     )
 
 
-def _stops(scenario: Scenario) -> Any:
-    """Records of `STOP`, one row a traffic entry, the destination last."""
+def _stops(scenario: Scenario) -> Records[Stop]:
+    """Stops, one row a traffic entry, the destination last."""
     position_m = {s.name: si(s, "position_km") for s in scenario.line.stations}
     step_s = si(scenario.simulation, "time_step_min")
     most = max(len(entry.stops) for entry in scenario.traffic) + 1
-    rows = np.zeros((len(scenario.traffic), most), dtype=STOP).view(np.recarray)
+    rows: Any = Stop.blank(len(scenario.traffic), most)
     for route, entry in enumerate(scenario.traffic):
         for k, stop in enumerate(entry.stops):
             dwell_steps = steps_of(si(stop, "dwell_min"), step_s)
             rows[route, k] = (position_m[stop.station], dwell_steps, False)
         rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, True)
-    return rows
+    stops: Records[Stop] = rows
+    return stops

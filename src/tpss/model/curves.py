@@ -1,13 +1,11 @@
 """Curves of a scenario as points in one array."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import records
-from tpss.physics.curve import CURVE_POINT, hermite, slope_at
+from tpss.numerics.curve import CurvePoint, Points, hermite, slope_at
 
 Array = npt.NDArray[np.float64]
 
@@ -31,9 +29,9 @@ class CurveBook:
         self._points.append((0.0, value, 0.0))
         return len(self._points) - 1, 1
 
-    def points(self) -> Any:
-        """Records of `CURVE_POINT`."""
-        return records(self._points, CURVE_POINT)
+    def points(self) -> Points:
+        """Points of all curves."""
+        return CurvePoint.array(self._points)
 
 
 def interpolate(x: float, at: Array, value: Array) -> Array:

@@ -1,21 +1,20 @@
 """The supply network of a scenario as arrays.
 
-Every converter station and every transformer stands at a feeding point.  A feeding point has a node
-on the contact line, and on an AT system, if a converter stands there, one more behind the connection
+Every feeding station and every transformer stands at a feeding point.  A feeding point has a node
+on the contact line, and on an AT system, if a station stands there, one more behind the connection
 impedance; with a high-voltage line it has a node on that line too.  The line's ends are nodes.
 """
 
 import math
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
-from tpss.kernel import records
-from tpss.physics.constants import BASE_VOLTAGE_V
-from tpss.powerflow.network import SOURCE, Network, assemble
-from tpss.scenario.supply import Catenary, ConverterStation, HighVoltageLine, Supply
+from tpss.model.sources import build_sources
+from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
+from tpss.powerflow.system import System, system
+from tpss.scenario.supply import Catenary, HighVoltageLine, Supply
 from tpss.units import si
 
 CONTACT_LINE = "contact line"
@@ -32,10 +31,10 @@ class SupplyPlan:
     node_km: list[float] = field(default_factory=list)
     node_level: list[float] = field(default_factory=list)
     """Own voltage of the node over that of the contact line."""
-    branches: list[tuple[int, int, complex]] = field(default_factory=list)
+    branches: list[BranchPart] = field(default_factory=list)
     branch_names: list[str] = field(default_factory=list)
     branch_kinds: list[str] = field(default_factory=list)
-    sections: list[tuple[int, int, float, float, complex, float]] = field(default_factory=list)
+    sections: list[SectionPart] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
@@ -51,7 +50,7 @@ class SupplyPlan:
         self, kind: str, name: str, start: int, end: int, impedance_ohm: complex, level: float = 1.0
     ) -> None:
         """Add a lumped branch; its label begins with its kind."""
-        self.branches.append((start, end, impedance_ohm))
+        self.branches.append(BranchPart(start, end, impedance_ohm))
         self.branch_names.append(f"{kind} {name}")
         self.branch_kinds.append(kind)
         self.branch_level.append(level)
@@ -72,8 +71,8 @@ class SupplyPlan:
     def branch_resistance_ohm(self) -> list[float]:
         """Resistance of each of them at its own level; NaN for the ends of sections. [ohm]"""
         lumped = [
-            impedance.real * level**2
-            for (_, _, impedance), level in zip(self.branches, self.branch_level, strict=True)
+            branch.impedance_ohm.real * level**2
+            for branch, level in zip(self.branches, self.branch_level, strict=True)
         ]
         return [*lumped, *(math.nan for _ in self._section_ends())]
 
@@ -88,8 +87,24 @@ def build_supply(supply: Supply, length_km: float) -> tuple[Network, SupplyPlan]
     Cases of a study have few supplies; those of the same one share what this gives, and only read it.
     """
     plan = plan_supply(supply, length_km)
-    sources = _sources(plan, supply.converter_stations)
-    return assemble(len(plan.nodes), plan.sections, plan.branches, sources), plan
+    sources = build_sources(plan.sources, supply.stations)
+    network = assemble(
+        len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
+    )
+    return network, plan
+
+
+def system_of(supply: Supply) -> System:
+    """Electrification system of a supply, at the supply's frequency."""
+    values = supply.system_values
+    return system(
+        nominal_voltage_v=values["nominal_kv"] * 1e3,
+        base_voltage_v=values["base_kv"] * 1e3,
+        base_power_va=values["base_mva"] * 1e6,
+        frequency_hz=supply.frequency_hz,
+        lowest_pu=values["lowest_pu"],
+        highest_pu=values["highest_pu"],
+    )
 
 
 def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
@@ -101,20 +116,20 @@ def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
     """
     plan = SupplyPlan()
     transformers = transformer_positions_km(supply)
-    converters = {station.position_km: station for station in supply.converter_stations}
-    points = sorted({0.0, length_km, *converters, *transformers})
+    stations = {station.position_km: station for station in supply.stations}
+    points = sorted({0.0, length_km, *stations, *transformers})
     line_node = {km: plan.add_node(CONTACT_LINE, km) for km in points}
     _lay_contact_line(plan, points, line_node, supply)
     feeding = dict(line_node)
     connection = _connection_impedance(supply.catenary)
     if connection:
-        for km, station in sorted(converters.items()):
+        for km, station in sorted(stations.items()):
             feeding[km] = plan.add_node("AT feeder", km)
             plan.add_branch(CONNECTION, station.name, feeding[km], line_node[km], connection)
     if supply.high_voltage_line is not None:
-        stands = sorted({*converters, *transformers})
-        _lay_high_voltage_line(plan, stands, set(converters), feeding, supply)
-    plan.sources = [feeding[station.position_km] for station in supply.converter_stations]
+        stands = sorted({*stations, *transformers})
+        _lay_high_voltage_line(plan, stands, set(stations), feeding, supply)
+    plan.sources = [feeding[station.position_km] for station in supply.stations]
     return plan
 
 
@@ -125,7 +140,7 @@ def transformer_positions_km(supply: Supply) -> list[float]:
         return []
     if high_voltage.transformers_km is not None:
         return list(high_voltage.transformers_km)
-    stations = sorted(station.position_km for station in supply.converter_stations)
+    stations = sorted(station.position_km for station in supply.stations)
     count = high_voltage.transformers or 0
     return [
         start + (end - start) * (i + 1) / (count + 1)
@@ -146,7 +161,7 @@ def _lay_contact_line(
     susceptance = 2 * np.pi * supply.frequency_hz * si(catenary, "capacitance_nf_per_km")
     for start, end in zip(points, points[1:], strict=False):
         plan.sections.append(
-            (node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
+            SectionPart(node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
         )
         plan.section_names.append(f"{CONTACT_LINE} {start:g}-{end:g} km")
 
@@ -161,7 +176,7 @@ def _lay_high_voltage_line(
     in series.
     """
     high_voltage: HighVoltageLine = supply.high_voltage_line  # type: ignore[assignment]
-    level = si(high_voltage, "base_kv") / BASE_VOLTAGE_V
+    level = si(high_voltage, "base_kv") / system_of(supply).base_voltage_v
     kind = high_voltage.type
     per_m = complex(si(kind, "r_ohm_per_km"), si(kind, "x_ohm_per_km")) / level**2
     node = {km: plan.add_node(HIGH_VOLTAGE_LINE, km, level) for km in stands}
@@ -175,29 +190,3 @@ def _lay_high_voltage_line(
         impedance = per_m * (end - start) * 1e3
         name = f"{start:g}-{end:g} km"
         plan.add_branch(HIGH_VOLTAGE_LINE, name, node[start], node[end], impedance, level)
-
-
-def _sources(plan: SupplyPlan, stations: tuple[ConverterStation, ...]) -> Any:
-    """Records of `SOURCE`, reactances in ohm on the railway's side."""
-    rows = []
-    for node, station in zip(plan.sources, stations, strict=True):
-        kind = station.type
-        base_ohm_va = si(kind, "base_voltage_kv") ** 2
-        row = {
-            "node": node,
-            "no_load_voltage_v": si(kind, "no_load_voltage_kv"),
-            "droop_v_per_var": si(kind, "droop_kv_per_mvar"),
-            "generator_reactance_ohm": kind.generator_reactance_pu
-            * base_ohm_va / si(kind, "generator_base_mva"),
-            "motor_reactance_ohm": kind.motor_reactance_pu
-            * base_ohm_va / si(kind, "motor_base_mva"),
-            "motor_voltage_v": si(kind, "base_voltage_kv"),
-            "grid_reactance_ohm": si(station, "grid_reactance_ohm"),
-            "grid_reactive_power_var": si(station, "grid_reactive_power_mvar"),
-            "grid_angle_rad": si(station, "grid_angle_deg"),
-            "installed": station.converters,
-            "controlled": station.control == "loading",
-            "rating_va": si(kind, "rating_mva"),
-        }  # fmt: skip
-        rows.append(tuple(row[name] for name in SOURCE.names or ()))
-    return records(rows, SOURCE)

@@ -3,15 +3,16 @@
 from typing import Any
 
 from tpss.driving.braking import shortest_stop
+from tpss.driving.course import braking_distance
+from tpss.driving.data import Braking, Driver
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
-from tpss.driving.within_step import braking_distance
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
-from tpss.physics.gradient import step_index
+from tpss.numerics.staircase import index_at
+from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
-from tpss.simulation.state import REGULATED, WHOLE_STEPS, Model
-from tpss.simulation.timetable import Service
+from tpss.step.model import Model
 from tpss.units import si
 
 
@@ -61,7 +62,7 @@ def _departures(entry: Traffic) -> dict[str, Any]:
 
 def _stopping_distance(speed_m_s: float, retardation_m_s2: float, model: Model) -> float:
     """Shortest way in which a train stops. [m]"""
-    if model.options.braking == WHOLE_STEPS:
+    if model.options.braking == Braking.WHOLE_STEPS:
         return plain(shortest_stop)(speed_m_s, retardation_m_s2, model.options.step_s)
     return plain(braking_distance)(speed_m_s, retardation_m_s2)
 
@@ -73,15 +74,15 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     limits, h = model.limits, model.options.step_s
     kind = model.types[service.train_type]
     retardation = kind.highest_retardation_m_s2
-    here = plain(step_index)(position_m, limits.from_m)
+    here = plain(index_at)(position_m, limits.from_m)
     limit = min(limits.value[here], kind.highest_speed_m_s)
     stop_m = min(m for m in service.stops_m if m > position_m)
     problem = ""
-    if speed > limit and model.options.driver == REGULATED:
+    if speed > limit and model.options.driver == Driver.REGULATED:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif _stopping_distance(speed, retardation, model) > stop_m - position_m:
         problem = f"too fast to stop at {stop_m / 1e3:g} km"
-        problem += " in whole time steps" if model.options.braking == WHOLE_STEPS else ""
+        problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
         slowest = max(0.0, speed - retardation * h)
         for j in range(here + 1, limits.from_m.size):

@@ -56,28 +56,29 @@ class Grid:
 
 
 def lay_out(count: int, network: Network, flow: Flow) -> Grid:
-    """Grid of a step, its trains being the first `count` of `flow.standing`, placed on sections.
+    """Grid of a step, its trains being the first `count` of `flow.standing`, placed under sections.
 
     Every piece between neighbours on the contact line is a π-section of its own.
     """
-    fixed, sections, found = flow.nodes.size, network.sections, flow.sections
-    pieces = found.end - found.first + 1
-    last = np.cumsum(pieces) - 1
-    first = last - pieces + 1
-    # Along the line trains follow each other, interrupted by the sections' end nodes.
-    length_m = np.insert(flow.standing.piece_m[:count], found.end, found.closing_m)
-    end = np.insert(fixed + np.arange(count), found.end, sections.end_node)
-    start = np.roll(end, 1)
-    start[first] = sections.start_node
-    impedance = np.repeat(sections.impedance_ohm_per_m, pieces) * length_m
-    susceptance = np.repeat(sections.susceptance_s_per_m, pieces) * length_m
-    branches = network.branches
+    fixed, branches = flow.nodes.size, network.branches
+    start, end, impedance, susceptance = [], [], [], []
+    first_piece, last_piece = [], []
+    for section, found in zip(network.sections, flow.sections, strict=True):
+        trains = [fixed + k for k in range(found.first, found.end)]
+        points = [section.start_node, *trains, section.end_node]
+        pieces_m = [*flow.standing["piece_m"][found.first : found.end], found.closing_m]
+        first_piece.append(branches.size + len(start))
+        start += points[:-1]
+        end += points[1:]
+        impedance += [section.impedance_ohm_per_m * length_m for length_m in pieces_m]
+        susceptance += [section.susceptance_s_per_m * length_m for length_m in pieces_m]
+        last_piece.append(branches.size + len(start) - 1)
     return Grid(
         size=fixed + count,
-        start=np.concatenate([branches.start_node, start]),
-        end=np.concatenate([branches.end_node, end]),
-        admittance_s=np.concatenate([1.0 / branches.impedance_ohm, 1.0 / impedance]),
-        half_shunt_s=np.concatenate([np.zeros(branches.size), 0.5j * susceptance]),
-        first_piece=branches.size + first,
-        last_piece=branches.size + last,
+        start=np.concatenate([branches["start_node"], start]).astype(np.int64),
+        end=np.concatenate([branches["end_node"], end]).astype(np.int64),
+        admittance_s=np.concatenate([1.0 / branches["impedance_ohm"], 1.0 / np.array(impedance)]),
+        half_shunt_s=np.concatenate([np.zeros(branches.size), 0.5j * np.array(susceptance)]),
+        first_piece=np.array(first_piece),
+        last_piece=np.array(last_piece),
     )

@@ -18,15 +18,14 @@ from scipy.optimize import least_squares
 
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.powerflow.network import Loads
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
-from tpss.simulation.advance import begin_step, end_step
-from tpss.simulation.coupling import settle_all
-from tpss.simulation.driver import decide
-from tpss.simulation.record import record_instant
-from tpss.simulation.state import Model, Recording, State, Status, sight_of
+from tpss.step.advance import begin_step, end_step
+from tpss.step.coupling import decide, settle_all
+from tpss.step.model import Model, driving_data
+from tpss.step.record import record_instant
+from tpss.step.recording import Recording
+from tpss.step.state import State, Status
 
 SHORTEST_MOVE = 1e-8
 """The minimum is reached where a step changes the unknowns by less than this share of them.  Close to a
@@ -38,7 +37,7 @@ MOST_EVALUATIONS = 60
 def advance_by_least_squares(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
-    """Run steps `first` to `last` - 1, as `simulation.advance.advance` does."""
+    """Run steps `first` to `last` - 1, as `step.advance.advance` does."""
     step = first
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
@@ -52,10 +51,10 @@ def advance_by_least_squares(
 
 
 def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
-    """Solve a step until every driver's decision stands; see `simulation.coupling.solve_step`."""
+    """Solve a step until every driver's decision stands; see `step.coupling.solve_step`."""
     evaluations = 0
     while True:
-        decide(count, state.flow.standing, state.trains, sight_of(model))
+        decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         evaluations += more
         if share < 1.0 or settle_all(count, model, state):
@@ -92,8 +91,9 @@ class Search:
 
     def __init__(self, grid: Grid, count: int, model: Model, state: State) -> None:
         self.grid, self.count, self.model, self.state = grid, count, model, state
-        self.loads = Loads(state.trains, model.types, state.machine)
+        self.loads = Loads(state.trains, model.types, state.scratch)
         self.evaluations = 0
+        self.base_v = model.network.system.base_voltage_v
         powers = np.zeros(2 * model.network.sources.size)
         self.flat = np.concatenate([np.zeros(grid.size), np.ones(grid.size), powers])
         """Unknowns without load."""
@@ -108,13 +108,15 @@ class Search:
     def last(self) -> Floats:
         """Unknowns of the step before; trains take the voltage between the nodes around them."""
         nodes, network = self.state.flow.nodes, self.model.network
-        line = np.append(network.sections.start_node, network.sections.end_node[-1])
-        line_m = np.append(network.sections.start_m, network.sections.end_m[-1])
-        standing = self.state.flow.standing.train[: self.count]
-        trains_v = np.interp(self.state.trains.position_m[standing], line_m, nodes.voltage_v[line])
-        phasor = np.concatenate([nodes.voltage_v, trains_v]) / BASE_VOLTAGE_V
-        fed_va = (nodes.voltage_v * nodes.leaving_current_a.conj())[network.sources.node]
-        powers = np.concatenate([fed_va.real, fed_va.imag]) / BASE_POWER_VA
+        volts, standing = nodes["voltage_v"], self.state.flow.standing[: self.count]
+        section = network.sections[standing["section"]]
+        length_m = section["end_m"] - section["start_m"]
+        share = (standing["place_m"] - section["start_m"]) / length_m
+        start_v, end_v = volts[section["start_node"]], volts[section["end_node"]]
+        trains_v = start_v + share * (end_v - start_v)
+        phasor = np.concatenate([volts, trains_v]) / self.base_v
+        fed_va = (volts * nodes["leaving_current_a"].conj())[network.sources["node"]]
+        powers = np.concatenate([fed_va.real, fed_va.imag]) / network.system.base_power_va
         return np.concatenate([np.angle(phasor), np.abs(phasor), powers])
 
     def attempt(self, share: float, start: Floats) -> bool:
@@ -127,7 +129,9 @@ class Search:
         problem = self.problem(share)
         low, high = np.full(start.size, -np.inf), np.full(start.size, np.inf)
         voltages = slice(self.grid.size, 2 * self.grid.size)
-        low[voltages], high[voltages] = LOWEST_VOLTAGE, HIGHEST_VOLTAGE
+        system = self.model.network.system
+        low[voltages] = system.lowest_voltage_v / self.base_v
+        high[voltages] = system.highest_voltage_v / self.base_v
         minimum = least_squares(
             problem.residuals, np.clip(start, low, high), problem.jacobian, (low, high),
             method="dogbox", ftol=None, xtol=SHORTEST_MOVE, gtol=None, max_nfev=MOST_EVALUATIONS,
@@ -139,17 +143,17 @@ class Search:
         self.found = minimum.x
         solution = problem.split(minimum.x)
         problem.demand(solution.voltage)  # leaves the powers in the trains' records
-        self._keep(solution.phasor * BASE_VOLTAGE_V)
+        self._keep(solution.phasor * self.base_v)
         return True
 
     def _keep(self, voltage_v: Complexes) -> None:
         """Write the voltages of a solution, and the currents that belong to them, into the state."""
         flow = self.state.flow
         fixed = flow.nodes.size
-        flow.nodes.voltage_v = voltage_v[:fixed]
-        flow.nodes.leaving_current_a = (self.grid.admittance_matrix() @ voltage_v)[:fixed]
+        flow.nodes["voltage_v"] = voltage_v[:fixed]
+        flow.nodes["leaving_current_a"] = (self.grid.admittance_matrix() @ voltage_v)[:fixed]
         entering_a, end_a = self.grid.section_currents_a(voltage_v)
-        flow.sections.current_a, flow.sections.end_current_a = entering_a, end_a
-        flow.standing.voltage_v[: self.count] = voltage_v[fixed:]
-        trains = flow.standing.train[: self.count]
-        self.state.trains.voltage_v[trains] = np.abs(voltage_v[fixed:])
+        flow.sections["current_a"], flow.sections["end_current_a"] = entering_a, end_a
+        flow.standing["voltage_v"][: self.count] = voltage_v[fixed:]
+        trains = flow.standing["train"][: self.count]
+        self.state.trains["demand"]["voltage_v"][trains] = np.abs(voltage_v[fixed:])

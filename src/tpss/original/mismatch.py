@@ -8,7 +8,7 @@ Unknowns are the angles θ_n and voltages U_n of all nodes, trains included, and
 the converter stations.  A train's consumption follows from its voltage (F.5)-(F.28).  The converter law
 (2.1)-(2.4), a constraint of the original program, stands beside the mismatches: what it leaves of a
 station's voltage and angle is a residual too, and as good as zero at a solution.  All is in per unit of
-16.5 kV and 10 MVA, or rad.
+the base voltage and the base power, or rad.
 
 References
 ----------
@@ -20,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tpss.original.grid import Complexes, Floats, Grid
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.powerflow.external import find_demands, find_terminals
 from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.outside import find_demands, find_residuals
 
 
 class Unknowns(NamedTuple):
@@ -58,11 +57,12 @@ class Mismatch:
         self, grid: Grid, network: Network, flow: Flow, loads: Loads, share: float
     ) -> None:
         self.network, self.flow, self.loads, self.share = network, flow, loads, share
-        self.admittance = grid.admittance_matrix() * (BASE_VOLTAGE_V**2 / BASE_POWER_VA)
+        self.base_v, self.base_va = network.system.base_voltage_v, network.system.base_power_va
+        self.admittance = grid.admittance_matrix() * (self.base_v**2 / self.base_va)
         self.size, self.fixed = grid.size, flow.nodes.size
-        self.station_node = network.sources.node
+        self.station_node = network.sources["node"]
         self.demands = np.zeros((self.size - self.fixed, 4))
-        self.terminals = np.zeros((self.station_node.size, 5))
+        self.laws = np.zeros((self.station_node.size, 5), dtype=complex)
 
     def split(self, x: Floats) -> Unknowns:
         """The unknowns in a vector."""
@@ -71,22 +71,42 @@ class Mismatch:
 
     def demand(self, voltage: Floats) -> tuple[Complexes, Complexes]:
         """P + jQ that the trains draw, and its slope over their voltage. [p.u.]"""
-        trains_v = voltage[self.fixed :] * BASE_VOLTAGE_V
+        trains_v = voltage[self.fixed :] * self.base_v
         find_demands(trains_v, self.flow.standing, self.loads, self.demands)
-        p, q, p_slope, q_slope = self.share * self.demands.T / BASE_POWER_VA
-        return p + 1j * q, (p_slope + 1j * q_slope) * BASE_VOLTAGE_V
+        p, q, p_slope, q_slope = self.share * self.demands.T / self.base_va
+        return p + 1j * q, (p_slope + 1j * q_slope) * self.base_v
 
-    def law(self, x: Unknowns) -> Floats:
-        """U, θ, dU/dQ, dθ/dP and dθ/dQ of the stations at their powers, a row each. [p.u.], [rad]
+    def law(self, x: Unknowns) -> tuple[Floats, Floats]:
+        """Voltage and angle that the stations' laws ask for, and their derivatives. [p.u.], [rad]
 
-        References
-        ----------
-        [Boullanger2009]_, eq. (2.1)-(2.4).
+        Returns
+        -------
+        asked : Floats, shape (2, stations)
+            Voltage, then angle.
+        derivatives : Floats, shape (2, 4, stations)
+            Over angle, voltage, active and reactive power of the own node.
         """
-        power = np.column_stack([x.active, x.reactive]) * BASE_POWER_VA
-        find_terminals(power, self.network.sources, self.flow.sources, self.terminals)
-        units = [1 / BASE_VOLTAGE_V, 1.0, BASE_POWER_VA / BASE_VOLTAGE_V, *2 * [BASE_POWER_VA]]
-        return np.asarray(self.terminals.T * np.array(units)[:, None])
+        volts = x.phasor[self.station_node] * self.base_v
+        amperes = ((x.active + 1j * x.reactive) * self.base_va / volts).conj()
+        find_residuals(volts, amperes, self.network.sources, self.flow.sources, self.laws)
+        residual, v_p, v_q, j_p, j_q = self.laws.T
+        unit = volts / np.abs(volts) * self.base_v
+        zero = np.zeros_like(volts)
+        changes = [  # of voltage and current, by each of the four
+            (1j * volts, 1j * amperes),
+            (unit, -amperes * self.base_v / np.abs(volts)),
+            (zero, self.base_va / volts.conj()),
+            (zero, -1j * self.base_va / volts.conj()),
+        ]
+        asked = volts - residual
+        relative = np.array(
+            [
+                (dv - (v_p * dv + v_q * dv.conj() + j_p * dj + j_q * dj.conj())) / asked
+                for dv, dj in changes
+            ]
+        )
+        size = np.abs(asked) / self.base_v
+        return np.array([size, np.angle(asked)]), np.array([size * relative.real, relative.imag])
 
     def residuals(self, vector: Floats) -> Floats:
         """ΔP and ΔQ at all nodes, then the gaps of the stations' voltages and angles.
@@ -99,7 +119,7 @@ class Mismatch:
         mismatch = -x.phasor * (self.admittance @ x.phasor).conj()
         mismatch[self.fixed :] -= self.demand(x.voltage)[0]
         mismatch[self.station_node] += x.active + 1j * x.reactive
-        voltage, angle, *_ = self.law(x)
+        (voltage, angle), _ = self.law(x)
         gaps = x.voltage[self.station_node] - voltage, x.angle[self.station_node] - angle
         return np.concatenate([mismatch.real, mismatch.imag, *gaps])
 
@@ -113,12 +133,15 @@ class Mismatch:
         by_voltage[trains, trains] -= self.demand(x.voltage)[1]
         at_station = np.eye(self.size)[self.station_node]
         none = np.zeros_like(at_station)
-        _, _, u_q, theta_p, theta_q = (np.diag(row) for row in self.law(x))
+        _, derivatives = self.law(x)
+        (u_theta, u_u, u_p, u_q), (theta_theta, theta_u, theta_p, theta_q) = (
+            [np.diag(row) for row in rows] for rows in derivatives
+        )
         return np.block(
             [
                 [by_angle.real, by_voltage.real, at_station.T, none.T],
                 [by_angle.imag, by_voltage.imag, none.T, at_station.T],
-                [none, at_station, np.zeros_like(u_q), -u_q],
-                [at_station, none, -theta_p, -theta_q],
+                [-u_theta @ at_station, at_station - u_u @ at_station, -u_p, -u_q],
+                [at_station - theta_theta @ at_station, -theta_u @ at_station, -theta_p, -theta_q],
             ]
         )

@@ -1,10 +1,16 @@
 """Adhesion between wheel and rail: the tractive effort that the rails can take."""
 
+from enum import IntEnum
+
 from tpss.kernel import inlined
 from tpss.physics.constants import GRAVITY_M_S2
 
-DRY = 0
-WET = 1
+
+class Rail(IntEnum):
+    """State of the rails."""
+
+    DRY = 0
+    WET = 1
 
 
 @inlined
@@ -23,7 +29,7 @@ def adhesion_limit(adhesive_mass_kg: float, speed: float, rail: int) -> float:
         Speed, not negative.  In m/s the dry law is Curtius and Kniffler's; the thesis prints km/h,
         which converts twice (see Notes).
     rail : int
-        `DRY` or `WET`.
+        Of `Rail`.
 
     Notes
     -----
@@ -36,6 +42,6 @@ def adhesion_limit(adhesive_mass_kg: float, speed: float, rail: int) -> float:
     ----------
     [Boullanger2009]_, eq. (2.6) and (F.5).
     """
-    if rail == WET:
+    if rail == Rail.WET:
         return adhesive_mass_kg * GRAVITY_M_S2 * 3.78 / (23.6 + speed)
     return adhesive_mass_kg * GRAVITY_M_S2 * (0.161 + 7.5 / (44.0 + 3.6 * speed))

@@ -3,10 +3,17 @@
 "New" is the thesis's model, "former" the one of the program before it.
 """
 
+from enum import IntEnum
+
 from tpss.kernel import inlined, kernel
 
-NEW = 0
-FORMER = 1
+
+class MotorModel(IntEnum):
+    """Model of motor voltage or motor current."""
+
+    NEW = 0
+    FORMER = 1
+
 
 FORMER_VOLTAGE_KNEE_V = 14_000.0
 """Line voltage below which the former model lowers the motor voltage. [V]"""
@@ -55,7 +62,7 @@ def motor_voltage(
     highest_v : float
         Highest motor voltage, E_max. [V]
     model : int
-        `NEW` or `FORMER`.
+        Of `MotorModel`.
 
     References
     ----------
@@ -73,7 +80,7 @@ def line_voltage_factor(line_voltage_v: float, model: int) -> float:
     ----------
     [Boullanger2009]_, eq. (2.16).
     """
-    if model == FORMER:
+    if model == MotorModel.FORMER:
         return min(1.0, line_voltage_v / FORMER_VOLTAGE_KNEE_V)
     return 1.0
 
@@ -121,4 +128,4 @@ def motor_current(armature_current_a: float, model: int) -> float:
     ----------
     [Boullanger2009]_, eq. (2.17) and, former, (2.18).
     """
-    return armature_current_a if model == FORMER else armature_current_a / 4.0
+    return armature_current_a if model == MotorModel.FORMER else armature_current_a / 4.0

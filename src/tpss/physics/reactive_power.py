@@ -4,32 +4,34 @@ Sign: positive is inductive, drawn by the train.
 """
 
 import math
+from enum import IntEnum
 
 import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
-from tpss.physics.constants import LOCOMOTIVE_SECONDARY_V, NOMINAL_VOLTAGE_V
-from tpss.physics.neural_network import (
+from tpss.numerics.neural_network import (
     NEURONS,
     FeedForwardNetwork,
     logsig,
     outside,
     weigh,
 )
-from tpss.physics.series import Series, make_series
+from tpss.numerics.series import Series, make_series
 
 Array = npt.NDArray[np.float64]
 
-POWER_FACTOR = 0
-DOUBLE_BRIDGE = 1
-POWER_FACTOR_CURVE = 2
+
+class ReactiveModel(IntEnum):
+    """What the reactive power of the motors follows from."""
+
+    POWER_FACTOR = 0
+    DOUBLE_BRIDGE = 1
+    POWER_FACTOR_CURVE = 2
+
 
 MOTOR, LOCOMOTIVE = 0, 1
 """Inputs of the bridge network: the voltages."""
-
-TRANSFORMER_RATIO = LOCOMOTIVE_SECONDARY_V / NOMINAL_VOLTAGE_V
-"""In-locomotive voltage over line voltage, U_locoRc / U = 487 V / 15 kV. [Boullanger2009]_, (F.32)."""
 
 
 @inlined
@@ -37,7 +39,7 @@ def bridge_sine_series(
     motor_voltage_v: float,
     locomotive_voltage_v: float,
     network: FeedForwardNetwork,
-    room: Array,
+    scratch: Array,
     series: Series,
 ) -> None:
     r"""Make the series of the sine of the firing angle, β, over the locomotive's voltage. [1], [V]
@@ -51,7 +53,7 @@ def bridge_sine_series(
         U_di, trained on 0 to 770 V. [V]
     locomotive_voltage_v : float
         U_locoRc, trained on 214.28 to 642.84 V. [V]
-    network, room, series
+    network, scratch, series
         As in `make_series`.
 
     References
@@ -61,12 +63,12 @@ def bridge_sine_series(
     weight = network.weight
     for n in range(NEURONS):
         fixed = network.bias[n] + weight[MOTOR, n] * motor_voltage_v
-        room[0, n] = fixed + weight[LOCOMOTIVE, n] * locomotive_voltage_v
-    make_series(locomotive_voltage_v, network, room, series)
+        scratch[0, n] = fixed + weight[LOCOMOTIVE, n] * locomotive_voltage_v
+    make_series(locomotive_voltage_v, network, scratch, series)
 
 
 @inlined
-def sine_over_motor_voltage(network: FeedForwardNetwork, room: Array) -> float:
+def sine_over_motor_voltage(network: FeedForwardNetwork, scratch: Array) -> float:
     """Slope of β over the motor voltage, where its series has just been made. [1/V]
 
     References
@@ -74,8 +76,8 @@ def sine_over_motor_voltage(network: FeedForwardNetwork, room: Array) -> float:
     [Boullanger2009]_, eq. (D.8), derived.
     """
     for n in range(NEURONS):
-        room[2, n] = network.weight[MOTOR, n] * room[1, n]
-    return weigh(network.output, room[2])
+        scratch[2, n] = network.weight[MOTOR, n] * scratch[1, n]
+    return weigh(network.output, scratch[2])
 
 
 @inlined
@@ -142,7 +144,7 @@ def reactive_ratio(factor: float) -> float:
 
 
 @inlined
-def filter_reactive_power(voltage_v: float, reactance_ohm: float) -> tuple[float, float]:
+def filter_reactive_power(voltage_v: float, susceptance_s: float) -> tuple[float, float]:
     r"""Reactive power drawn by the locomotive's filter, and its slope. [var], [var/V]
 
     Negative: the filter feeds.
@@ -153,12 +155,12 @@ def filter_reactive_power(voltage_v: float, reactance_ohm: float) -> tuple[float
     ----------
     voltage_v : float
         Voltage at the pantograph. [V]
-    reactance_ohm : float
-        Reactance on the transformer's secondary side, negative. [Ω]
+    susceptance_s : float
+        1 / X_f, referred to the pantograph's side of the transformer, negative. [S]
 
     References
     ----------
-    [Boullanger2009]_, eq. (2.20).
+    [Boullanger2009]_, eq. (2.20) and, for the transformer's ratio, (F.32).
     """
-    current = voltage_v * (TRANSFORMER_RATIO * TRANSFORMER_RATIO / reactance_ohm)
+    current = voltage_v * susceptance_s
     return voltage_v * current, 2.0 * current

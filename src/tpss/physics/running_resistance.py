@@ -3,18 +3,20 @@
 Sign: a positive force opposes forward motion.  Units: SI; the suffix of a name says which.
 """
 
-from typing import NamedTuple
-
 from tpss.kernel import inlined
 from tpss.physics.constants import GRAVITY_M_S2
+from tpss.record import Record
 
 
-class DavisCoefficients(NamedTuple):
+class DavisCoefficients(Record):
     """Running resistance of a whole train on straight level track, R = a + b v + c v²."""
 
     a_n: float
+    """A. [N]"""
     b_n_s_per_m: float
+    """B. [N s/m]"""
     c_n_s2_per_m2: float
+    """C. [N s²/m²]"""
 
 
 @inlined

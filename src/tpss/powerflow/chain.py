@@ -20,78 +20,31 @@ References
 """
 
 import math
-from typing import Any
+from enum import IntEnum
 
 from tpss.kernel import at, inlined, switch
-from tpss.physics.constants import BASE_VOLTAGE_V
-from tpss.physics.locomotive import electrical_demand
-from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Loads, Network
-from tpss.powerflow.pairs import scaled, squared
-
-WARM = switch(0)
-"""A pass takes the trains' currents at the voltages of the state, and finds all derivatives."""
-FLAT = switch(1)
-"""... takes the currents at base voltage, as if they did not depend on the voltage."""
-CHECK = switch(2)
-"""... is a warm one without derivatives: for a state that is expected to be the solution."""
+from tpss.numerics.pairs import scaled, squared
+from tpss.powerflow.network import Flow, Loads, Network
+from tpss.vehicle.demand import electrical_demand
 
 
-@inlined
-def sort_by_position(standing: Any, count: int, trains: Any) -> None:
-    """Sort the first `count` places by the trains' positions, those at one position by number.
+class Pass(IntEnum):
+    """What an evaluation of the network takes and finds."""
 
-    The order is that of the step before, and trains hardly ever pass each other: an insertion sort
-    visits each of them once.
-    """
-    for k in range(1, count):
-        train = standing[at(k)].train
-        at_m = trains[at(train)].position_m
-        place = k
-        while place > 0:
-            other = standing[at(place - 1)].train
-            other_m = trains[at(other)].position_m
-            if other_m < at_m or (other_m == at_m and other < train):
-                break
-            standing[at(place)].train = other
-            place -= 1
-        standing[at(place)].train = train
+    WARM = 0
+    """The trains' currents at the voltages of the state, and all derivatives."""
+    FLAT = 1
+    """The currents at base voltage, as if they did not depend on the voltage."""
+    CHECK = 2
+    """As a warm one without derivatives: for a state that is expected to be the solution."""
 
 
-@inlined
-def place_trains(count: int, trains: Any, network: Network, flow: Flow) -> int:
-    """Assign sorted trains to sections, measure the pieces between them, count those too short.
-
-    Parameters
-    ----------
-    count : int
-        Number of trains in `flow.standing`, sorted by position.
-    trains : records
-        With the field `position_m`. [m]
-    """
-    short = 0
-    k = 0
-    last = network.sections.size - 1
-    for s in range(last + 1):
-        section = network.sections[at(s)]
-        before_m = section.start_m
-        flow.sections[at(s)].first = k
-        while k < count and (
-            s == last or trains[at(flow.standing[at(k)].train)].position_m < section.end_m
-        ):
-            at_m = trains[at(flow.standing[at(k)].train)].position_m
-            flow.standing[at(k)].piece_m = max(SHORTEST_PIECE_M, at_m - before_m)
-            short += at_m - before_m < SHORTEST_PIECE_M
-            before_m = at_m
-            k += 1
-        flow.sections[at(s)].end = k
-        flow.sections[at(s)].closing_m = max(SHORTEST_PIECE_M, section.end_m - before_m)
-        short += section.end_m - before_m < SHORTEST_PIECE_M
-    return short
+WARM, FLAT, CHECK = switch(Pass.WARM), switch(Pass.FLAT), switch(Pass.CHECK)
 
 
 @inlined
 def train_current(
-    i: int, voltage: complex, scale: float, start: int, loads: Loads
+    i: int, voltage: complex, scale: float, start: Pass, base_v: float, loads: Loads
 ) -> tuple[complex, complex, complex]:
     """Current that train `i` takes [A], and its derivative as a pair [S].
 
@@ -103,16 +56,18 @@ def train_current(
         Voltage at its pantograph. [V]
     scale : float
         Factor on its load, 1 for the whole. [1]
-    start : int
-        `WARM`, `FLAT` or `CHECK`.
+    start : Pass
+    base_v : float
+        Base voltage. [V]
+    loads : Loads
     """
     if start == FLAT:
-        voltage = complex(BASE_VOLTAGE_V, 0.0)
+        voltage = complex(base_v, 0.0)
     square = squared(voltage)
     magnitude = math.sqrt(square)
     train = loads.trains[at(i)]
     p, q, p_slope, q_slope = electrical_demand(
-        magnitude, loads.types[at(train.train_type)], train, loads.machine[0]
+        magnitude, loads.types[at(train.train_type)], train.demand, loads.scratch
     )
     per_square = 1.0 / square
     reciprocal = scaled(voltage, per_square)  # 1 / conj(V)
@@ -143,7 +98,7 @@ def _push_load(
 
 @inlined
 def run_chain(
-    s: int, scale: float, start: int, network: Network, flow: Flow, loads: Loads
+    s: int, scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
 ) -> complex:
     """Push section `s` from its start to its end; return the voltage there. [V]
 
@@ -175,7 +130,9 @@ def run_chain(
         # 3. The train, and the half shunts of the pieces that meet there.
         ahead_m = found.closing_m if k + 1 == found.end else flow.standing[at(k + 1)].piece_m
         shunt = complex(0.0, half_b * (piece_m + ahead_m))
-        load, y1, y2 = train_current(place.train, voltage, scale, start, loads)
+        load, y1, y2 = train_current(
+            place.train, voltage, scale, start, network.system.base_voltage_v, loads
+        )
         current -= load + shunt * voltage
         if start != CHECK:
             y1 += shunt

@@ -4,17 +4,21 @@ Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records
 one node or section together; to compiled code an array of them is one argument.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import blank_records, records
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.physics.converter import CONVERTER_LAW
-from tpss.powerflow.block_lu import Pattern, find_pattern
+from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
+from tpss.powerflow.system import System
+from tpss.record import Record, Records
+from tpss.sources.kinds import Source
+from tpss.vehicle.train import Train
+from tpss.vehicle.train_type import TrainType
 
+Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
 
@@ -26,113 +30,121 @@ SHORTEST_PIECE_M = 1.0
 
 EPSILON = float(np.finfo(float).eps)
 
-SECTION = np.dtype(
-    [
-        ("start_node", np.int64),
-        ("end_node", np.int64),
-        ("start_m", float),
-        ("end_m", float),
-        ("impedance_ohm_per_m", complex),
-        ("susceptance_s_per_m", float),
-        ("block_aa", np.int64),  # places of its blocks: a is the start node, b the end node
-        ("block_ab", np.int64),
-        ("block_ba", np.int64),
-        ("block_bb", np.int64),
-        ("gap_weight", float),  # square of the power at its ends that a gap causes, both per unit
-    ],
-    align=True,
-)
-"""A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
 
-BRANCH = np.dtype(
-    [
-        ("start_node", np.int64),
-        ("end_node", np.int64),
-        ("impedance_ohm", complex),
-        ("admittance_s", complex),
-    ],
-    align=True,
-)
-"""A lumped impedance."""
+class Section(Record):
+    """A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
 
-SOURCE = np.dtype(
-    [
-        ("node", np.int64),
-        *((name, CONVERTER_LAW[name]) for name in CONVERTER_LAW.names or ()),
-        ("installed", np.int64),
-        ("controlled", np.bool_),  # whether the number of running converters follows the loading
-        ("rating_va", float),  # of one converter
-    ],
-    align=True,
-)
-"""A converter station at a fixed node."""
+    start_node: int
+    end_node: int
+    start_m: float
+    """Where it begins. [m]"""
+    end_m: float
+    """Where it ends. [m]"""
+    impedance_ohm_per_m: complex
+    """Series impedance. [Ω/m]"""
+    susceptance_s_per_m: float
+    """Shunt susceptance. [S/m]"""
+    block_aa: int
+    """Places of its blocks: a is the start node, b the end node."""
+    block_ab: int
+    block_ba: int
+    block_bb: int
+    gap_weight: float
+    """Square of the power at its ends that a gap causes, both in per unit. [1]"""
 
-NODE_FLOW = np.dtype(
-    [
-        ("voltage_v", complex),
-        ("leaving_current_a", complex),  # into sections and branches
-        ("right_side", complex),  # of the linear system, then its solution
-        ("base_v", complex),  # where a Newton step starts
-        ("direction_v", complex),  # the whole step
-        ("good_v", complex),  # of the last solution that is known to be good
-        ("last_v", complex),  # of the last time step, and of the one before
-        ("before_v", complex),
-    ],
-    align=True,
-)
 
-SECTION_FLOW = np.dtype(
-    [
-        ("current_a", complex),  # enters the section at its start
-        ("end_current_a", complex),  # leaves it at its end
-        ("gap_v", complex),  # between the end of the chain and the end node
-        ("inverse_p", complex),  # pair that gives a change of the entering current
-        ("inverse_q", complex),
-        ("transfer_p", complex),  # pair by which the end voltage follows the start voltage
-        ("transfer_q", complex),
-        ("base_a", complex),
-        ("direction_a", complex),
-        ("good_a", complex),
-        ("last_a", complex),
-        ("before_a", complex),
-        ("first", np.int64),  # bounds of its trains in `Flow.standing`
-        ("end", np.int64),
-        ("closing_m", float),  # line between its last train and its end node
-    ],
-    align=True,
-)
+class Branch(Record):
+    """A lumped impedance."""
 
-SOURCE_FLOW = np.dtype(
-    [
-        ("converters", float),  # number of converters that run
-        ("loading_sum", float),  # over the steps since the last action of the converter control
-    ],
-    align=True,
-)
+    start_node: int
+    end_node: int
+    impedance_ohm: complex
+    """Series impedance. [Ω]"""
+    admittance_s: complex
+    """Its reciprocal. [S]"""
 
-BLOCK = np.dtype([("p", complex), ("q", complex)], align=True)
-"""A block of the linear system, as a pair."""
 
-STANDING = np.dtype(
-    [
-        ("train", np.int64),
-        ("piece_m", float),  # line between the train and the train or node before it
-        ("voltage_v", complex),
-    ],
-    align=True,
-)
-"""A train's place in the order along the line."""
+class NodeFlow(Unknown):
+    """State of a fixed node."""
+
+    voltage_v: complex
+    """Voltage. [V]"""
+    leaving_current_a: complex
+    """Current into sections and branches. [A]"""
+    base_v: complex
+    """Where a Newton step starts. [V]"""
+    direction_v: complex
+    """The whole step. [V]"""
+    good_v: complex
+    """Voltage of the last solution that is known to be good. [V]"""
+    last_v: complex
+    """Voltage of the last time step. [V]"""
+    before_v: complex
+    """Voltage of the one before. [V]"""
+
+
+class SectionFlow(Record):
+    """State of a section."""
+
+    current_a: complex
+    """Current that enters the section at its start. [A]"""
+    end_current_a: complex
+    """Current that leaves it at its end. [A]"""
+    gap_v: complex
+    """Voltage between the end of the chain and the end node. [V]"""
+    inverse_p: complex
+    """Pair that gives a change of the entering current. [S]"""
+    inverse_q: complex
+    transfer_p: complex
+    """Pair by which the end voltage follows the start voltage. [1]"""
+    transfer_q: complex
+    base_a: complex
+    """Current where a Newton step starts. [A]"""
+    direction_a: complex
+    """The whole step. [A]"""
+    good_a: complex
+    """Current of the last solution that is known to be good. [A]"""
+    last_a: complex
+    """Current of the last time step. [A]"""
+    before_a: complex
+    """Current of the one before. [A]"""
+    first: int
+    """Bounds of its trains in `Flow.standing`."""
+    end: int
+    closing_m: float
+    """Line between its last train and its end node. [m]"""
+
+
+class SourceFlow(Record):
+    """State of a source."""
+
+    running: float
+    """Number of its units that run."""
+    loading_sum: float
+    """Loading, summed over the steps since the last action of the converter control. [1]"""
+
+
+class Standing(Record):
+    """A train's place in the order along the sections."""
+
+    train: int
+    section: int
+    """Section under which it stands."""
+    place_m: float
+    """Where, on the axis of the section. [m]"""
+    piece_m: float
+    """Line between the train and the train or node before it. [m]"""
+    voltage_v: complex
+    """Voltage at its pantograph. [V]"""
 
 
 class Network(NamedTuple):
     """A supply network; all impedances are referred to the contact line's voltage."""
 
-    sections: Any
-    """Records of `SECTION`, by position."""
-    branches: Any
-    """Records of `BRANCH`."""
-    sources: Any
-    """Records of `SOURCE`."""
+    system: System
+    sections: Records[Section]
+    branches: Records[Branch]
+    sources: Records[Source]
     source_of_node: Indices
     """Index of the source at each node, or -1."""
     pattern: Pattern
@@ -145,16 +157,12 @@ class Network(NamedTuple):
 class Flow(NamedTuple):
     """State of a load flow, and scratch; the unknowns are node voltages and entering currents."""
 
-    nodes: Any
-    """Records of `NODE_FLOW`."""
-    sections: Any
-    """Records of `SECTION_FLOW`."""
-    standing: Any
-    """Records of `STANDING`: trains on the line by position, then the others in any order."""
-    sources: Any
-    """Records of `SOURCE_FLOW`."""
-    blocks: Any
-    """Records of `BLOCK`."""
+    nodes: Records[NodeFlow]
+    sections: Records[SectionFlow]
+    standing: Records[Standing]
+    """Trains on the line by section and place, then the others in any order."""
+    sources: Records[SourceFlow]
+    blocks: Records[Block]
     sensitivity: Complexes
     """Of a chain's voltage and current to its start voltage and current, shape (2, 2, 2)."""
 
@@ -162,27 +170,48 @@ class Flow(NamedTuple):
 class Loads(NamedTuple):
     """The trains, as far as the load flow is concerned."""
 
-    trains: Any
-    """Records with the fields of `DEMAND`, and `train_type`."""
-    types: Any
-    """Records of `TRAIN_TYPE`."""
-    machine: Any
-    """One record of `MACHINE`."""
+    trains: Records[Train]
+    types: Records[TrainType]
+    scratch: Floats
+    """Scratch of the trains' networks, shape `SCRATCH_SHAPE`."""
 
 
-def resolution_va(impedance_ohm: float) -> float:
+class SectionPart(NamedTuple):
+    """A section as it is given to `assemble`."""
+
+    start_node: int
+    end_node: int
+    start_m: float
+    end_m: float
+    impedance_ohm_per_m: complex
+    susceptance_s_per_m: float
+
+    @property
+    def shortest_ohm(self) -> float:
+        """Impedance of the whole section, of a metre at least. [Ω]"""
+        return abs(self.impedance_ohm_per_m) * max(SHORTEST_PIECE_M, self.end_m - self.start_m)
+
+
+class BranchPart(NamedTuple):
+    """A branch as it is given to `assemble`."""
+
+    start_node: int
+    end_node: int
+    impedance_ohm: complex
+
+
+def resolution_va(impedance_ohm: float, system: System) -> float:
     """Power mismatch that the rounding of voltages causes at the ends of an impedance. [VA]
 
     A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
     to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
     """
-    return float(4.0 * EPSILON * BASE_VOLTAGE_V**2 / impedance_ohm)
+    return float(4.0 * EPSILON * system.base_voltage_v**2 / impedance_ohm)
 
 
-def gap_weight(start_m: float, end_m: float, impedance_ohm_per_m: complex) -> float:
+def gap_weight(part: SectionPart, system: System) -> float:
     """Square of the power that a gap of the base voltage causes at a section's ends. [p.u.]"""
-    impedance_ohm = abs(impedance_ohm_per_m) * max(SHORTEST_PIECE_M, end_m - start_m)
-    return float((BASE_VOLTAGE_V**2 / impedance_ohm / BASE_POWER_VA) ** 2)
+    return float((system.base_voltage_v**2 / part.shortest_ohm / system.base_power_va) ** 2)
 
 
 _pattern = lru_cache(maxsize=64)(find_pattern)
@@ -191,9 +220,10 @@ _pattern = lru_cache(maxsize=64)(find_pattern)
 
 def assemble(
     n_nodes: int,
-    sections: list[tuple[int, int, float, float, complex, float]],
-    branches: list[tuple[int, int, complex]],
-    sources: Any,
+    sections: Sequence[SectionPart],
+    branches: Sequence[BranchPart],
+    sources: Records[Source],
+    system: System,
 ) -> Network:
     """Network from its parts.
 
@@ -201,31 +231,33 @@ def assemble(
     ----------
     n_nodes : int
         Number of fixed nodes.
-    sections : list of (start node, end node, start_m, end_m, impedance_ohm_per_m, susceptance_s_per_m)
-    branches : list of (start node, end node, impedance_ohm)
-    sources : records of `SOURCE`
+    sections, branches : sequences of SectionPart, of BranchPart
+    sources : records of Source
         At most one a node.
+    system : System
     """
-    ends = [(a, b) for a, b, *_ in sections] + [(a, b) for a, b, _ in branches]
-    pattern, place = _pattern(n_nodes, tuple(ends))
-    impedances = [abs(z) for *_, z in branches]
-    impedances += [abs(z) * max(SHORTEST_PIECE_M, b - a) for _, _, a, b, z, _ in sections]
-    rounding = max(map(resolution_va, impedances)) / BASE_POWER_VA
+    edges = [(part.start_node, part.end_node) for part in (*sections, *branches)]
+    pattern, place = _pattern(n_nodes, tuple(edges))
+    impedances = [abs(part.impedance_ohm) for part in branches]
+    impedances += [part.shortest_ohm for part in sections]
+    rounding = max(resolution_va(z, system) for z in impedances) / system.base_power_va
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
     source_of_node[sources["node"]] = np.arange(sources.size)
 
-    def blocks(a: int, b: int) -> tuple[int, int, int, int]:
+    def blocks(part: SectionPart | BranchPart) -> tuple[int, int, int, int]:
+        a, b = part.start_node, part.end_node
         return place[a, a], place[a, b], place[b, a], place[b, b]
 
     admittance_s = np.zeros(len(place), dtype=complex)
-    for a, b, z in branches:
-        admittance_s[list(blocks(a, b))] += np.array([1.0, -1.0, -1.0, 1.0]) / z
+    for part in branches:
+        admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
 
     return Network(
-        sections=records(
-            [(*each, *blocks(*each[:2]), gap_weight(*each[2:5])) for each in sections], SECTION
+        system=system,
+        sections=Section.array(
+            (*part, *blocks(part), gap_weight(part, system)) for part in sections
         ),
-        branches=records([(a, b, z, 1.0 / z) for a, b, z in branches], BRANCH),
+        branches=Branch.array((*part, 1.0 / part.impedance_ohm) for part in branches),
         sources=sources,
         source_of_node=source_of_node,
         pattern=pattern,
@@ -235,15 +267,15 @@ def assemble(
 
 
 def new_flow(network: Network, n_trains: int) -> Flow:
-    """State of a load flow with room for `n_trains`, all converters running."""
+    """State of a load flow with room for `n_trains`, all units of the sources running."""
     flow = Flow(
-        nodes=blank_records(network.source_of_node.size, NODE_FLOW),
-        sections=blank_records(network.sections.size, SECTION_FLOW),
-        standing=blank_records(n_trains, STANDING),
-        sources=blank_records(network.sources.size, SOURCE_FLOW),
-        blocks=blank_records(network.admittance_s.size, BLOCK),
+        nodes=NodeFlow.blank(network.source_of_node.size),
+        sections=SectionFlow.blank(network.sections.size),
+        standing=Standing.blank(n_trains),
+        sources=SourceFlow.blank(network.sources.size),
+        blocks=Block.blank(network.admittance_s.size),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
     )
-    flow.sources["converters"] = network.sources["installed"]
-    flow.standing["train"] = np.arange(n_trains)
+    flow.sources.running[:] = network.sources["installed"]
+    flow.standing.train[:] = np.arange(n_trains)
     return flow

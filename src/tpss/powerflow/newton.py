@@ -34,15 +34,12 @@ References
 """
 
 import math
-from typing import Any
+from enum import IntEnum
 
 from tpss.kernel import at, inlined, kernel
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.physics.converter import converter_voltage, terminal_voltage
-from tpss.powerflow.block_lu import solve_blocks
-from tpss.powerflow.chain import CHECK, FLAT, WARM, run_chain
-from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.pairs import (
+from tpss.numerics.block_lu import Block, solve_blocks
+from tpss.numerics.pairs import (
+    Pair,
     apply,
     compose,
     determinant,
@@ -50,48 +47,31 @@ from tpss.powerflow.pairs import (
     scaled,
     squared,
 )
+from tpss.powerflow.chain import CHECK, FLAT, WARM, Pass, run_chain
+from tpss.powerflow.network import Flow, Loads, Network
+from tpss.sources.kinds import is_plausible, residual
 
 CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
 its sign on so short a way but at the turning point itself. [p.u.]"""
 
-PER_SQUARE_VOLT = 1.0 / BASE_VOLTAGE_V**2
-
-LOWEST_VOLTAGE = 0.5
-HIGHEST_VOLTAGE = 1.2
-"""Plausible band of all voltages, in per unit of base voltage."""
-
 MOST_PASSES = 40
 MOST_HALVINGS = 12
 
-SOLVED = 0
-NOT_CONVERGED = 1
-IMPLAUSIBLE_VOLTAGE = 2
-WRONG_BRANCH = 3
 
+class Solution(IntEnum):
+    """How Newton's method ended."""
 
-@inlined
-def source_law(
-    s: int, voltage: complex, current: complex, network: Network, flow: Flow
-) -> tuple[complex, complex, complex]:
-    """Voltage that the converter law asks for at these powers, and its derivative over P + jQ.
-
-    Returns f [V] and the pair (s1, s2) with δf = s1 δS + s2 conj(δS). [V/VA]
-    """
-    power = voltage * current.conjugate()
-    magnitude, direction, by_q, angle_by_p, angle_by_q = terminal_voltage(
-        power.real, power.imag, flow.sources[at(s)].converters, network.sources[at(s)]
-    )
-    law = scaled(direction, magnitude)
-    turned = complex(-law.imag, law.real)
-    f_p = scaled(turned, 0.5 * angle_by_p)
-    f_q = scaled(direction, 0.5 * by_q) + scaled(turned, 0.5 * angle_by_q)
-    along = complex(-f_q.imag, f_q.real)
-    return law, f_p - along, f_p + along
+    SOLVED = 0
+    NOT_CONVERGED = 1
+    IMPLAUSIBLE = 2
+    """A voltage outside the plausible band, or a source in a state that its law does not admit."""
+    WRONG_BRANCH = 3
+    """A solution beyond the turning point of the branch that begins at no load."""
 
 
 @kernel
-def _add(block: Any, p: complex, q: complex) -> None:
+def _add(block: Block, p: complex, q: complex) -> None:
     block.p += p
     block.q += q
 
@@ -141,25 +121,23 @@ def _stamp_branches(network: Network, flow: Flow) -> None:
 
 @inlined
 def _turn_source_row(
-    number: int, law: complex, s1: complex, s2: complex, network: Network, flow: Flow
+    number: int, value: complex, by_voltage: Pair, by_current: Pair, network: Network, flow: Flow
 ) -> None:
-    """Replace the current balance of a source's node by the converter law, linearised."""
+    """Turn the current balance of a node, all parts added, into the row of its source's law."""
     node, own = flow.nodes[at(number)], flow.blocks[at(number)]
-    voltage, current = node.voltage_v, node.leaving_current_a
-    t_p, t_q = s2 * voltage.conjugate(), s1 * voltage
+    c_p, c_q = by_current
     begin, end = network.pattern.row_start[at(number)], network.pattern.row_start[at(number + 1)]
     for k in range(begin, end):
         block = flow.blocks[at(network.pattern.places[at(k)])]
-        p, q = compose(t_p, t_q, block.p, block.q)
-        block.p, block.q = -p, -q
-    own.p += 1.0 - s1 * current.conjugate()
-    own.q -= s2 * current
+        block.p, block.q = compose(c_p, c_q, block.p, block.q)
+    own.p += by_voltage[0]
+    own.q += by_voltage[1]
     # The right side holds minus the change of the leaving current that closes the gaps.
-    node.right_side = law - voltage - apply(t_p, t_q, node.right_side)
+    node.right_side = apply(c_p, c_q, node.right_side) - value
 
 
 @inlined
-def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
+def _evaluate_node(n: int, start: Pass, network: Network, flow: Flow) -> float:
     """Square of the residual of node `n` [p.u.], and its row of the linear system.
 
     References
@@ -169,16 +147,18 @@ def _evaluate_node(n: int, start: int, network: Network, flow: Flow) -> float:
     node, s = flow.nodes[at(n)], network.source_of_node[at(n)]
     if s < 0:
         node.right_side -= node.leaving_current_a
-        return squared(node.leaving_current_a) * (BASE_VOLTAGE_V / BASE_POWER_VA) ** 2
-    law, s1, s2 = source_law(s, node.voltage_v, node.leaving_current_a, network, flow)
+        return squared(node.leaving_current_a) * network.system.per_square_ampere
+    value, by_voltage, by_current = residual(
+        node.voltage_v, node.leaving_current_a, flow.sources[at(s)].running, network.sources[at(s)]
+    )
     if start != CHECK:
-        _turn_source_row(n, law, s1, s2, network, flow)
-    return squared(node.voltage_v - law) * PER_SQUARE_VOLT
+        _turn_source_row(n, value, by_voltage, by_current, network, flow)
+    return squared(value) * network.system.per_square_volt
 
 
 @inlined
 def evaluate(
-    scale: float, start: int, network: Network, flow: Flow, loads: Loads
+    scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
 ) -> tuple[float, float, float]:
     """One pass over the network: residuals, and the linear system of the next Newton step.
 
@@ -186,8 +166,7 @@ def evaluate(
     ----------
     scale : float
         Factor on all loads. [1]
-    start : int
-        `WARM`, `FLAT` or `CHECK`.
+    start : Pass
 
     Returns
     -------
@@ -212,7 +191,7 @@ def evaluate(
         flow.nodes[at(section.end_node)].leaving_current_a -= found.end_current_a
         if start != CHECK:
             sign *= _stamp_section(s, network, flow)
-        square = squared(found.gap_v) * PER_SQUARE_VOLT
+        square = squared(found.gap_v) * network.system.per_square_volt
         largest = max(largest, square * section.gap_weight)
         merit += square
     # 3. Current balance of the nodes, or the law of the sources.
@@ -278,53 +257,49 @@ def _close_gaps(flow: Flow) -> None:
 
 
 @inlined
-def voltages_are_plausible(flow: Flow) -> bool:
+def voltages_are_plausible(network: Network, flow: Flow) -> bool:
     """Whether every node and train lies in the band that a sound line never leaves."""
-    low = (LOWEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
-    high = (HIGHEST_VOLTAGE * BASE_VOLTAGE_V) ** 2
+    low = network.system.lowest_voltage_v**2
+    high = network.system.highest_voltage_v**2
     for n in range(flow.nodes.size):
         if not low <= squared(flow.nodes[at(n)].voltage_v) <= high:
             return False
-    for k in range(flow.sections[at(flow.sections.size - 1)].end):
-        if not low <= squared(flow.standing[at(k)].voltage_v) <= high:
-            return False
+    for s in range(flow.sections.size):
+        for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):
+            if not low <= squared(flow.standing[at(k)].voltage_v) <= high:
+                return False
     return True
 
 
 @inlined
 def sources_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether the droop leaves every station a positive voltage.
-
-    The law goes on through zero.  Stations out of phase can meet it with a voltage of turned sign, at
-    some hundred times the reactive power of their machines.
-    """
+    """Whether every source is in a state that its law admits."""
     for s in range(network.sources.size):
-        law = network.sources[at(s)]
-        node = flow.nodes[at(law.node)]
-        reactive_var = (node.voltage_v * node.leaving_current_a.conjugate()).imag
-        if converter_voltage(reactive_var, flow.sources[at(s)].converters, law) <= 0.0:
+        source = network.sources[at(s)]
+        node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
+        if not is_plausible(node.voltage_v, node.leaving_current_a, running, source):
             return False
     return True
 
 
 @inlined
-def _conclude(sign: float, network: Network, flow: Flow) -> int:
+def _conclude(sign: float, network: Network, flow: Flow) -> Solution:
     """Status of a state without mismatch."""
     _close_gaps(flow)
-    if not (voltages_are_plausible(flow) and sources_are_plausible(network, flow)):
-        return IMPLAUSIBLE_VOLTAGE
-    return SOLVED if sign > 0.0 else WRONG_BRANCH
+    if not (voltages_are_plausible(network, flow) and sources_are_plausible(network, flow)):
+        return Solution.IMPLAUSIBLE
+    return Solution.SOLVED if sign > 0.0 else Solution.WRONG_BRANCH
 
 
 @kernel
-def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads) -> tuple[int, int]:
+def newton(scale: float, start: Pass, network: Network, flow: Flow, loads: Loads) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
     Parameters
     ----------
     scale : float
         Factor on all loads. [1]
-    start : int
+    start : Pass
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
     """
     kind, passes, after_flat = start, 0, False
@@ -354,4 +329,4 @@ def newton(scale: float, start: int, network: Network, flow: Flow, loads: Loads)
         kind = CHECK if mismatch < CLOSE and kind == WARM else WARM
         size, trials = 1.0, 1
         _mark_base(flow)
-    return NOT_CONVERGED, passes
+    return Solution.NOT_CONVERGED, passes

@@ -8,10 +8,9 @@
 """
 
 from tpss.kernel import at, inlined, kernel
-from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.newton import SOLVED, newton
+from tpss.powerflow.newton import Solution, newton
 
 FIRST_STEP = 0.25
 STEP_GROWTH = 1.5
@@ -44,10 +43,10 @@ def remember(first: int, flow: Flow) -> None:
 
 
 @kernel
-def start_flat(flow: Flow) -> None:
+def start_flat(network: Network, flow: Flow) -> None:
     """Set the state without load: base voltage everywhere, no current."""
     for n in range(flow.nodes.size):
-        flow.nodes[at(n)].voltage_v = BASE_VOLTAGE_V
+        flow.nodes[at(n)].voltage_v = network.system.base_voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].current_a = 0.0
 
@@ -74,7 +73,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
 
     The state ends at the solution for that share, whether it is 1 or less.
     """
-    start_flat(flow)
+    start_flat(network, flow)
     _keep(flow)
     share, step, passes = 0.0, FIRST_STEP, 0
     while share < 1.0 and step >= SHORTEST_STEP:
@@ -82,7 +81,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
         start = FLAT if share == 0.0 else WARM
         status, more = newton(target, start, network, flow, loads)
         passes += more
-        if status == SOLVED:
+        if status == Solution.SOLVED:
             _keep(flow)
             share = target
             step *= STEP_GROWTH
@@ -115,12 +114,12 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
     passes = 0
     if warm:
         status, passes = newton(1.0, WARM, network, flow, loads)
-        if status == SOLVED:
+        if status == Solution.SOLVED:
             return 1.0, passes
-    start_flat(flow)
+    start_flat(network, flow)
     status, more = newton(1.0, FLAT, network, flow, loads)
     passes += more
-    if status == SOLVED:
+    if status == Solution.SOLVED:
         return 1.0, passes
     share, more = continue_from_zero(network, flow, loads)
     return share, passes + more

@@ -149,14 +149,19 @@ def unique(field: str) -> AfterValidator:
     """Demand that no two items share the same `field`."""
 
     def check(items: Sequence[_Item]) -> Sequence[_Item]:
-        seen: set[Any] = set()
-        for item in items:
-            value = getattr(item, field)
-            if value in seen:
-                raise PydanticCustomError(
-                    "not_unique", "{field} {value} occurs twice", {"field": field, "value": value}
-                )
-            seen.add(value)
+        demand_unique(items, field)
         return items
 
     return AfterValidator(check)
+
+
+def demand_unique(items: Sequence[Any], field: str) -> None:
+    """Raise a fault if two items share the same `field`."""
+    seen: set[Any] = set()
+    for item in items:
+        value = getattr(item, field)
+        if value in seen:
+            raise PydanticCustomError(
+                "not_unique", "{field} {value} occurs twice", {"field": field, "value": value}
+            )
+        seen.add(value)

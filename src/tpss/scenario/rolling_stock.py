@@ -114,6 +114,19 @@ class Train(Part):
     motor_current: Literal["new", "former"] = Field(
         default="new", description="Motor current of one motor, or the sum of all four."
     )
+    transformer_primary_kv: Real = Field(
+        default=15.0,
+        ge=0.1,
+        le=100,
+        description="Line voltage to which the transformer's secondary voltage belongs.",
+    )
+    transformer_secondary_v: Real = Field(
+        default=487.0,
+        ge=10,
+        le=10_000,
+        description="Secondary voltage of the locomotive's transformer, for bridges and filter; that "
+        "of an Rc4 by default.",
+    )
     filter_reactance_ohm: Real | None = Field(
         default=None,
         ge=-1_000,

@@ -1,0 +1,78 @@
+"""What a driver knows of the line and of the simulation: limits, gradients, stops, and the choices made.
+
+To compiled code each array costs a call something; the whole model would cost as much as driving does.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.physics.adhesion import Rail
+from tpss.record import Record, Records
+from tpss.vehicle.train_type import TrainType
+
+Floats = npt.NDArray[np.float64]
+
+
+class Driver(IntEnum):
+    """Drivers."""
+
+    REGULATED = 0
+    AGGRESSIVE = 1
+    """That of the original program."""
+
+
+class Braking(IntEnum):
+    """Manners of braking."""
+
+    WHOLE_STEPS = 0
+    WITHIN_STEP = 1
+
+
+class Stop(Record):
+    """A stop of a route."""
+
+    position_m: float
+    """Where it is. [m]"""
+    dwell_steps: int
+    """Steps that a train stands there."""
+    destination: bool
+    """Whether the route ends there."""
+
+
+class Profile(NamedTuple):
+    """A staircase over position: each value holds from its position to the next one's."""
+
+    from_m: Floats
+    value: Floats
+
+
+class Options(NamedTuple):
+    """Choices of the simulation."""
+
+    step_s: float
+    """Time step. [s]"""
+    mean_power: bool
+    """Whether motor power is billed with the mean speed of a step, not with that at its start."""
+    mean_gradient: bool
+    """Whether the gradient of a step is the mean over its distance, not that at its start."""
+    adhesion_in_km_h: bool
+    """Whether the adhesion law takes the speed in km/h."""
+    rail: Rail
+    driver: Driver
+    braking: Braking
+
+
+class DrivingData(NamedTuple):
+    """What drivers know."""
+
+    options: Options
+    gradients: Profile
+    """Rise over run. [1]"""
+    limits: Profile
+    """Speed limits. [m/s]"""
+    stops: Records[Stop]
+    """Shape (routes, most stops)."""
+    types: Records[TrainType]

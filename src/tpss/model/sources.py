@@ -1,0 +1,73 @@
+"""Feeding stations of a scenario as sources in SI units: one builder a kind of station."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from tpss.record import Records
+from tpss.scenario.supply import ConverterStation, Station, TransformerStation
+from tpss.sources.converter import ConverterLaw
+from tpss.sources.grid import GridLaw
+from tpss.sources.kinds import Source, SourceKind
+from tpss.units import si
+
+
+def _converter_station(node: int, station: ConverterStation) -> Any:
+    kind = station.type
+    base_ohm_va = si(kind, "base_voltage_kv") ** 2
+    return Source.row(
+        node=node,
+        kind=SourceKind.CONVERTER,
+        installed=station.converters,
+        controlled=station.control == "loading",
+        rating_va=si(kind, "rating_mva"),
+        converter=ConverterLaw.row(
+            no_load_voltage_v=si(kind, "no_load_voltage_kv"),
+            droop_v_per_var=si(kind, "droop_kv_per_mvar"),
+            generator_reactance_ohm=kind.generator_reactance_pu
+            * base_ohm_va
+            / si(kind, "generator_base_mva"),
+            motor_reactance_ohm=kind.motor_reactance_pu * base_ohm_va / si(kind, "motor_base_mva"),
+            motor_voltage_v=si(kind, "base_voltage_kv"),
+            grid_reactance_ohm=si(station, "grid_reactance_ohm"),
+            grid_reactive_power_var=si(station, "grid_reactive_power_mvar"),
+            grid_angle_rad=si(station, "grid_angle_deg"),
+        ),
+    )
+
+
+def _transformer_station(node: int, station: TransformerStation) -> Any:
+    voltage_v, unit = si(station, "no_load_voltage_kv"), station.transformer
+    base_ohm = voltage_v**2 / si(unit, "rated_mva")
+    reactance_pu = math.sqrt(unit.z_pu**2 - unit.r_pu**2)
+    grid_ohm = 0j
+    if station.grid_short_circuit_mva is not None:
+        # A transformer between two phases sees the impedance of both.
+        size_ohm = 2.0 * voltage_v**2 / si(station, "grid_short_circuit_mva")
+        direction = complex(station.grid_r_over_x, 1.0)
+        grid_ohm = size_ohm * direction / abs(direction)
+    return Source.row(
+        node=node,
+        kind=SourceKind.GRID,
+        installed=station.transformers,
+        controlled=False,
+        rating_va=si(unit, "rated_mva"),
+        grid=GridLaw.row(
+            no_load_voltage_v=voltage_v,
+            grid_impedance_ohm=grid_ohm,
+            transformer_impedance_ohm=complex(unit.r_pu, reactance_pu) * base_ohm,
+        ),
+    )
+
+
+BUILDERS: dict[type, Callable[[int, Any], Any]] = {
+    ConverterStation: _converter_station,
+    TransformerStation: _transformer_station,
+}
+"""What makes a row of `Source` of a station, by its kind."""
+
+
+def build_sources(nodes: list[int], stations: tuple[Station, ...]) -> Records[Source]:
+    """Sources at their nodes, in the order of the stations."""
+    rows = [BUILDERS[type(s)](node, s) for node, s in zip(nodes, stations, strict=True)]
+    return Source.array(rows)

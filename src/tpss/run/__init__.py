@@ -1,0 +1,1 @@
+"""The run around the steps: who departs when, stretches of steps, progress, interrupts, compilation."""

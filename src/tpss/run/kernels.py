@@ -1,0 +1,150 @@
+"""Compiled kernels before the first step: whether there are any, and a cold start on two cores.
+
+The kernels are compiled in two parts, by two processes at once: the load flow, and what prepares and
+carries out a step.  What they have in common is little; what calls both, the clock, is compiled after
+them.  The second process keeps what it compiles in a cache folder of its own, as two that write into
+one may spoil each other's entries.  The first one adopts from it whatever itself does not have.  Where a
+second process is of no use or does not succeed, the first one compiles everything, a little later.
+"""
+
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numba
+
+from tpss.driving.braking import shortest_stop
+from tpss.driving.stops import stand_at_stop
+from tpss.driving.whole_steps import replan
+from tpss.driving.within_step import aim_to_stop, replan as replan_within
+from tpss.kernel import cache_folder, kernels_are_compiled, switch
+from tpss.powerflow.chain import WARM
+from tpss.powerflow.network import Loads
+from tpss.powerflow.newton import newton
+from tpss.powerflow.solve import continue_from_zero
+from tpss.run.run import Clock, Run
+from tpss.run.services import ScheduledTrain, train_records
+from tpss.step.advance import advance
+from tpss.step.coupling import decide
+from tpss.step.model import Model, driving_data
+from tpss.step.record import record_instant
+from tpss.step.recording import new_recording
+from tpss.step.state import State, new_state
+from tpss.step.traffic import list_trains
+from tpss.vehicle.demand import update_speed_terms
+
+Call = tuple[Any, tuple[Any, ...]]
+"""A kernel, and arguments of the types with which the clock calls it."""
+
+
+def are_ready() -> bool:
+    """Whether all kernels of exactly this source are compiled; the clock's is compiled last."""
+    return kernels_are_compiled(advance.__name__)
+
+
+def warm_up(model: Model, clock: Clock = advance) -> None:
+    """Compile the kernels, or load them from the cache, without simulating anything.
+
+    What another clock than `advance` calls one by one is compiled by a step without trains.
+
+    Parameters
+    ----------
+    model : Model
+        Any: all have the same types.
+    clock : callable
+        What runs the steps.
+    """
+    if not are_ready():
+        _compile_in_parts(model)
+    Run(model, [], 0).advance_to(0)
+    if clock is not advance:
+        Run(model, [], 1, clock).advance_to(1)
+
+
+def load_flow_calls(model: Model) -> list[Call]:
+    """Kernels that solve a load flow."""
+    state = _start(model)
+    loads = Loads(state.trains, model.types, state.scratch)
+    return [
+        (newton, (1.0, WARM, model.network, state.flow, loads)),
+        (continue_from_zero, (model.network, state.flow, loads)),
+    ]
+
+
+def step_calls(model: Model) -> list[Call]:
+    """Kernels that prepare a step, and that carry it out."""
+    state, data = _start(model), driving_data(model)
+    recording = new_recording(model, 0, state.trains.size)
+    train, kind, step = state.trains[0], model.types[0], switch(0)
+    return [
+        (decide, (step, state.flow.standing, state.trains, data)),
+        (update_speed_terms, (1.0, kind, train.demand, model.points, state.scratch)),
+        (shortest_stop, (1.0, 1.0, 1.0)),
+        (replan, (train, kind, data)),
+        (replan_within, (train, kind, data)),
+        (stand_at_stop, (step, train, model.stops)),
+        (list_trains, (state.trains, state.flow)),
+        (record_instant, (step, state.trains, recording)),
+    ]
+
+
+def _start(model: Model) -> State:
+    """State of a run with one train."""
+    trains = [ScheduledTrain("", "", train_type=0, route=0, departure_step=0)]
+    return new_state(model, train_records(trains, 0.0))
+
+
+def compile_calls(calls: list[Call]) -> None:
+    """Compile each kernel for its arguments, or load it from the cache, without running it."""
+    for function, arguments in calls:
+        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+
+
+def _compile_in_parts(model: Model) -> None:
+    """Compile what the clock calls, in two processes; the clock itself is left."""
+    if (os.cpu_count() or 1) < 2 or not sys.executable:
+        return
+    folder = cache_folder()
+    with tempfile.TemporaryDirectory(prefix="part-", dir=folder) as apart:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": apart}
+        command = [sys.executable, "-m", "tpss.run.kernels"]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, **quiet) as second:  # type: ignore[call-overload]
+            try:
+                _send(model, second)
+                compile_calls(load_flow_calls(model))
+                second.wait()
+            finally:
+                second.kill()
+        adopt(Path(apart) / "tpss" / folder.name, folder)
+
+
+def _send(model: Model, process: "subprocess.Popen[bytes]") -> None:
+    assert process.stdin is not None
+    try:
+        with process.stdin as stdin:
+            pickle.dump(model, stdin)
+    except BrokenPipeError:
+        pass  # it has ended already; all is compiled here
+
+
+def adopt(apart: Path, folder: Path) -> None:
+    """Move compiled kernels into a cache folder that does not know them.
+
+    Of a kernel that both know, nothing is moved: entries of one index must be of one origin.
+    """
+    for index in sorted(apart.rglob("*.nbi")):
+        target = folder / index.relative_to(apart)
+        if not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            for code in index.parent.glob(f"{index.stem}.*.nbc"):
+                code.replace(target.parent / code.name)
+            index.replace(target)
+
+
+if __name__ == "__main__":
+    compile_calls(step_calls(pickle.load(sys.stdin.buffer)))

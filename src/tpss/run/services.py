@@ -1,0 +1,138 @@
+"""The traffic as services: who departs when, and who is on the line from the start."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from tpss.record import Records
+from tpss.vehicle.train import Journey, Motion, Phase, Plan, Train
+
+DEPARTURE_ROUNDING_S = 1e-6
+"""A train departs at the first instant that is no more than this before its time. [s]"""
+
+
+@dataclass(frozen=True)
+class Service:
+    """Trains of one kind on one route.
+
+    Departures repeat every `headway_s` from `first_s` on, or are those of `departures_s`.
+    """
+
+    name: str
+    train_type: int
+    route: int
+    start_m: float
+    stops_m: tuple[float, ...]
+    headway_s: float = math.inf
+    first_s: float = 0.0
+    departures_s: tuple[float, ...] = ()
+    already_running: bool = False
+    initial: tuple[tuple[float, float], ...] = ()
+    """Position [m] and speed [m/s] of each train on the line at the start."""
+
+    def departure_times_s(self, until_s: float) -> Iterator[float]:
+        """Times of departure before `until_s`, ascending. [s]"""
+        if self.departures_s:
+            yield from (time for time in self.departures_s if time < until_s)
+            return
+        count = 0
+        while (time := self.first_s + count * self.headway_s) < until_s:
+            yield time
+            count += 1
+
+    def departures_before(self, until_s: float) -> int:
+        """Number of departures before `until_s`."""
+        if self.departures_s:
+            return sum(time < until_s for time in self.departures_s)
+        return max(0, math.ceil((until_s - self.first_s) / self.headway_s))
+
+
+class ScheduledTrain(NamedTuple):
+    """A train as it enters a run; from `phase` on the fields are those of `Journey`, in their order."""
+
+    name: str
+    service: str
+    train_type: int
+    route: int
+    departure_step: int
+    phase: Phase = Phase.PENDING
+    position_m: float = 0.0
+    speed_m_s: float = 0.0
+    gradient: int = 0
+    next_stop: int = 0
+    dwell_steps_left: int = 0
+    plan_step: int = 0
+    plan_hold_steps: int = 0
+    plan_first: float = 0.0
+    plan_full_steps: int = 0
+    plan_last: float = 0.0
+
+
+def departing_trains(services: list[Service], step_s: float, first: int, last: int) -> list[ScheduledTrain]:
+    """Trains that depart at steps `first` to `last` - 1, by time and, at the same time, by service."""
+    trains = []
+    for service in services:
+        for number, time_s in enumerate(service.departure_times_s(last * step_s), 1):
+            step = max(0, math.ceil((time_s - DEPARTURE_ROUNDING_S) / step_s))
+            if first <= step < last:
+                trains.append(
+                    ScheduledTrain(
+                        name=f"{service.name} {number}",
+                        service=service.name,
+                        train_type=service.train_type,
+                        route=service.route,
+                        departure_step=step,
+                        position_m=service.start_m,
+                    )
+                )
+    return sorted(trains, key=lambda train: train.departure_step)
+
+
+def placed_trains(service: Service) -> list[ScheduledTrain]:
+    """Trains that a service names as on the line at the start, each heading for its next stop."""
+    return [
+        ScheduledTrain(
+            name=f"{service.name} initial {number}",
+            service=service.name,
+            train_type=service.train_type,
+            route=service.route,
+            departure_step=0,
+            phase=Phase.DRIVING,
+            position_m=position_m,
+            speed_m_s=speed_m_s,
+            next_stop=next(i for i, stop_m in enumerate(service.stops_m) if stop_m > position_m),
+        )
+        for number, (position_m, speed_m_s) in enumerate(service.initial, 1)
+    ]
+
+
+def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Train]:
+    """Records of the trains, in their order, with a first guess of their voltage. [V]"""
+    records = Train.blank(len(trains))
+    parts = {"motion": Motion, "plan": Plan}
+    fields: list[tuple[str, ...]] = [("train_type",), ("route",), ("timetable", "departure_step")]
+    fields += [(name, field) for name, part in parts.items() for field in part.dtype.names or ()]
+    for (*part, field), column in zip(fields, list(zip(*trains, strict=True))[2:], strict=False):
+        if any(column):  # most of them are zero
+            (records[part[0]] if part else records)[field] = column
+    records["timetable"]["arrival_step"] = -1
+    records["demand"]["voltage_v"] = voltage_v
+    records["demand"]["speed_m_s"] = -1.0
+    return records
+
+
+def trains_at(journeys: Records[Journey], train: ScheduledTrain) -> list[ScheduledTrain]:
+    """A train where it once was, ready to enter another run at its start."""
+    return [
+        ScheduledTrain(
+            f"{train.service} initial {number}",
+            train.service,
+            train.train_type,
+            train.route,
+            0,
+            *motion,
+            *plan,
+        )
+        for number, (motion, plan) in enumerate(journeys.tolist(), 1)
+    ]

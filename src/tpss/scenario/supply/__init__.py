@@ -1,0 +1,18 @@
+"""The power supply, one file a noun."""
+
+from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
+from tpss.scenario.supply.high_voltage import HighVoltageLine, Transformer
+from tpss.scenario.supply.supply import Station, Supply
+from tpss.scenario.supply.transformer_station import TransformerStation
+
+__all__ = [
+    "Catenary",
+    "ConverterStation",
+    "ConverterType",
+    "HighVoltageLine",
+    "Station",
+    "Supply",
+    "Transformer",
+    "TransformerStation",
+]

@@ -1,0 +1,41 @@
+"""The contact line."""
+
+from typing import Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tpss.scenario.fields import Part, Real
+
+SMALLEST_OHM = 0.0001
+"""Lumped impedances smaller than this are lost in the rounding of voltages. [Ω]"""
+
+
+class Catenary(Part):
+    """A contact-line system, per kilometre; a connection impedance makes it an AT system."""
+
+    r_ohm_per_km: Real = Field(ge=0.001, le=10, description="Resistance.")
+    x_ohm_per_km: Real = Field(ge=0, le=10, description="Reactance at the supply's frequency.")
+    capacitance_nf_per_km: Real = Field(
+        default=0.0, ge=0, le=1_000, description="Capacitance to earth."
+    )
+    connection_r_ohm: Real = Field(
+        default=0.0, ge=0, le=100, description="Resistance between a feeding point and the line."
+    )
+    connection_x_ohm: Real = Field(
+        default=0.0, ge=0, le=100, description="Reactance between a feeding point and the line."
+    )
+
+    @model_validator(mode="after")
+    def _a_connection_has_an_impedance_that_counts(self) -> Self:
+        impedance_ohm = abs(complex(self.connection_r_ohm, self.connection_x_ohm))
+        if 0.0 < impedance_ohm < SMALLEST_OHM:
+            raise PydanticCustomError(
+                "conflict",
+                "the connection impedance ({impedance} ohm) is next to nothing",
+                {
+                    "impedance": impedance_ohm,
+                    "remedy": f"give at least {SMALLEST_OHM:g} ohm, or 0: no connection impedance",
+                },
+            )
+        return self

@@ -1,0 +1,64 @@
+"""Converter stations between the 50 Hz grid and the railway."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from tpss.scenario.fields import FromLibrary, Name, Part, Real, Whole
+
+
+class ConverterType(Part):
+    """A frequency converter; reactances in per unit of their bases."""
+
+    rating_mva: Real = Field(ge=0.1, le=1_000, description="Rated power of one converter.")
+    no_load_voltage_kv: Real = Field(ge=0.1, le=100, description="Terminal voltage without load.")
+    droop_kv_per_mvar: Real = Field(ge=0, le=1, description="Fall of voltage per reactive power.")
+    generator_reactance_pu: Real = Field(
+        ge=0, le=10, description="q-axis reactance of the generator."
+    )
+    generator_base_mva: Real = Field(
+        ge=0.1, le=1_000, description="Base of the generator's reactance."
+    )
+    motor_reactance_pu: Real = Field(ge=0, le=10, description="q-axis reactance of the motor.")
+    motor_base_mva: Real = Field(ge=0.1, le=1_000, description="Base of the motor's reactance.")
+    base_voltage_kv: Real = Field(ge=1, le=100, description="Base of both, on the railway's side.")
+
+
+class ConverterStation(Part):
+    """A converter station that feeds the contact line."""
+
+    name: Name = Field(description="Name, shown in the results.")
+    position_km: Real = Field(ge=0, description="Position on the line.")
+    type: Annotated[ConverterType, FromLibrary("converters")] = Field(
+        description="Library name, or a table of your own."
+    )
+    converters: Whole = Field(ge=1, le=100, description="Number of converters installed.")
+    control: Literal["all-on", "loading"] = Field(
+        default="all-on",
+        description="Whether all converters run, or as many as the loading needs.",
+    )
+    grid_reactance_ohm: Real = Field(
+        default=0.0, ge=0, le=100, description="Reactance of the 50 Hz grid, on the railway's side."
+    )
+    grid_reactive_power_mvar: Real = Field(
+        default=0.0,
+        ge=-100,
+        le=100,
+        description="Reactive power that the station delivers to the 50 Hz grid.",
+    )
+    grid_angle_deg: Real = Field(
+        default=0.0,
+        ge=-60,
+        le=60,
+        description="Angle of the 50 Hz grid, seen at the railway's frequency.",
+    )
+
+    @property
+    def installed(self) -> int:
+        """Number of converters installed."""
+        return self.converters
+
+    @property
+    def no_load_voltage_kv(self) -> float:
+        """Terminal voltage without load. [kV]"""
+        return self.type.no_load_voltage_kv

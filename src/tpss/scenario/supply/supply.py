@@ -1,0 +1,106 @@
+"""The power supply: its system, contact line, high-voltage line and feeding stations."""
+
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError, PydanticKnownError
+
+from tpss import library
+from tpss.scenario.fields import FromLibrary, Part, Real, demand_unique, fault, unique
+from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.converter_station import ConverterStation
+from tpss.scenario.supply.high_voltage import HighVoltageLine
+from tpss.scenario.supply.transformer_station import TransformerStation
+
+SYSTEMS = "systems"
+DEFAULT_SYSTEM = "15kV-16.7Hz"
+
+Station = ConverterStation | TransformerStation
+"""A feeding station of any kind."""
+
+STATIONS = ("converter_stations", "transformer_stations")
+"""Keys of the supply under which feeding stations stand, in the order of the results."""
+
+
+def _is_a_system(name: str) -> str:
+    known = library.entries(SYSTEMS)
+    if name not in known:
+        raise PydanticCustomError(
+            "unknown_name",
+            "the library has no such entry in {kind}",
+            {"kind": SYSTEMS, "known": sorted(known)},
+        )
+    return name
+
+
+def _frequency_of_the_system(data: dict[str, Any]) -> float:
+    system = data.get("system", DEFAULT_SYSTEM)  # an unknown one has a fault of its own
+    return float(library.values(SYSTEMS, system)["frequency_hz"])
+
+
+class Supply(Part):
+    """Everything that feeds the trains."""
+
+    system: Annotated[str, AfterValidator(_is_a_system)] = Field(
+        default=DEFAULT_SYSTEM,
+        description="Electrification system, a library entry; the result is judged by its limits.",
+    )
+    frequency_hz: Real = Field(
+        default_factory=_frequency_of_the_system,
+        ge=10,
+        le=60,
+        description="Frequency of the contact line; leave it out: that of the system.",
+    )
+    catenary: Annotated[Catenary, FromLibrary("catenaries")] = Field(
+        description="Library name, or a table of your own."
+    )
+    high_voltage_line: HighVoltageLine | None = Field(
+        default=None, description="High-voltage line; leave it out if there is none."
+    )
+    transformer_stations: Annotated[
+        tuple[TransformerStation, ...], unique("name"), unique("position_km")
+    ] = Field(default=(), description="Transformer stations at a grid of the same frequency.")
+    converter_stations: Annotated[
+        tuple[ConverterStation, ...], unique("name"), unique("position_km")
+    ] = Field(
+        default=(),
+        validate_default=True,
+        description="Converter stations; there is at least one feeding station.",
+    )
+
+    @field_validator("converter_stations")
+    @classmethod
+    def _at_least_one_station(
+        cls, stations: tuple[ConverterStation, ...], info: ValidationInfo
+    ) -> tuple[ConverterStation, ...]:
+        others = info.data.get("transformer_stations")
+        if not stations and others == ():
+            raise PydanticKnownError(
+                "too_short", {"field_type": "Tuple", "min_length": 1, "actual_length": 0}
+            )
+        for field in ("name", "position_km"):
+            demand_unique((*stations, *(others or ())), field)
+        return stations
+
+    @property
+    def stations(self) -> tuple[Station, ...]:
+        """All feeding stations, in the order of the results."""
+        return (*self.converter_stations, *self.transformer_stations)
+
+    @property
+    def system_values(self) -> dict[str, Any]:
+        """What the library says of the system."""
+        return library.values(SYSTEMS, self.system)
+
+    @model_validator(mode="after")
+    def _stations_feed_this_system(self) -> Self:
+        low, high = (self.system_values[key] for key in ("lowest_pu", "highest_pu"))
+        low, high = (pu * self.system_values["base_kv"] for pu in (low, high))
+        for station in self.stations:
+            if not low <= station.no_load_voltage_kv <= high:
+                raise fault(
+                    f"{station.name} feeds {station.no_load_voltage_kv:g} kV without load, outside of "
+                    f"the {low:g} to {high:g} kV of the system {self.system}",
+                    "choose the system or the no-load voltage that is meant",
+                )
+        return self

@@ -1,0 +1,1 @@
+"""What feeds the network: one file a kind of source, with its parameters and its law."""

@@ -1,0 +1,107 @@
+"""A source of the network, whichever kind it is: its law, what is plausible, its loading, its losses.
+
+The load flow, the audit and the least-squares formulation know sources by the functions here.  A kind
+is a file beside this one, with the record of its parameters and its law; here it has a member of
+`SourceKind`, a field in `Source`, and a branch where it differs.
+"""
+
+from enum import IntEnum
+
+from tpss.kernel import inlined, kernel
+from tpss.numerics.pairs import Pair, magnitude
+from tpss.record import Record
+from tpss.sources.converter import ConverterLaw, converter_is_plausible, converter_residual
+from tpss.sources.grid import GridLaw, grid_losses, grid_residual
+
+
+class SourceKind(IntEnum):
+    """Kinds of sources."""
+
+    CONVERTER = 0
+    GRID = 1
+
+
+class Source(Record):
+    """A feeding station: its node, its units, and the parameters of each kind."""
+
+    node: int
+    """Fixed node at which it feeds."""
+    kind: SourceKind
+    """Which of the kinds holds."""
+    installed: int
+    """Number of equal units (converters, transformers) installed."""
+    controlled: bool
+    """Whether the number of running units follows the loading."""
+    rating_va: float
+    """Rated power of one unit. [VA]"""
+    converter: ConverterLaw = ConverterLaw.row()
+    grid: GridLaw = GridLaw.row()
+
+
+@inlined
+def residual(
+    voltage: complex, current: complex, running: float, source: Source
+) -> tuple[complex, Pair, Pair]:
+    """Voltage of a source less what its law asks for, and the derivatives of that difference. [V]
+
+    Parameters
+    ----------
+    voltage : complex
+        V, at the node. [V]
+    current : complex
+        J, that leaves the node into the network. [A]
+    running : float
+        Number of units that run, at least 1.
+    source : Source
+
+    Returns
+    -------
+    residual : complex
+        V - f(V, J), zero at a solution. [V]
+    by_voltage, by_current : Pair
+        Its derivatives over V [1] and over J [Ω].
+    """
+    if source.kind == SourceKind.GRID:
+        return grid_residual(voltage, current, running, source.grid)
+    return converter_residual(voltage, current, running, source.converter)
+
+
+@inlined
+def is_plausible(voltage: complex, current: complex, running: float, source: Source) -> bool:
+    """Whether a source can be in a state that its law admits."""
+    if source.kind == SourceKind.CONVERTER:
+        return converter_is_plausible(voltage, current, running, source.converter)
+    return True
+
+
+@inlined
+def losses(current: complex, running: float, source: Source) -> float:
+    """Losses within a source, none of a converter. [W]
+
+    Those of converters are not described.
+    """
+    if source.kind == SourceKind.GRID:
+        return grid_losses(current, running, source.grid)
+    return 0.0
+
+
+@kernel
+def loading(power: complex, running: float, rating_va: float) -> float:
+    r"""Apparent power of a source over the rating of its running units. [1]
+
+    .. math:: Ld = \sqrt{P_G^2 + Q_G^2} / (NoC_{used} \, S_{nom})
+
+    Parameters
+    ----------
+    power : complex
+        P + jQ fed into the railway. [VA]
+    running : float
+        Number of units that run.
+    rating_va : float
+        Rated power of one unit. [VA]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (3.6).
+    """
+    return magnitude(power) / (running * rating_va)

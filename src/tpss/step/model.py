@@ -1,0 +1,42 @@
+"""Everything that stays as it is during a run."""
+
+from typing import NamedTuple
+
+from tpss.driving.data import DrivingData, Options, Profile, Stop
+from tpss.kernel import inlined
+from tpss.numerics.curve import Points
+from tpss.powerflow.network import Network
+from tpss.record import Records
+from tpss.vehicle.train_type import TrainType
+
+
+class RunControl(NamedTuple):
+    """How a run differs from that of the coupled simulation of all its traffic."""
+
+    fixed_voltage_v: float = 0.0
+    """Voltage at every pantograph without a load flow, or 0 for the coupled simulation. [V]"""
+    studied_train: int = -1
+    """The run ends with its arrival; -1: it does not."""
+
+
+class Model(NamedTuple):
+    """Everything that stays as it is during a run."""
+
+    options: Options
+    control: RunControl
+    gradients: Profile
+    """Rise over run. [1]"""
+    limits: Profile
+    """Speed limits. [m/s]"""
+    stops: Records[Stop]
+    """Shape (routes, most stops)."""
+    types: Records[TrainType]
+    points: Points
+    """Of all curves of the trains."""
+    network: Network
+
+
+@inlined
+def driving_data(model: Model) -> DrivingData:
+    """The part of a model that drivers know."""
+    return DrivingData(model.options, model.gradients, model.limits, model.stops, model.types)

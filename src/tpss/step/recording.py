@@ -1,0 +1,126 @@
+"""The recording: everything that is kept of a run, one row a step."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.record import Record, Records
+from tpss.step.model import Model
+from tpss.step.state import Counter, Floats, TrainState
+from tpss.vehicle.train import Journey
+
+Indices = npt.NDArray[np.int64]
+
+
+class TrainRow(Record):
+    """What is recorded of a train at an instant and over the interval that follows.
+
+    Voltages are kept as the load flow has them: magnitude and angle are found where they are asked for.
+    Of an interval in which forces change these are the means.
+    """
+
+    position: float
+    speed: float
+    acceleration: float
+    tractive_force: float
+    braking_force: float
+    running_resistance: float
+    gradient_force: float
+    motor_current: float
+    pantograph_real: float
+    pantograph_imag: float
+    active_power: float
+    reactive_power: float
+    holding_time: float
+
+
+class NodeRow(Record):
+    """Voltage of a node, at the contact line's level."""
+
+    node_real: float
+    node_imag: float
+
+
+class StationRow(Record):
+    """What is recorded of a feeding station."""
+
+    station_active_power: float
+    station_reactive_power: float
+    active_converters: float
+    converter_loading: float
+
+
+class Recording(NamedTuple):
+    """Everything that is kept, one row a step; NaN where there is nothing."""
+
+    trains: Records[TrainRow]
+    """Shape (instants, trains)."""
+    train_state: npt.NDArray[np.int8]
+    nodes: Records[NodeRow]
+    """Shape (instants, nodes)."""
+    stations: Records[StationRow]
+    """Shape (instants, stations)."""
+    branch_current: Floats
+    """Lumped branches first, then the start and the end of each section."""
+    network_losses: Floats
+    passes: Indices
+    """Evaluations of the network."""
+    counters: Indices
+    """By `Counter`."""
+    journeys: Records[Journey]
+    """Shape (instants, trains); empty unless they are asked for."""
+
+
+def recording_bytes(model: Model, steps: int, trains: int) -> int:
+    """Memory that a recording takes. [byte]"""
+    network = model.network
+    row = trains * (TrainRow.dtype.itemsize + 1)
+    row += network.source_of_node.size * NodeRow.dtype.itemsize
+    row += network.sources.size * StationRow.dtype.itemsize
+    row += 8 * (network.branches.size + 2 * network.sections.size + 2)
+    return (steps + 1) * row
+
+
+Memory = Callable[[int], Floats]
+"""What gives an array of so many numbers, whatever they are."""
+
+
+def new_recording(
+    model: Model, steps: int, trains: int, memory: Memory = np.empty, with_journeys: bool = False
+) -> Recording:
+    """Recording with room for `steps` steps and one instant more.
+
+    Parameters
+    ----------
+    memory : callable
+        What gives the room.
+    with_journeys : bool
+        Whether it is also kept how each train would go on.
+    """
+    network, rows = model.network, steps + 1
+
+    def unknown(size: int) -> Floats:
+        room = memory(size)
+        room.fill(np.nan)
+        return room
+
+    def blank(columns: int, kind: type[Record]) -> Any:
+        size = rows * columns * len(kind.dtype.names or ())
+        return unknown(size).view(kind.dtype).reshape(rows, columns).view(np.recarray)
+
+    ends = network.branches.size + 2 * network.sections.size
+    kept = rows if with_journeys else 0
+
+    return Recording(
+        trains=blank(trains, TrainRow),
+        train_state=np.full((rows, trains), TrainState.ABSENT, dtype=np.int8),
+        nodes=blank(network.source_of_node.size, NodeRow),
+        stations=blank(network.sources.size, StationRow),
+        branch_current=unknown(rows * ends).reshape(rows, ends),
+        network_losses=unknown(rows),
+        passes=np.zeros(rows, dtype=np.int64),
+        counters=np.zeros(len(Counter), dtype=np.int64),
+        journeys=Journey.blank(kept, trains),
+    )

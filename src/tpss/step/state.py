@@ -1,0 +1,96 @@
+"""What the clock reads and writes: the state of trains, network and converter control."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.numerics.series import SCRATCH_SHAPE
+from tpss.powerflow.network import Flow, new_flow
+from tpss.record import Record, Records
+from tpss.step.model import Model
+from tpss.vehicle.train import Train
+
+Floats = npt.NDArray[np.float64]
+
+CONTROL_PERIOD_S = 180.0
+"""Time between two actions of the converter control. [s] [Boullanger2009]_, section 3.5."""
+
+
+class Status(IntEnum):
+    """How a call of the clock ended."""
+
+    RUNNING = 0
+    FINISHED = 1
+    COLLAPSED = 2
+    STALLED = 3
+
+
+class TrainState(IntEnum):
+    """Codes of `train_state` in the result."""
+
+    ABSENT = -1
+    WAITING = 0
+    MOTORING = 1
+    COASTING = 2
+    BRAKING = 3
+    DWELLING = 4
+    ARRIVED = 5
+
+
+class Counter(IntEnum):
+    """What was limited or left its range, counted in steps of one train."""
+
+    EFFORT_EXTRAPOLATED = 0
+    EFFORT_CLIPPED = 1
+    BRIDGE_EXTRAPOLATED = 2
+    BRIDGE_CLIPPED = 3
+    POWER_FACTOR_EXTRAPOLATED = 4
+    SHORT_PIECE = 5
+    EFFICIENCY_EXTRAPOLATED = 6
+    CURRENT_LIMITED = 7
+
+
+class Clock(Record):
+    """What the clock keeps from step to step, and why it stopped."""
+
+    loading_steps: int
+    """Steps since the last action of the converter control."""
+    next_action_s: float
+    """When it acts next. [s]"""
+    stop_error_m: float
+    """Largest distance between where a train came to stand and its stop. [m]"""
+    stalled_train: int
+    """Train that has stalled, or -1."""
+    force_needed_n: float
+    """Force that it would take. [N]"""
+    force_available_n: float
+    """Force that it has. [N]"""
+    carried_share: float
+    """Share of the load that the line carries, where it cannot carry all of it. [1]"""
+
+
+class State(NamedTuple):
+    """Everything that a step changes."""
+
+    trains: Records[Train]
+    scratch: Floats
+    """Scratch of the trains' networks: runs of one model may proceed at the same time."""
+    flow: Flow
+    clock: Records[Clock]
+    """One record."""
+
+
+def new_state(model: Model, trains: Records[Train]) -> State:
+    """State before the first step."""
+    clock = Clock.blank(1)
+    clock[0].next_action_s = CONTROL_PERIOD_S
+    clock[0].stalled_train = -1
+    clock[0].carried_share = 1.0
+    return State(
+        trains=trains,
+        scratch=np.empty(SCRATCH_SHAPE),
+        flow=new_flow(model.network, trains.size),
+        clock=clock,
+    )

@@ -1,0 +1,52 @@
+"""Who is on the line: departures and arrivals, and each train's motion to the next instant."""
+
+from tpss.driving.data import DrivingData
+from tpss.driving.manners import move
+from tpss.kernel import at, inlined, kernel
+from tpss.powerflow.network import Flow
+from tpss.record import Records
+from tpss.step.state import Clock
+from tpss.vehicle.train import Phase, Train, is_on_line
+
+
+@inlined
+def depart(step: int, trains: Records[Train]) -> None:
+    """Put trains on the line whose departure has come."""
+    for i in range(trains.size):
+        train = trains[at(i)]
+        if train.motion.phase == Phase.PENDING and train.timetable.departure_step <= step:
+            train.motion.phase = Phase.DRIVING
+
+
+@inlined
+def remove_arrived(trains: Records[Train]) -> None:
+    """Take trains off the line that stand at their destination."""
+    for i in range(trains.size):
+        if trains[at(i)].motion.phase == Phase.ARRIVED:
+            trains[at(i)].motion.phase = Phase.GONE
+
+
+@kernel
+def list_trains(trains: Records[Train], flow: Flow) -> int:
+    """Bring the trains on the line to the front of `flow.standing`, in the order in which they stood
+    there; return their number.
+    """
+    count = 0
+    for k in range(trains.size):
+        i = flow.standing[at(k)].train
+        if is_on_line(trains[at(i)].motion.phase):
+            flow.standing[at(k)].train = flow.standing[at(count)].train
+            flow.standing[at(count)].train = i
+            count += 1
+    return count
+
+
+@inlined
+def move_train(step: int, train: Train, data: DrivingData, clock: Clock) -> None:
+    """Bring a train to the next instant; note how far from its stop it came to stand."""
+    if train.motion.phase == Phase.DWELLING:
+        train.motion.dwell_steps_left -= 1
+        if train.motion.dwell_steps_left <= 0:
+            train.motion.phase = Phase.DRIVING
+        return
+    clock.stop_error_m = max(clock.stop_error_m, move(step, train, data))

@@ -1,0 +1,79 @@
+"""Speed and power with which a step's motor force is billed, and their slopes over the force.
+
+The equations are those of `physics.locomotive`; the slopes serve Newton's method.
+"""
+
+from tpss.kernel import fused, kernel
+from tpss.physics.locomotive import acceleration, machine_force, motor_power
+from tpss.physics.motor import armature_current
+from tpss.vehicle.terms import Demand
+from tpss.vehicle.train_type import TrainType
+
+
+@fused
+def billed_speed(force_n: float, kind: TrainType, demand: Demand) -> tuple[float, float]:
+    """Speed with which motor power is billed, and its slope over the force. [m/s], [m/s/N]
+
+    It is that at the start of the step (the thesis) or the step's mean, v + a h/2, with which
+    traction work, resistance, climb and kinetic energy balance.  A force beyond adhesion accelerates
+    no more than adhesion does.
+
+    Parameters
+    ----------
+    force_n : float
+        What the motors give at the wheel rim. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.7) and (2.11).
+    """
+    weight = demand.mean_speed_weight_s
+    a = acceleration(min(force_n, demand.adhesion_n), demand.resistance_n, kind.inertia_kg)
+    slope = weight / kind.inertia_kg if force_n <= demand.adhesion_n else 0.0
+    return max(0.0, demand.speed_m_s + weight * a), slope
+
+
+@fused
+def billed_power(
+    motor_force_n: float, driven_share: float, kind: TrainType, demand: Demand
+) -> tuple[float, float, float, float]:
+    """Motor power, its slope, the billed speed, and its slope, over the motors' force.
+
+    [W], [W/N], [m/s], [m/s/N]
+
+    Parameters
+    ----------
+    motor_force_n : float
+        Force of all motors. [N]
+    driven_share : float
+        Share of the step over which the power is a mean: 1 for the power while the motors work. [1]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5), (2.7), (2.11) and (2.12).
+    """
+    rotor_kg, inertia_kg = kind.rotor_mass_kg, kind.inertia_kg
+    force = machine_force(motor_force_n, demand.resistance_n, rotor_kg, inertia_kg)
+    speed, by_force = billed_speed(force, kind, demand)
+    speed_slope = by_force / (1.0 + rotor_kg / inertia_kg)
+    slip = kind.slip_factor * driven_share
+    power_slope = motor_power(1.0, speed + motor_force_n * speed_slope, slip)
+    return motor_power(motor_force_n, speed, slip), power_slope, speed, speed_slope
+
+
+@kernel
+def motors_current(
+    motor_force_n: float, speed_m_s: float, driven_share: float, kind: TrainType, demand: Demand
+) -> float:
+    """Sum of the four motors' currents at full line voltage, at a billed speed. [A]
+
+    See `armature_current`.
+    """
+    return armature_current(
+        motor_force_n,
+        kind.slip_factor * driven_share,
+        speed_m_s,
+        kind.base_speed_m_s,
+        kind.highest_motor_voltage_v,
+        demand.speed_m_s < kind.base_speed_m_s,
+    )

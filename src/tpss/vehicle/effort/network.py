@@ -1,0 +1,62 @@
+"""The largest force of a locomotive's motors, over speed, line voltage and motor current.
+
+The voltage is the only input that changes while a step is solved; over it the network is a series.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.kernel import inlined
+from tpss.numerics.neural_network import NEURONS, FeedForwardNetwork, outside
+from tpss.numerics.series import Series, make_series
+
+Array = npt.NDArray[np.float64]
+
+SPEED, VOLTAGE, CURRENT = 0, 1, 2
+
+
+@inlined
+def motor_force_series(
+    speed_m_s: float,
+    voltage_v: float,
+    current_a: float,
+    network: FeedForwardNetwork,
+    scratch: Array,
+    series: Series,
+) -> None:
+    """Make the series of the largest force of all motors over the line voltage. [N], [V]
+
+    Negative only by the network's error (at most 2.1 kN); the caller clips it and counts that.
+
+    Parameters
+    ----------
+    speed_m_s : float
+        Train speed; trained on 0 to 250 km/h. [m/s]
+    voltage_v : float
+        Voltage at the pantograph; trained on 10.5 to 16.5 kV. [V]
+    current_a : float
+        Highest current allowed in one motor; trained on 0 to 2080 A. [A]
+    network, scratch, series
+        As in `make_series`.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
+    """
+    weight = network.weight
+    for n in range(NEURONS):
+        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
+        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+    make_series(voltage_v, network, scratch, series)
+
+
+@inlined
+def effort_outside_training(
+    speed_m_s: float, voltage_v: float, current_a: float, network: FeedForwardNetwork
+) -> bool:
+    """Whether the tractive-effort network extrapolates at this point."""
+    return (
+        outside(speed_m_s, network, SPEED)
+        or outside(voltage_v, network, VOLTAGE)
+        or outside(current_a, network, CURRENT)
+    )

@@ -1,0 +1,85 @@
+"""A type of train, as its owner describes it, in SI units."""
+
+import math
+
+from tpss.numerics.curve import Curve
+from tpss.numerics.neural_network import FeedForwardNetwork
+from tpss.physics.motor import MotorModel
+from tpss.physics.reactive_power import ReactiveModel
+from tpss.physics.running_resistance import DavisCoefficients
+from tpss.record import Record
+from tpss.vehicle.effort.kinds import TractiveEffort
+
+
+class LineCurrentLimit(Record):
+    """Limit of the current at the pantograph."""
+
+    highest_current_a: float = math.inf
+    """Highest current; infinite without such a limit. [A]"""
+    auxiliary_current_a: float = 0.0
+    """What is left of it where there is no traction, the current of the auxiliaries. [A]"""
+    no_traction_voltage_v: float = 0.0
+    """Line voltage at which there is no traction, U_min2. [V]"""
+    full_current_voltage_v: float = 0.0
+    """Line voltage from which the current is whole, a U_n. [V]"""
+
+
+class Networks(Record):
+    """The three networks that describe a locomotive's machine."""
+
+    tractive_effort: FeedForwardNetwork
+    bridge_sine: FeedForwardNetwork
+    power_factor: FeedForwardNetwork
+
+
+class TrainType(Record):
+    """A type of train, in SI units."""
+
+    mass_kg: float
+    """Mass of the whole train. [kg]"""
+    adhesive_mass_kg: float
+    """Mass on driven axles. [kg]"""
+    inertia_kg: float
+    """Inertia with rotating parts, M = m_adh + (m - m_adh)(1 + H), eq. (2.11). [kg]"""
+    coasting_inertia_kg: float
+    """Inertia of a train that the aggressive driver lets coast, m (1 + H), eq. (2.11). [kg]"""
+    rotor_mass_kg: float
+    """Inertia of the motors as a mass at the wheel rim, c = 4 K_J (κ + 1). [kg]"""
+    slip_factor: float
+    """Circumferential speed of the driven wheels over speed, κ + 1. [1]"""
+    resistance: DavisCoefficients
+    """Running resistance on straight level track."""
+    effort: TractiveEffort
+    """What the motors give at most."""
+    line_current: LineCurrentLimit
+    """Limit of the current at the pantograph."""
+    highest_acceleration_m_s2: float
+    """Highest acceleration; infinite without such a limit. [m/s²]"""
+    highest_retardation_m_s2: float
+    """Highest retardation, positive. [m/s²]"""
+    highest_speed_m_s: float
+    """Highest speed of the train. [m/s]"""
+    efficiency: Curve
+    """Efficiency over speed, from pantograph to motor shaft. [1]"""
+    power_factor: Curve
+    """Power factor over speed, where it is not the network's. [1]"""
+    auxiliary_power_w: float
+    """Active power of the auxiliaries. [W]"""
+    auxiliary_reactive_power_var: float
+    """Their reactive power. [var]"""
+    base_speed_m_s: float
+    """Speed from which the motor voltage is at its highest; NaN: not known. [m/s]"""
+    highest_motor_voltage_v: float
+    """Highest voltage of one motor; NaN: not known. [V]"""
+    transformer_ratio: float
+    """Secondary voltage of the locomotive's transformer over the voltage at the pantograph. [1]"""
+    filter_susceptance_s: float
+    """Susceptance of the filter at the pantograph's side, negative; 0: no filter. [S]"""
+    reactive_model: ReactiveModel
+    """What the reactive power of the motors follows from."""
+    voltage_model: MotorModel
+    """Model of the motor voltage."""
+    current_model: MotorModel
+    """Model of the motor current."""
+    networks: Networks
+    """Networks of the machine; zero where nothing asks for them."""
