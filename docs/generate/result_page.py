@@ -8,8 +8,8 @@ import numpy as np
 from markdown_pieces import code, described, prose, table
 
 import tpss
+from tpss.audit.verdict import LIMITS, Audit
 from tpss.results import tables
-from tpss.results.audit import LIMITS, Audit
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
 

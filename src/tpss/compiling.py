@@ -1,4 +1,4 @@
-"""A cold start on two cores: the kernels are compiled in two parts, by two processes at once.
+"""A cold start on two cores: the kernels are compiled in parts, by two processes at once.
 
 The second process keeps what it compiles in a cache folder of its own, as two that write into one may
 spoil each other's entries.  The first one adopts from it whatever itself does not have.  Where a second
@@ -10,32 +10,64 @@ import pickle
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from tpss.kernel import cache_folder
-from tpss.simulation.parts import compile_calls, driving, load_flow
-from tpss.simulation.state import Model
+import numpy as np
+
+from tpss.audit.aggregate import gather, new_figures
+from tpss.kernel import cache_folder, kernels_are_compiled
+from tpss.simulation.parts import Call, compile_calls, driving, load_flow, start
+from tpss.simulation.run import Clock, compile_kernels
+from tpss.simulation.state import Model, new_recording
+
+_ready: set[Clock] = set()
+"""Clocks all of whose kernels this process has compiled or loaded."""
 
 
-def compile_in_parts(model: Model) -> None:
-    """Compile what the clock calls, in two processes; the clock itself is left.
+def make_ready(model: Model, clock: Clock) -> None:
+    """Compile all kernels of a run, or load them from the cache, once in this process.
 
     Parameters
     ----------
     model : Model
         Any: all have the same types.
+    clock : callable
+        What runs the steps.
     """
-    if (os.cpu_count() or 1) < 2 or not sys.executable:
+    if clock in _ready:
         return
+    if not kernels_are_compiled() and (os.cpu_count() or 1) > 1 and sys.executable:
+        with _compiled_apart("driving", model):
+            compile_calls(load_flow(model))
+        with _compiled_apart("figures", model):
+            compile_kernels(model)
+    compile_kernels(model, clock)
+    compile_calls(figures(model))
+    _ready.add(clock)
+
+
+def figures(model: Model) -> list[Call]:
+    """Kernels that gather the figures of a run and audit it."""
+    _, trains = start(model)
+    recording, blank = new_recording(model, 0, trains.size), new_figures(model, trains.size, [])
+    at_line_level = np.zeros(model.network.source_of_node.size, dtype=bool)
+    return [(gather, (0, 0, 0, at_line_level, trains, model, recording, blank))]
+
+
+@contextmanager
+def _compiled_apart(part: str, model: Model) -> Iterator[None]:
+    """Have a part compiled by a second process meanwhile, and adopt what it has made at the end."""
     folder = cache_folder()
     with tempfile.TemporaryDirectory(prefix="part-", dir=folder) as apart:
         environment = {**os.environ, "NUMBA_CACHE_DIR": apart}
-        command = [sys.executable, "-m", "tpss.compiling"]
+        command = [sys.executable, "-m", "tpss.compiling", part]
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, **quiet) as second:  # type: ignore[call-overload]
             try:
                 _send(model, second)
-                compile_calls(load_flow(model))
+                yield
                 second.wait()
             finally:
                 second.kill()
@@ -66,4 +98,5 @@ def adopt(apart: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    compile_calls(driving(pickle.load(sys.stdin.buffer)))
+    parts = {"driving": driving, "figures": figures}
+    compile_calls(parts[sys.argv[1]](pickle.load(sys.stdin.buffer)))

@@ -32,7 +32,7 @@ _OPTIONS: dict[str, Any] = {
     "fastmath": {"contract"},
 }
 
-KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation")
+KERNEL_PACKAGES = ("physics", "driving", "powerflow", "simulation", "audit")
 
 
 def source_digest(package_folder: Path) -> str:
@@ -62,7 +62,7 @@ def cache_folder() -> Path:
     return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / name
 
 
-def kernels_are_compiled(last: str = "advance") -> bool:
+def kernels_are_compiled(last: str = "gather") -> bool:
     """Whether compiled kernels of exactly this source exist on disk (or compilation is off).
 
     Parameters

@@ -82,7 +82,7 @@ def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quie
     from tpss.simulation.interrupt import interruptible
 
     console = Console(stderr=True, quiet=quiet)
-    last = "advance" if scenario.simulation.load_flow == "equations" else "end_step"
+    last = "gather" if scenario.simulation.load_flow == "equations" else "end_step"
     if not kernels_are_compiled(last):
         console.print("Compiling the numerical kernels; this takes up to half a minute, once.")
     prepared = prepare(scenario)

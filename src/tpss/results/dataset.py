@@ -1,5 +1,6 @@
 """The recording as an xarray dataset with names, units and coordinates."""
 
+import json
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from tpss.model.build import Layout
+from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.simulation.run import Outcome
 from tpss.simulation.state import PENDING, Model
 
@@ -63,6 +65,22 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         {"units": "1", "long_name": "evaluations of the network"},
     )
     return xr.Dataset(variables, coords=_coordinates(outcome, model, layout))
+
+
+def attributes(summary: dict[str, Any], step_s: float) -> dict[str, Any]:
+    """What a dataset says of itself, from the summary of its run."""
+    trip_min, energy = summary["trip_time_min"], summary["station_energy_mwh"]
+    return {
+        FORMAT_KEY: FORMAT,
+        "title": summary["name"],
+        "status": summary["status"],
+        "time_step_s": step_s,
+        "trip_time_min": np.nan if trip_min is None else trip_min,
+        "station_energy_mwh": np.array(list(energy.values())),
+        "losses_mwh": summary["losses_mwh"],
+        "audit": json.dumps(summary["audit"]),
+        **summary["provenance"],
+    }
 
 
 def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[np.float64]]:

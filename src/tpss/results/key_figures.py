@@ -1,4 +1,4 @@
-"""The key figures of a run, for whoever makes thousands: no dataset, no tables, a few hundred bytes."""
+"""The key figures of a run, from its recording: no dataset, no tables, a few hundred bytes."""
 
 import math
 from dataclasses import dataclass
@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.audit.aggregate import RUN_FIGURES, Figures, gather, new_figures
+from tpss.audit.balances import BALANCES
+from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
 from tpss.model.build import Layout
-from tpss.results.audit import LIMITS, Audit, judge, limits_of
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.aggregate import RUN_FIGURES, Figures, gather, new_figures
-from tpss.simulation.balances import BALANCES
-from tpss.simulation.run import Clock, Run, Start, advance_to_end
+from tpss.simulation.run import Clock, Run, Start, advance_to_end, run_of
 from tpss.simulation.state import PENDING, Counter, Memory, Model
 
 LIMITED = tuple(counter.name.lower() for counter in Counter)
@@ -65,13 +65,15 @@ class KeyFigures:
     name : str
         Name of the scenario.
     status : str
-        ``finished``, ``collapsed`` or ``stalled``.
+        ``finished``, ``collapsed``, ``stalled`` or ``interrupted``.
     steps : int
         Steps carried out.
     duration_min : float
         Simulated time; of a run that collapsed or stalled, when it did.
     carried_share : float
         Share of its load that the line could carry when it collapsed, otherwise 1.
+    studied_train : str or None
+        First train of the first service, once it has departed.
     trip_time_min, mean_speed_kmh : float
         Of the studied train, from its departure to its arrival.
     services, stations : tuple
@@ -94,6 +96,7 @@ class KeyFigures:
     steps: int
     duration_min: float
     carried_share: float
+    studied_train: str | None
     trip_time_min: float
     mean_speed_kmh: float
     services: tuple[ServiceFigures, ...]
@@ -159,17 +162,23 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
     TooLargeError
         The recording would not fit into memory.
     """
-    run = Run(start.model, start.trains, start.capacity, clock, start.records, memory)
-    status = advance_to_end(run, start)
+    run = run_of(start, clock, memory)
+    return key_figures_of(run, advance_to_end(run, start), start, frame)
+
+
+def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
+    """Key figures of a run that has ended with a status."""
     figures = _gather(run, frame)
     whole = dict(zip(RUN_FIGURES.names or (), figures.run.tolist()[0], strict=True))
-    trip_min, speed_kmh = _studied_trip(run, start.studied, figures)
+    studied = start.studied if start.studied < run.departed else -1
+    trip_min, speed_kmh = _studied_trip(run, studied, figures)
     return KeyFigures(
         name=frame.name,
         status=status,
         steps=run.step,
         duration_min=run.step * run.model.options.step_s / 60.0,
         carried_share=float(run.state.clock[0]["carried_share"]),
+        studied_train=run.trains[studied].name if studied >= 0 else None,
         trip_time_min=trip_min,
         mean_speed_kmh=speed_kmh,
         services=_services(run, start),

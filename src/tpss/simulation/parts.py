@@ -1,4 +1,4 @@
-"""The kernels in two parts that can be compiled at the same time, by two processes.
+"""The kernels of a step in two parts that can be compiled at the same time, by two processes.
 
 What they have in common is little; what calls both, the clock, is compiled after them.
 """
@@ -27,7 +27,7 @@ Call = tuple[Any, tuple[Any, ...]]
 
 def load_flow(model: Model) -> list[Call]:
     """Kernels that solve a load flow."""
-    flow, trains = _start(model)
+    flow, trains = start(model)
     loads = Loads(trains, model.types, model.machine)
     return [
         (newton, (1.0, WARM, model.network, flow, loads)),
@@ -37,7 +37,7 @@ def load_flow(model: Model) -> list[Call]:
 
 def driving(model: Model) -> list[Call]:
     """Kernels that prepare a step, and that carry it out."""
-    flow, trains = _start(model)
+    flow, trains = start(model)
     state, recording = new_state(model, trains), new_recording(model, 0, trains.size)
     train, kind, step = trains[0], model.types[0], switch(0)
     return [
@@ -52,7 +52,7 @@ def driving(model: Model) -> list[Call]:
     ]
 
 
-def _start(model: Model) -> tuple[Any, Any]:
+def start(model: Model) -> tuple[Any, Any]:
     """A load flow's state and a train, as they are before a run."""
     trains = train_records([Train("", "", train_type=0, route=0, departure_step=0)], 0.0)
     return new_state(model, trains).flow, trains
@@ -61,4 +61,5 @@ def _start(model: Model) -> tuple[Any, Any]:
 def compile_calls(calls: list[Call]) -> None:
     """Compile each kernel for its arguments, or load it from the cache, without running it."""
     for function, arguments in calls:
-        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        if hasattr(function, "compile"):  # not if compilation is switched off
+            function.compile(tuple(numba.typeof(argument) for argument in arguments))

@@ -1,7 +1,6 @@
-"""Key figures of a run, gathered from its recording in compiled code: energies, voltages, loadings.
+"""Key figures of a run, gathered from its recording: energies, voltages, loadings, and its audit.
 
-`tpss.results.tables` and its neighbours compute the same from a dataset.  They serve a reader of one
-run, this serves whoever makes thousands.
+`tpss.results.tables` and its neighbours compute more of them from a dataset, for the reader of one run.
 """
 
 import math
@@ -9,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tpss.audit.balances import Scratch, audit_run, new_scratch
 from tpss.kernel import blank_records, inlined, kernel, records
 from tpss.powerflow.pairs import magnitude
-from tpss.simulation.balances import Scratch, audit_run, new_scratch
 from tpss.simulation.state import Model, Recording
 
 RUN_FIGURES = np.dtype(
@@ -140,6 +139,9 @@ def gather(
         _gather_network(step, h, at_line_level, recording, figures)
     for i in range(figures.trains.size):
         _note_place(recording.trains[steps, i].position, figures.trains[i])
+    for s in range(figures.stations.size):  # at last, as the tables of a dataset do
+        figures.stations[s].energy_j *= h
+        figures.stations[s].reactive_j *= h
     _gather_passes(steps, recording, run)
     audit_run(steps, types_of, model, recording, figures.audit)
 
@@ -205,8 +207,8 @@ def _gather_network(
     run.losses_j += recording.network_losses[step] * h
     for s in range(figures.stations.size):
         row, station = recording.stations[step, s], figures.stations[s]
-        station.energy_j += row.station_active_power * h
-        station.reactive_j += row.station_reactive_power * h
+        station.energy_j += row.station_active_power
+        station.reactive_j += row.station_reactive_power
         station.peak_w = max(station.peak_w, row.station_active_power)
         station.loading += row.converter_loading
         station.peak_loading = max(station.peak_loading, row.converter_loading)

@@ -1,7 +1,8 @@
-"""The audit's figures in compiled code: balances recomputed from what was recorded.
+"""The audit's figures: balances recomputed from what was recorded, by another way than solved.
 
-`tpss.results.audit` is the same in array operations, and says more of each figure.  Currents are formed
-from the recorded voltages by the admittances between neighbours, not by the chains of the solver.
+The solver pushes voltages and currents along chains; the audit starts from the recorded voltages, forms
+the current of every piece of line and every branch from the voltages at its ends (the nodal admittance
+equations), and compares the powers that this asks for with the recorded ones.
 """
 
 import math
@@ -289,7 +290,8 @@ def _audit_train(
 def _braking_work(before: Any, next_speed_m_s: float, kind: Any, step_s: float) -> float:
     """Work of resistances and brakes in a step that holds the speed, then brakes. [J]
 
-    As `tpss.results.audit_of_braking.braking_work`.
+    Of the resistances the mean over the step is recorded, for a part of which the train may stand.  To
+    hold the speed downhill takes brakes; the rest of their recorded impulse slows the train down.
     """
     v, hold_s = before.speed, before.holding_time
     brake_s = (v - next_speed_m_s) / kind.highest_retardation_m_s2
@@ -303,9 +305,12 @@ def _braking_work(before: Any, next_speed_m_s: float, kind: Any, step_s: float) 
 
 @inlined
 def _braking_motion_error(before: Any, after: Any, kind: Any, step_s: float) -> float:
-    """Difference between a step's way and that of its speeds, where trains brake within steps. [m]
+    """Difference between a step's movement and that of its speeds, where trains brake within steps. [m]
 
-    As `tpss.results.audit_of_braking.braking_motion_error_m`.
+    A step that holds the speed v for τ, then brakes with b, goes v τ + (v² - v'²)/2b; together that
+    takes the whole step, or less of it if the train stops.  A step without τ is a uniform one, but that
+    a train may come to its stop in any part of it: it goes no less than with b, and no further than
+    uniformly.
     """
     v, w, hold_s = before.speed, after.speed, before.holding_time
     way_m = after.position - before.position
