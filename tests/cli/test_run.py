@@ -16,8 +16,8 @@ import pytest
 
 import tpss.api
 from tpss import load_result
-from tpss.cli.main import main
 from tpss.audit import verdict
+from tpss.cli.main import main
 from tpss.results import store
 
 from conftest import EXAMPLES

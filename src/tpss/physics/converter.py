@@ -38,7 +38,7 @@ Law = Any
 def converter_voltage(reactive_power_var: float, converters: float, law: Law) -> float:
     r"""Terminal voltage of a station. [V]
 
-    .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{MVAr}]
+    .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{Mvar}]
 
     References
     ----------

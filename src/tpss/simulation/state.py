@@ -10,6 +10,7 @@ import numpy.typing as npt
 from tpss.kernel import blank_records, copy_of_records, inlined, record_type
 from tpss.physics.locomotive import DEMAND
 from tpss.powerflow.network import Flow, Network, new_flow
+from tpss.simulation.recorded import row_of
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -223,36 +224,8 @@ class State(NamedTuple):
     """One record of `CLOCK`."""
 
 
-TRAIN_ROW = np.dtype(
-    [
-        (name, float)
-        for name in (
-            "position", "speed", "acceleration", "tractive_force", "braking_force",
-            "running_resistance", "gradient_force", "motor_current", "pantograph_real",
-            "pantograph_imag", "active_power", "reactive_power", "holding_time",
-        )
-    ],
-    align=True,
-)  # fmt: skip
-"""What is recorded of a train at an instant and over the interval that follows.
-
-Voltages are kept as the load flow has them: magnitude and angle are found where they are asked for.  Of
-an interval in which forces change these are the means; `holding_time` [s] is that at constant speed
-before the brakes, from which work follows.
-"""
-
-NODE_ROW = np.dtype([("node_real", float), ("node_imag", float)], align=True)
-"""Voltage of a node, at the contact line's level."""
-
-STATION_ROW = np.dtype(
-    [
-        ("station_active_power", float),
-        ("station_reactive_power", float),
-        ("active_converters", float),
-        ("converter_loading", float),
-    ],
-    align=True,
-)
+TRAIN_ROW, NODE_ROW, STATION_ROW = row_of("train"), row_of("node"), row_of("station")
+"""What is recorded of each at an instant and over the interval that follows."""
 
 
 class Recording(NamedTuple):
