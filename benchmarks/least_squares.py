@@ -19,11 +19,9 @@ import numpy as np
 import scipy
 
 import tpss
-from tpss.model import build_model
-from tpss.model.traffic import build_services
 from tpss.original.least_squares import advance_by_least_squares
 from tpss.simulation.advance import advance
-from tpss.simulation.run import run_services
+from tpss.simulation.run import advance_to_end, run_of
 
 CLOCKS = {"equations": advance, "least-squares": advance_by_least_squares}
 EXAMPLE = Path(__file__).parents[1] / "examples" / "thesis_3_3.toml"
@@ -36,12 +34,11 @@ def measure(step_min: float, load_flow: str, runs: int) -> tuple[tpss.Result, fl
     changes = {"simulation.time_step_min": step_min, "simulation.load_flow": load_flow}
     scenario = tpss.load_scenario(EXAMPLE, changes)
     result = tpss.simulate(scenario)
-    model, _ = build_model(scenario)
-    services = build_services(scenario, model)
+    start = tpss.prepare(scenario).start
     times = []
     for _ in range(runs):
         started = time.process_time()
-        run_services(model, services, None, clock=CLOCKS[load_flow])
+        advance_to_end(run_of(start, CLOCKS[load_flow]), start)
         times.append(1e3 * (time.process_time() - started))
     return result, statistics.median(times)
 

@@ -15,7 +15,7 @@ import numpy as np
 import tpss
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.simulation.run import compile_kernels, run_services
+from tpss.simulation.run import advance_to_end, begin, compile_kernels, run_of
 
 from report import FIGURES, arguments, caption, deliver, machine, stay_on_one_core, table
 
@@ -134,15 +134,16 @@ def measure(stations: int, transformers: int, trains: int, runs: int) -> Point:
     """Median over some runs of what the summary of a result gives as ``simulation_s``."""
     case = scenario(stations, transformers, trains)
     model, _ = build_model(case)
-    services = build_services(case, model)
     compile_kernels(model)
+    start = begin(model, build_services(case, model), STEPS)
     times = []
     for _ in range(runs):
         started = time.process_time()
-        outcome = run_services(model, services, STEPS)
+        run = run_of(start)
+        status = advance_to_end(run, start)
         times.append(1e6 * (time.process_time() - started) / STEPS)
-        assert outcome.status == "finished"
-    nodes, passes = outcome.recording.nodes.shape[1], outcome.recording.passes[:STEPS]
+        assert status == "finished"
+    nodes, passes = run.recording.nodes.shape[1], run.recording.passes[:STEPS]
     return Point(trains, nodes, float(passes.mean()), statistics.median(times))
 
 

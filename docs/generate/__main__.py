@@ -9,11 +9,12 @@ from pathlib import Path
 import command_line_page
 import evidence_page
 import library_page
+import nomenclature_tables
 import result_page
 import scenario_page
 import study_page
 
-REFERENCE = Path(__file__).parents[1] / "reference"
+DOCS = Path(__file__).parents[1]
 NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not this page. -->"
 PAGES = {
     "command_line.md": command_line_page.page,
@@ -28,12 +29,15 @@ PAGES = {
 def main() -> int:
     """Write or check all pages; return the exit code."""
     check = sys.argv[1:] == ["--check"]
+    texts = {
+        DOCS / "reference" / name: f"{NOTE}\n\n{page().strip()}\n" for name, page in PAGES.items()
+    }
+    texts[nomenclature_tables.PAGE] = nomenclature_tables.page()
     stale = []
-    for name, page in PAGES.items():
-        file, text = REFERENCE / name, f"{NOTE}\n\n{page().strip()}\n"
+    for file, text in texts.items():
         if file.exists() and file.read_text("utf-8") == text:
             continue
-        stale.append(name)
+        stale.append(file.name)
         if not check:
             file.write_text(text, "utf-8")
     if stale:

@@ -8,8 +8,8 @@ import numpy as np
 from markdown_pieces import code, described, prose, table
 
 import tpss
+from tpss.audit.verdict import LIMITS, Audit
 from tpss.results import tables
-from tpss.results.audit import LIMITS, Audit
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
 
@@ -79,7 +79,7 @@ TRAIN_STEPS = {
     "service": "traffic entry that the train belongs to",
     "time_min": "time from the start",
     "state": "name of its `train_state`; empty at the last instant of the run",
-    **{column: f"`{name}`" for column, (name, _) in tables.TRAIN_STEPS.items()},
+    **{column: f"`{name}`" for column, name in tables.TRAIN_STEPS.items()},
 }
 SUMMARY = {
     "result_format": "version of the format in which the result is written",

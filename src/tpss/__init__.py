@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tpss.results.result import Result, load_result
     from tpss.results.standards.evidence import Evidence
     from tpss.scenario import Scenario, load_scenario
-    from tpss.simulation.run import Progress
+    from tpss.run.run import Progress
     from tpss.sweep.campaign import run_study
     from tpss.sweep.folder import load_table
     from tpss.sweep.study import Study, load_study
@@ -40,7 +40,7 @@ _HOME = {
     "Finding": "tpss.errors",
     "KeyFigures": "tpss.results.key_figures",
     "Prepared": "tpss.api",
-    "Progress": "tpss.simulation.run",
+    "Progress": "tpss.run.run",
     "Result": "tpss.results.result",
     "ResultError": "tpss.errors",
     "Scenario": "tpss.scenario",

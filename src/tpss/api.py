@@ -1,37 +1,23 @@
 """From a scenario to its result, in one call."""
 
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
-from tpss.clock import clock_of
-from tpss.compiling import compile_in_parts
-from tpss.kernel import kernels_are_compiled
 from tpss.model import build_model
 from tpss.model.build import Layout, steps_of
 from tpss.model.traffic import build_services
-from tpss.results import store
-from tpss.results.audit import audit
-from tpss.results.dataset import build_dataset
-from tpss.results.key_figures import Frame, frame_of
+from tpss.results.contents import FORMAT, FORMAT_KEY
+from tpss.results.dataset import attributes, build_dataset
+from tpss.results.key_figures import Frame, frame_of, key_figures_of
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
+from tpss.run.clocks import clock_of
+from tpss.run.interrupt import interruptible
+from tpss.run.kernels import make_ready
+from tpss.run.run import Clock, Progress, Start, advance_to_end, begin, outcome_of, run_of
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.interrupt import interruptible
-from tpss.simulation.run import (
-    Clock,
-    Outcome,
-    Progress,
-    Start,
-    begin,
-    compile_kernels,
-    run_on,
-)
-from tpss.simulation.state import Model
 from tpss.units import si
 
 
@@ -69,16 +55,13 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
-    if not kernels_are_compiled():
-        compile_in_parts(build_model(scenario)[0])
-    prepared = build(scenario)
-    compile_kernels(prepared.start.model, prepared.clock)
-    return prepared
+    make_ready(build_model(scenario)[0], _clock_of(scenario))
+    return build(scenario)
 
 
 def build(scenario: Scenario) -> "Prepared":
     """`prepare` that leaves kernels to be compiled by the run."""
-    clock = clock_of(scenario)
+    clock = _clock_of(scenario)
     model, layout = build_model(scenario)
     services = build_services(scenario, model)
     duration = scenario.simulation.duration_min
@@ -86,6 +69,10 @@ def build(scenario: Scenario) -> "Prepared":
     if duration is not None:
         steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
     return Prepared(scenario, layout, begin(model, services, steps), clock)
+
+
+def _clock_of(scenario: Scenario) -> Clock:
+    return clock_of(scenario.simulation.load_flow, scenario.source)
 
 
 @dataclass(frozen=True)
@@ -108,36 +95,20 @@ class Prepared:
         interrupted: Sequence[int] | None = None,
     ) -> Result:
         """Result of the run; it ends early once `interrupted` is filled."""
+        start, model = self.start, self.start.model
+        run = run_of(start, self.clock)
         started = time.perf_counter()
-        outcome = run_on(self.start, progress, interrupted, self.clock)
+        status = advance_to_end(run, start, progress, interrupted)
         elapsed_s = time.perf_counter() - started
-        return _result(self.scenario, outcome, self.start.model, self.layout, elapsed_s)
-
-
-def _result(
-    scenario: Scenario, outcome: Outcome, model: Model, layout: Layout, elapsed_s: float
-) -> Result:
-
-    dataset = build_dataset(outcome, model, layout)
-    checked = audit(outcome, model, np.array(layout.supply.node_level))
-    version = {store.FORMAT_KEY: store.FORMAT}
-    summary = {**version, **summarise(scenario, outcome, model, dataset, checked)}
-    summary["simulation_s"] = elapsed_s
-    summary["provenance"] = provenance()
-    energy = summary["station_energy_mwh"]
-    dataset.attrs = {
-        **version,
-        "title": scenario.name,
-        "status": outcome.status,
-        "time_step_s": model.options.step_s,
-        "trip_time_min": summary["trip_time_min"]
-        if summary["trip_time_min"] is not None
-        else np.nan,
-        "station_energy_mwh": np.array(list(energy.values())),
-        "losses_mwh": summary["losses_mwh"],
-        "audit": json.dumps(summary["audit"]),
-        **summary["provenance"],
-    }
-    result = Result(scenario, dataset, summary)
-    summary["standards"] = result.standards.as_dict()
-    return result
+        outcome = outcome_of(run, status, start.studied)
+        figures = {
+            FORMAT_KEY: FORMAT,
+            **summarise(
+                self.scenario, key_figures_of(run, status, start, self.frame), outcome, model
+            ),
+            "simulation_s": elapsed_s,
+            "provenance": provenance(),
+        }
+        dataset = build_dataset(outcome, model, self.layout)
+        dataset.attrs = attributes(figures, model.options.step_s)
+        return Result(self.scenario, dataset, figures)

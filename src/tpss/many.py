@@ -11,7 +11,7 @@ import numpy as np
 from tpss.api import Prepared, build
 from tpss.results.key_figures import KeyFigures, run_for_figures
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.state import Floats
+from tpss.step.state import Floats
 
 AHEAD = 4
 """Scenarios a thread that are begun or wait to be, at most."""

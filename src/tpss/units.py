@@ -17,11 +17,11 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_nf_per_km": ("nF/km", 1e-12),
     "_n_s_per_m": ("N s/m", 1.0),
     "_n_s2_per_m2": ("N s²/m²", 1.0),
-    "_kv_per_mvar": ("kV/MVAr", 1e-3),
+    "_kv_per_mvar": ("kV/Mvar", 1e-3),
     "_permille": ("‰", 1e-3),
     "_m_s2": ("m/s²", 1.0),
-    "_mvarh": ("MVArh", 3.6e9),
-    "_mvar": ("MVAr", 1e6),
+    "_mvarh": ("Mvarh", 3.6e9),
+    "_mvar": ("Mvar", 1e6),
     "_mwh": ("MWh", 3.6e9),
     "_mva": ("MVA", 1e6),
     "_ohm": ("Ω", 1.0),
@@ -65,6 +65,17 @@ def heading(name: str) -> str:
     return f"{words(name)} [{label(name)}]" if suffix(name) else words(name)
 
 
+def si_factor(name: str) -> float:
+    """Factor from the unit of a name to that of SI.
+
+    Raises
+    ------
+    KeyError
+        The name has no unit suffix.
+    """
+    return SUFFIXES[suffix(name)][1]
+
+
 def si(source: object, name: str) -> float:
     """Value of the field `name` of `source` in SI units.
 
@@ -73,16 +84,16 @@ def si(source: object, name: str) -> float:
     KeyError
         The name has no unit suffix.
     """
-    return float(getattr(source, name)) * SUFFIXES[suffix(name)][1]
+    return float(getattr(source, name)) * si_factor(name)
 
 
 def si_of_each(items: Iterable[object], name: str) -> list[float]:
     """Values of the field `name` of each item in SI units."""
-    factor = SUFFIXES[suffix(name)][1]
+    factor = si_factor(name)
     return [getattr(item, name) * factor for item in items]
 
 
 def si_list(source: object, name: str) -> list[float]:
     """Values of the field `name` of `source`, a list of numbers, in SI units."""
-    factor = SUFFIXES[suffix(name)][1]
+    factor = si_factor(name)
     return [float(value) * factor for value in getattr(source, name)]

@@ -16,8 +16,9 @@ import pytest
 
 import tpss.api
 from tpss import load_result
+from tpss.audit import verdict
 from tpss.cli.main import main
-from tpss.results import audit, store
+from tpss.results import store
 
 from conftest import EXAMPLES
 
@@ -384,9 +385,9 @@ def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_pat
     assert len(folders_in(tmp_path / "results")) == 1
 
 
-@pytest.mark.parametrize("figure", sorted(audit.LIMITS))
+@pytest.mark.parametrize("figure", sorted(verdict.LIMITS))
 def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
-    monkeypatch.setitem(audit.LIMITS, figure, -1.0)
+    monkeypatch.setitem(verdict.LIMITS, figure, -1.0)
     said = tpss_command("run", HEADWAY, *SHORT)
     assert said.code == 4
     assert "Audit FAILED" in said.out
@@ -396,7 +397,7 @@ def test_a_failed_audit_is_loud(tpss_command, tmp_path, monkeypatch, figure):
 
 
 def test_a_failed_audit_counts_more_than_an_early_end(tpss_command, monkeypatch):
-    monkeypatch.setitem(audit.LIMITS, "power_mismatch_va", -1.0)
+    monkeypatch.setitem(verdict.LIMITS, "power_mismatch_va", -1.0)
     assert tpss_command("run", OVERLOADED, "--quiet").code == 4
 
 

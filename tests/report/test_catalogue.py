@@ -160,7 +160,7 @@ def test_a_run_that_collapsed_says_so_in_every_title():
 
 def test_a_result_that_failed_its_audit_is_not_drawn(hilly):
     audit = {**hilly.audit, "passed": False, "failures": ["power mismatch of 3 VA"]}
-    failed = replace(hilly, summary={**hilly.summary, "audit": audit})
+    failed = replace(hilly, figures={**hilly.figures, "audit": audit})
     with pytest.raises(ResultError, match="power mismatch of 3 VA"):
         draw("energy", failed)
 

@@ -1,20 +1,22 @@
 """The audit passes sound runs, and finds what has been tampered with in their recordings."""
 
-from dataclasses import replace
+import copy
 from typing import Any
 
 import numpy as np
 import pytest
 
 from tpss import Scenario, load_scenario
+from tpss.audit.verdict import LIMITS, Audit, limits_of
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.results.audit import LIMITS, Audit, audit, limits_of
-from tpss.simulation.run import Outcome, run_services
-from tpss.simulation.state import Model
+from tpss.results.key_figures import frame_of, key_figures_of
+from tpss.simulation.run import advance_to_end, begin, outcome_of, run_of
 
-from conftest import EXAMPLES
-from scenarios import short_line
+from conftest import EXAMPLE_SCENARIOS, EXAMPLES
+from scenarios import gradients, limits, short_line
+from slow_audit import assert_agree
+from slow_audit import audit as slow_audit
 
 HALF_AN_HOUR = {"simulation.until": None, "simulation.duration_min": 30.0}
 STEP, TRAIN, NODE, STATION = 3, 1, 1, 1
@@ -24,21 +26,42 @@ class Case:
     """A run that can be audited, and tampered with."""
 
     def __init__(self, scenario: Scenario, steps: int | None) -> None:
-        self.model: Model
-        self.model, layout = build_model(scenario)
-        services = build_services(scenario, self.model)
-        self.outcome: Outcome = run_services(self.model, services, steps)
+        model, layout = build_model(scenario)
+        self.frame = frame_of(scenario, layout, model)
         self.node_level = np.array(layout.supply.node_level)
+        self.start = begin(model, build_services(scenario, model), steps)
+        self.model = self.start.model
+        self.run = run_of(self.start)
+        self.status = advance_to_end(self.run, self.start)
 
-    def audit(self, outcome: Outcome | None = None) -> Audit:
-        return audit(outcome or self.outcome, self.model, self.node_level)
+    def audit(self) -> Audit:
+        return key_figures_of(self.run, self.status, self.start, self.frame).audit
 
-    def audit_of_forgery(self, records: str, field: str, place: int, change: Any) -> Audit:
-        """Audit of a copy in which one recorded value is changed."""
-        forged = np.copy(getattr(self.outcome.recording, records)).view(np.recarray)
-        forged[field][STEP, place] = change(forged[field][STEP, place])
-        recording = self.outcome.recording._replace(**{records: forged})
-        return self.audit(replace(self.outcome, recording=recording))
+    def slow_audit(self) -> Audit:
+        outcome = outcome_of(self.run, self.status, self.start.studied)
+        return slow_audit(outcome, self.model, self.node_level)
+
+    def forged(self, **changes: Any) -> "Case":
+        """The case with other records in its recording."""
+        case = copy.copy(self)
+        case.run = copy.copy(self.run)
+        case.run.recording = self.run.recording._replace(**changes)
+        return case
+
+    def audit_of_forgery(
+        self, records: str, field: str, place: int, change: Any, step: int = STEP
+    ) -> Audit:
+        """Audit of a copy in which one recorded value is changed, which its slow twin sees too."""
+        forged = np.copy(getattr(self.run.recording, records)).view(np.recarray)
+        forged[field][step, place] = change(forged[field][step, place])
+        case = self.forged(**{records: forged})
+        assert_twins(case)
+        return case.audit()
+
+
+def assert_twins(case: Case) -> None:
+    """Assert that the audit agrees with its slow twin, as far as rounding errors can."""
+    assert_agree(case.audit(), case.slow_audit(), limits_of(case.model))
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +84,48 @@ def test_a_sound_run_passes(request, name):
     for figure, limit in LIMITS.items():
         assert 0.0 <= getattr(checked, figure) <= limit
     assert 0.5 * 16.5e3 <= checked.lowest_voltage_v <= checked.highest_voltage_v <= 1.2 * 16.5e3
+
+
+@pytest.mark.parametrize("file", EXAMPLE_SCENARIOS, ids=lambda file: file.stem)
+def test_the_audit_of_an_example_is_that_of_its_slow_twin(file):
+    case = Case(load_scenario(file), None if "headway" not in file.stem else 120)
+    assert_twins(case)
+
+
+@pytest.mark.parametrize("driver", ["regulated", "aggressive"])
+@pytest.mark.parametrize("braking", ["whole-steps", "within-step"])
+@pytest.mark.parametrize("sampling", ["mean", "start"])
+@pytest.mark.parametrize("step_min", [0.05, 0.5, 1.0])
+def test_the_audit_of_every_driver_is_that_of_its_slow_twin(driver, braking, sampling, step_min):
+    """Over hills and lower limits, with trains on the line at the start, one of them stopping."""
+    hills = gradients((0.0, 0.0), (3.0, 8.0), (6.0, -12.0), (12.0, 0.0))
+    changes = {
+        "simulation.driver": driver,
+        "simulation.braking": braking,
+        "simulation.power_sampling": sampling,
+        "simulation.time_step_min": step_min,
+        "traffic.0.headway_min": 8.0,
+        "traffic.0.already_running": True,
+        "traffic.0.stops": [{"station": "Middle", "dwell_min": 1.0}],
+        **hills,
+        **limits((0.0, 60.0), (5.0, 90.0), (8.0, 45.0)),
+    }
+    assert_twins(Case(short_line(changes), int(30.0 / step_min)))
+
+
+@pytest.mark.parametrize(
+    ("group", "field", "forge", "figure"),
+    [
+        ("nodes", "node_real", lambda x: np.nan, "power_mismatch_va"),
+        ("trains", "tractive_force", lambda x: 1.01 * x, "force_balance"),
+        ("trains", "speed", lambda x: x + 0.01, "motion_error_m"),
+        ("trains", "pantograph_imag", lambda x: np.nan, "power_mismatch_va"),
+    ],
+)
+def test_the_audit_sees_one_forged_value(group, field, forge, figure):
+    case = Case(short_line({"simulation.duration_min": 5.0}), 100)
+    failures = case.audit_of_forgery(group, field, 0, forge, step=40).failures
+    assert any(failure.startswith(figure) for failure in failures), failures
 
 
 @pytest.mark.parametrize("catenary", ["BT", "AT"])
@@ -114,7 +179,7 @@ def stops_within_steps():
 
 
 def test_a_sound_run_that_brakes_within_steps_passes(stops_within_steps):
-    held = stops_within_steps.outcome.recording.trains["holding_time"][STEP, 0]
+    held = stops_within_steps.run.recording.trains["holding_time"][STEP, 0]
     assert 0.0 < held < 60.0
     assert stops_within_steps.audit().passed
 
@@ -146,7 +211,7 @@ def test_the_mismatch_is_the_power_that_was_added(main_line):
 
 def test_the_network_balance_is_the_share_that_was_added(main_line):
     """A hundredth more from one station in one of 60 steps."""
-    power = main_line.outcome.recording.stations["station_active_power"][:60]
+    power = main_line.run.recording.stations["station_active_power"][:60]
     added = 0.01 * power[STEP, STATION]
     share = added / (power.sum() + added)
     forged = ("stations", "station_active_power", STATION, lambda p: 1.01 * p)
@@ -155,26 +220,26 @@ def test_the_network_balance_is_the_share_that_was_added(main_line):
 
 
 def test_losses_that_vanish_are_missed(main_line):
-    losses = main_line.outcome.recording.network_losses.copy()
+    losses = main_line.run.recording.network_losses.copy()
     losses[STEP] = 0.0
-    recording = main_line.outcome.recording._replace(network_losses=losses)
-    checked = main_line.audit(replace(main_line.outcome, recording=recording))
+    checked = main_line.forged(network_losses=losses).audit()
     assert [failure.split(" is ")[0] for failure in checked.failures] == ["network_balance"]
 
 
 def test_a_station_missed_by_more_than_a_millimetre_is_found(arrival):
     assert arrival.audit().stop_error_m < 1e-6
-    clock = arrival.outcome.state.clock.copy()
+    clock = arrival.run.state.clock.copy()
     clock["stop_error_m"] = 0.002
-    state = arrival.outcome.state._replace(clock=clock)
-    checked = arrival.audit(replace(arrival.outcome, state=state))
+    case = arrival.forged()
+    case.run.state = case.run.state._replace(clock=clock)
+    checked = case.audit()
     assert checked.failures == ("stop_error_m is 0.002, limit 0.001",)
 
 
 def test_a_voltage_outside_the_plausible_range_is_found(main_line):
     """Without its real part, the phasor of a node that lags by some 20° has a third of its magnitude."""
     checked = main_line.audit_of_forgery("nodes", "node_real", NODE, lambda v: 0.0)
-    imag_v = main_line.outcome.recording.nodes["node_imag"][STEP, NODE]
+    imag_v = main_line.run.recording.nodes["node_imag"][STEP, NODE]
     assert checked.lowest_voltage_v == pytest.approx(abs(imag_v))
     assert "voltages leave the range of 8250 to 19800 V" in checked.failures
 
@@ -203,7 +268,7 @@ def test_a_run_without_work_of_the_motors_is_measured_by_what_gravity_does():
     limits = [{"from_km": 0.0, "speed_kmh": 10.0}]
     changes = {"line.gradients": gradients, "line.speed_limits": limits}
     case = Case(short_line({**changes, "simulation.time_step_min": 1.0}), 60)
-    assert not (case.outcome.recording.trains["tractive_force"] > 0.0).any()
+    assert not (case.run.recording.trains["tractive_force"] > 0.0).any()
     assert case.audit().passed
     assert case.audit_of_forgery("trains", "braking_force", 0, lambda f: 1.1 * f).failures
 
@@ -229,7 +294,7 @@ def test_an_idle_train_is_no_reason_for_a_finer_balance_than_the_solver_promises
     changes = {"traffic.0.stops": [{"station": "Middle", "dwell_min": 30.0}]}
     placed = [{"position_km": 9.999, "speed_kmh": 0.0}]
     case = Case(short_line({**changes, "traffic.0.initial_trains": placed}), 60)
-    power = case.outcome.recording.stations["station_active_power"][:60]
+    power = case.run.recording.stations["station_active_power"][:60]
     power[30, 0] += 1e-3
     assert case.audit().passed
     power[30, 0] += 1e3
@@ -245,10 +310,10 @@ def test_limits_follow_the_rounding_over_impedances_of_microohms():
                            "supply.high_voltage_line.transformers_km": [9.0, 11.0]}), 60)  # fmt: skip
     assert limits_of(far.model) == LIMITS
     assert near.audit().passed
-    limits = limits_of(near.model)
-    assert limits["power_mismatch_va"] == pytest.approx(1.93, rel=0.01)
-    assert limits["converter_residual"] == pytest.approx(1.93e-7, rel=0.01)
-    assert limits["traction_balance"] == LIMITS["traction_balance"]
+    wider = limits_of(near.model)
+    assert wider["power_mismatch_va"] == pytest.approx(1.93, rel=0.01)
+    assert wider["converter_residual"] == pytest.approx(1.93e-7, rel=0.01)
+    assert wider["traction_balance"] == LIMITS["traction_balance"]
 
 
 def test_the_figures_are_plain_values_by_name(arrival):

@@ -7,25 +7,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import HealthCheck, given, settings
 
 import tpss
 from tpss.many import key_figures
-from tpss.results.audit import limits_of
 from tpss.results.key_figures import KeyFigures
 
 from conftest import EXAMPLE_SCENARIOS, SHARED
 from properties.strategies import sound_scenarios
 from scenarios import gradients, short_line
+from slow_audit import assert_agree, audit_of
 
 FILES = sorted((SHARED / "scenarios").glob("*.toml")) or EXAMPLE_SCENARIOS
 STALL = {"trains.freight.mass_t": 4000.0, **gradients((0.0, 0.0), (5.0, 30.0))}
 
 SUMS = 1e-12
 """Sums of some thousand numbers, added in another order, differ by rounding alone."""
-
-OF_A_LIMIT = 1e-3
-"""The audit's figures are themselves rounding errors, which another order of operations changes."""
 
 
 def close(found: float, expected: float | None, size: float = 0.0) -> bool:
@@ -70,17 +68,35 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
     assert close(found.mean_passes, summary["load_flow_passes"]["mean"])
     assert found.most_passes == summary["load_flow_passes"]["most"]
     assert found.limited == summary["limited"]
-    assert_same_audit(found, result)
+    assert_same_as_recorded(found, result.dataset)
+    assert found.audit.as_dict() == result.audit
+    assert_agree(found.audit, *audit_of(result.scenario))
 
 
-def assert_same_audit(found: KeyFigures, result: tpss.Result) -> None:
-    """Assert that audits agree, as far as rounding errors can."""
-    limits = limits_of(tpss.prepare(result.scenario).start.model)
-    own = found.audit.as_dict()
-    for name, limit in limits.items():
-        assert abs(own[name] - result.audit[name]) <= OF_A_LIMIT * limit, name
-    for name in ("lowest_voltage_v", "highest_voltage_v", "passed"):
-        assert own[name] == result.audit[name]
+def assert_same_as_recorded(found: KeyFigures, dataset: xr.Dataset) -> None:
+    """Assert that figures of the whole run are those of what was recorded."""
+    step_mwh = dataset.attrs["time_step_s"] / 3.6e9
+    moved = found.losses_mwh + sum(abs(station.energy_mwh) for station in found.stations)
+    fed, lost = (float(np.nansum(dataset[name])) * step_mwh for name in
+                 ("station_active_power", "network_losses"))  # fmt: skip
+    assert close(found.total_energy_mwh, fed, moved)
+    assert close(found.losses_mwh, lost)
+    voltage, lowest = dataset.pantograph_voltage.to_numpy(), found.lowest_voltage
+    if not np.isfinite(voltage).any():
+        assert lowest is None
+    else:
+        k, i = np.unravel_index(np.nanargmin(voltage), voltage.shape)
+        assert lowest is not None
+        assert lowest.voltage_kv == voltage[k, i] / 1e3
+        assert lowest.train == dataset.train[i]
+        assert lowest.position_km == float(dataset.position[k, i]) / 1e3
+        assert lowest.time_min == float(dataset.time[k]) / 60.0
+    passes = dataset.load_flow_passes.to_numpy()
+    assert close(found.mean_passes, passes[: max(found.steps, 1)].mean())
+    assert found.most_passes == passes.max()
+    if found.studied_train is not None:
+        train = dataset.sel(train=found.studied_train)
+        assert close(found.trip_time_min, float(train.arrival_time - train.departure_time) / 60.0)
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)

@@ -2,15 +2,10 @@
 
 import json
 
-import numpy as np
 import pytest
 import xarray as xr
 
 import tpss
-from tpss.model import build_model
-from tpss.model.traffic import build_services
-from tpss.results.audit import audit
-from tpss.simulation.run import run_services
 
 from scenarios import run, short_line
 
@@ -54,24 +49,6 @@ def test_a_damaged_or_foreign_file_is_called_that(tmp_path):
     (folder / "summary.json").write_text(json.dumps([]))
     with pytest.raises(tpss.ResultError, match="not the summary of a run"):
         tpss.load_result(folder)
-
-
-@pytest.mark.parametrize(
-    ("group", "field", "forge", "figure"),
-    [
-        ("nodes", "node_real", lambda x: np.nan, "power_mismatch_va"),
-        ("trains", "tractive_force", lambda x: 1.01 * x, "force_balance"),
-        ("trains", "speed", lambda x: x + 0.01, "motion_error_m"),
-        ("trains", "pantograph_imag", lambda x: np.nan, "power_mismatch_va"),
-    ],
-)
-def test_the_audit_sees_one_forged_value(group, field, forge, figure):
-    model, layout = build_model(short_line({"simulation.duration_min": 5.0}))
-    outcome = run_services(model, build_services(short_line(), model), 100)
-    records = getattr(outcome.recording, group)
-    records[field][40, 0] = forge(records[field][40, 0])
-    failures = audit(outcome, model, np.array(layout.supply.node_level)).failures
-    assert any(failure.startswith(figure) for failure in failures), failures
 
 
 def test_two_services_whose_trains_would_share_names_are_refused():

@@ -228,6 +228,16 @@ def test_the_summary_is_plain_json(changes, status):
     assert json.loads(json.dumps(summary, allow_nan=False)) == summary
 
 
+def test_figures_of_the_standards_are_made_when_they_are_asked_for_or_saved(tmp_path):
+    result = simulate(short_line(SIX_MINUTES))
+    assert "standards" not in result.figures
+    result.save(tmp_path / "saved")
+    assert list(result.summary) == [*result.figures, "standards"]
+    assert result.summary["standards"] == result.standards.as_dict()
+    again = load_result(tmp_path / "saved")
+    assert list(again.summary.items()) == list(result.summary.items())
+
+
 def test_the_summary_of_a_collapsed_run_is_plain_json():
     summary = simulate(load_scenario(EXAMPLES / "overloaded.toml")).summary
     assert summary["status"] == "collapsed"

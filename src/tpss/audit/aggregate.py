@@ -1,86 +1,106 @@
-"""Key figures of a run, gathered from its recording in compiled code: energies, voltages, loadings.
+"""Key figures of a run, gathered from its recording: energies, voltages, loadings, and its audit.
 
-`tpss.results.tables` and its neighbours compute the same from a dataset.  They serve a reader of one
-run, this serves whoever makes thousands.
+`tpss.results.tables` and its neighbours compute more of them from a dataset, for the reader of one run.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from tpss.kernel import blank_records, inlined, kernel, records
-from tpss.powerflow.pairs import magnitude
-from tpss.simulation.balances import Scratch, audit_run, new_scratch
-from tpss.simulation.state import Model, Recording
+from tpss.audit.balances import ALLOWED_BALANCE, Scratch, new_scratch
+from tpss.audit.motion import audit_train
+from tpss.audit.network import audit_network, audit_sources, draws_power
+from tpss.kernel import inlined, kernel
+from tpss.numerics.pairs import magnitude
+from tpss.powerflow.network import TOLERANCE
+from tpss.record import Record, Records
+from tpss.step.model import Model
+from tpss.step.recorded import TrainRow
+from tpss.step.recording import Recording
+from tpss.vehicle.train import Train
 
-RUN_FIGURES = np.dtype(
-    [
-        ("losses_j", float),
-        ("drawn_j", float),  # by all trains
-        ("lowest_voltage_v", float),  # at a pantograph; NaN, as its place, if there was none
-        ("lowest_voltage_m", float),
-        ("lowest_voltage_train", np.int64),
-        ("lowest_voltage_step", np.int64),
-        ("lowest_node_v", float),  # of nodes at the contact line's level
-        ("highest_voltage_v", float),  # at pantographs and such nodes
-        ("passes", np.int64),
-        ("most_passes", np.int64),
-    ],
-    align=True,
-)
-"""Figures of the whole run."""
 
-TRAIN_FIGURES = np.dtype(
-    [
-        ("energy_j", float),
-        ("steps", np.int64),  # with a pantograph voltage
-        ("lowest_voltage_v", float),
-        ("useful_steps", np.int64),  # in the peak window
-        ("pulling_steps", np.int64),  # of these, with tractive effort
-        ("pulling_voltage_v", float),  # sum over them
-        ("first_m", float),
-        ("last_m", float),
-    ],
-    align=True,
-)
-"""Figures of a train."""
+class RunFigures(Record):
+    """Figures of the whole run."""
 
-STATION_FIGURES = np.dtype(
-    [
-        ("energy_j", float),
-        ("reactive_j", float),
-        ("peak_w", float),
-        ("loading", float),  # sum over the steps
-        ("peak_loading", float),
-    ],
-    align=True,
-)
-"""Figures of a converter station."""
+    losses_j: float
+    """Losses of the network. [J]"""
+    drawn_j: float
+    """Energy of all trains. [J]"""
+    lowest_voltage_v: float
+    """Lowest voltage at a pantograph; infinite if there was none. [V]"""
+    lowest_voltage_m: float
+    """Where that was. [m]"""
+    lowest_voltage_train: int
+    lowest_voltage_step: int
+    lowest_node_v: float
+    """Lowest voltage of a node at the contact line's level. [V]"""
+    highest_voltage_v: float
+    """Highest voltage at pantographs and such nodes. [V]"""
+    passes: int
+    """Evaluations of the network."""
+    most_passes: int
+    """Most of a step."""
 
-ZONE = np.dtype(
-    [
-        ("from_km", float),
-        ("to_km", float),  # infinite for a zone that ends with the line
-        ("steps", np.int64),  # of trains in the peak window
-        ("voltage_v", float),  # sum over them
-    ],
-    align=True,
-)
-"""A zone with its useful voltage."""
+
+class TrainFigures(Record):
+    """Figures of a train."""
+
+    energy_j: float
+    """Energy at the pantograph. [J]"""
+    steps: int
+    """Steps with a pantograph voltage."""
+    lowest_voltage_v: float
+    """Lowest voltage at its pantograph. [V]"""
+    useful_steps: int
+    """Steps in the peak window."""
+    pulling_steps: int
+    """Of these, those with tractive effort."""
+    pulling_voltage_v: float
+    """Voltage, summed over them. [V]"""
+    first_m: float
+    """Lowest position. [m]"""
+    last_m: float
+    """Highest position. [m]"""
+
+
+class StationFigures(Record):
+    """Figures of a feeding station."""
+
+    energy_j: float
+    """Energy fed. [J]"""
+    reactive_j: float
+    """Reactive energy fed. [var s]"""
+    peak_w: float
+    """Highest active power. [W]"""
+    loading: float
+    """Loading, summed over the steps. [1]"""
+    peak_loading: float
+    """Highest loading. [1]"""
+
+
+class Zone(Record):
+    """A zone with its useful voltage."""
+
+    from_km: float
+    to_km: float
+    """Where it ends; infinite for a zone that ends with the line. [km]"""
+    steps: int
+    """Steps of trains in the peak window."""
+    voltage_v: float
+    """Voltage, summed over them. [V]"""
 
 
 class Figures(NamedTuple):
     """Key figures of a run, all in SI units."""
 
-    run: Any
-    """One record of `RUN_FIGURES`."""
-    trains: Any
-    """Records of `TRAIN_FIGURES`."""
-    stations: Any
-    """Records of `STATION_FIGURES`."""
-    zones: Any
-    """Records of `ZONE`."""
+    run: Records[RunFigures]
+    """One record."""
+    trains: Records[TrainFigures]
+    stations: Records[StationFigures]
+    zones: Records[Zone]
     audit: Scratch
 
 
@@ -88,10 +108,10 @@ def new_figures(model: Model, trains: int, zones: list[tuple[float, float]]) -> 
     """Figures of so many trains before they are gathered, with the zones' ends. [km]"""
     nodes, stations = model.network.source_of_node.size, model.network.sources.size
     return Figures(
-        run=blank_records(1, RUN_FIGURES),
-        trains=blank_records(trains, TRAIN_FIGURES),
-        stations=blank_records(stations, STATION_FIGURES),
-        zones=records([(begin, end, 0, 0.0) for begin, end in zones], ZONE),
+        run=RunFigures.blank(1),
+        trains=TrainFigures.blank(trains),
+        stations=StationFigures.blank(stations),
+        zones=Zone.array((begin, end, 0, 0.0) for begin, end in zones),
         audit=new_scratch(nodes, trains),
     )
 
@@ -101,8 +121,8 @@ def gather(
     steps: int,
     peak_from: int,
     peak_to: int,
-    at_line_level: Any,
-    types_of: Any,
+    at_line_level: npt.NDArray[np.bool_],
+    types_of: Records[Train],
     model: Model,
     recording: Recording,
     figures: Figures,
@@ -117,7 +137,7 @@ def gather(
         Bounds of the peak window, in steps; equal if the run does not cover it.
     at_line_level : array of bool, shape (nodes,)
         Whether a node is at the contact line's level.
-    types_of : records of `TRAIN`
+    types_of : records of Train
         The trains, for their types.
     model, recording : Model, Recording
     figures : Figures
@@ -140,12 +160,15 @@ def gather(
         _gather_network(step, h, at_line_level, recording, figures)
     for i in range(figures.trains.size):
         _note_place(recording.trains[steps, i].position, figures.trains[i])
+    for s in range(figures.stations.size):  # at last, as the tables of a dataset do
+        figures.stations[s].energy_j *= h
+        figures.stations[s].reactive_j *= h
     _gather_passes(steps, recording, run)
-    audit_run(steps, types_of, model, recording, figures.audit)
+    _audit(steps, types_of, model, recording, figures.audit)
 
 
 @inlined
-def _note_place(position_m: float, train: Any) -> None:
+def _note_place(position_m: float, train: TrainFigures) -> None:
     if not math.isnan(position_m):
         train.first_m = min(train.first_m, position_m)
         train.last_m = max(train.last_m, position_m)
@@ -178,7 +201,8 @@ def _gather_trains(
 
 
 @inlined
-def _note_useful_voltage(voltage_v: float, row: Any, train: Any, zones: Any) -> None:
+def _note_useful_voltage(voltage_v: float, row: TrainRow, train: TrainFigures, zones: Records[Zone]
+) -> None:
     """Add a train's voltage to its own useful voltage, and to that of the zone in which it is.
 
     References
@@ -198,15 +222,15 @@ def _note_useful_voltage(voltage_v: float, row: Any, train: Any, zones: Any) -> 
 
 @inlined
 def _gather_network(
-    step: int, h: float, at_line_level: Any, recording: Recording, figures: Figures
+    step: int, h: float, at_line_level: npt.NDArray[np.bool_], recording: Recording, figures: Figures
 ) -> None:
     """Add a step of stations, nodes and losses."""
     run = figures.run[0]
     run.losses_j += recording.network_losses[step] * h
     for s in range(figures.stations.size):
         row, station = recording.stations[step, s], figures.stations[s]
-        station.energy_j += row.station_active_power * h
-        station.reactive_j += row.station_reactive_power * h
+        station.energy_j += row.station_active_power
+        station.reactive_j += row.station_reactive_power
         station.peak_w = max(station.peak_w, row.station_active_power)
         station.loading += row.converter_loading
         station.peak_loading = max(station.peak_loading, row.converter_loading)
@@ -219,9 +243,42 @@ def _gather_network(
 
 
 @inlined
-def _gather_passes(steps: int, recording: Recording, run: Any) -> None:
+def _gather_passes(steps: int, recording: Recording, run: RunFigures) -> None:
     """Evaluations of the network, those of a step without solution included."""
     for step in range(steps + 1):
         passes = recording.passes[step]
         run.passes += passes if step < max(steps, 1) else 0
         run.most_passes = max(run.most_passes, passes)
+
+
+@inlined
+def _audit(
+    steps: int, types_of: Records[Train], model: Model, recording: Recording, scratch: Scratch
+) -> None:
+    """Audit a recording; the figures are left in ``scratch.balances``.
+
+    Parameters
+    ----------
+    steps : int
+        Steps carried out.
+    types_of : records of Train
+        The trains, for their types.
+    model, recording : Model, Recording
+    scratch : Scratch
+        As from `new_scratch`, with as many trains as count.
+    """
+    figures, h = scratch.balances[0], model.options.step_s
+    for step in range(steps):
+        audit_network(step, model, recording, scratch)
+        audit_sources(step, model, recording, scratch)
+        figures.lost_j += recording.network_losses[step] * h
+        for i in range(scratch.order.size):
+            if draws_power(recording.train_state[step, i]):
+                kind = model.types[types_of[i].train_type]
+                audit_train(step, i, kind, model, recording, figures)
+    least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)
+    gap = abs(figures.fed_j - figures.drawn_j - figures.lost_j)
+    figures.network_balance = gap / max(abs(figures.fed_j), least)
+    gap = abs(figures.work_j - figures.moving_j - figures.kinetic_j)
+    turned_over = figures.work_j + figures.fallen_j + figures.slowed_j
+    figures.traction_balance = gap / max(turned_over, 1.0)

@@ -12,10 +12,10 @@ from rich.table import Table
 from tpss import library, units
 from tpss.cli.library import KINDS
 from tpss.cli.notes import lies_between, notes
-from tpss.clock import clock_of
 from tpss.model.build import build_model
 from tpss.model.supply import transformer_positions_km
 from tpss.model.traffic import build_services
+from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.fields import Part
 from tpss.scenario.line import Line
@@ -23,7 +23,7 @@ from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
-from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply
+from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply, TransformerStation
 from tpss.scenario.traffic import Traffic
 
 MOST_LISTED = 8
@@ -41,7 +41,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
     model, _ = build_model(scenario)
     build_services(scenario, model)
-    clock_of(scenario)
+    clock_of(scenario.simulation.load_flow, scenario.source)
     console = Console()
     title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
     console.print(title, highlight=False)
@@ -94,13 +94,15 @@ def _listed(texts: list[str]) -> str:
 
 
 def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
-    yield "frequency", f"{supply.frequency_hz:g} Hz"
+    yield "system", f"{supply.system}, {supply.frequency_hz:g} Hz"
     catenary = supply.catenary
     impedance = f"{catenary.r_ohm_per_km:g} + j{catenary.x_ohm_per_km:g} Ω/km"
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.converter_stations:
         yield "converters", _station(station)
+    for transformers in supply.transformer_stations:
+        yield "transformers", _transformer_station(transformers)
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
@@ -119,6 +121,17 @@ def _station(station: ConverterStation) -> str:
     return (
         f"{station.name} {station.position_km:g} km: {station.converters} x {kind} of "
         f"{station.type.rating_mva:g} MVA, control {station.control}"
+    )
+
+
+def _transformer_station(station: TransformerStation) -> str:
+    grid = "an infinite grid"
+    if station.grid_short_circuit_mva is not None:
+        grid = f"a grid of {station.grid_short_circuit_mva:g} MVA"
+    unit = station.transformer
+    return (
+        f"{station.name} {station.position_km:g} km: {station.transformers} x {unit.rated_mva:g} MVA, "
+        f"{unit.short_circuit_percent:g} %, {station.no_load_voltage_kv:g} kV without load, at {grid}"
     )
 
 

@@ -67,11 +67,11 @@ def _supply(scenario: Scenario) -> Iterator[str]:
 
 def _voltage_limits(scenario: Scenario) -> Iterator[str]:
     limits = scenario.standards.voltage_limits
-    for i, station in enumerate(scenario.supply.converter_stations):
-        without_load_kv = station.type.no_load_voltage_kv
+    for station in scenario.supply.stations:
+        without_load_kv = station.no_load_voltage_kv
         if not limits.umin1_kv <= without_load_kv <= limits.umax1_kv:
             yield (
-                f"supply.converter_stations.{i}: it feeds {without_load_kv:g} kV without load, outside "
+                f"supply: {station.name} feeds {without_load_kv:g} kV without load, outside "
                 f"of the {limits.umin1_kv:g} to {limits.umax1_kv:g} kV of standards.voltage_limits "
                 f"({limits.system})"
             )

@@ -19,7 +19,7 @@ from tpss.errors import ResultError
 if TYPE_CHECKING:
     from tpss.results.result import Result
     from tpss.scenario import Scenario
-    from tpss.simulation.run import Progress
+    from tpss.run.run import Progress
 
 DONE, BAD_INPUT, NO_SOLUTION, AUDIT_FAILED, INTERRUPTED = 0, 2, 3, 4, 130
 
@@ -78,12 +78,11 @@ def exit_code(result: "Result") -> int:
 def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quiet: bool) -> _Ended:
     """Simulate and save; from the first step on, a Ctrl-C ends the run and saves what there is."""
     from tpss.api import prepare
-    from tpss.kernel import kernels_are_compiled
-    from tpss.simulation.interrupt import interruptible
+    from tpss.run.interrupt import interruptible
+    from tpss.run.kernels import are_ready
 
     console = Console(stderr=True, quiet=quiet)
-    last = "advance" if scenario.simulation.load_flow == "equations" else "end_step"
-    if not kernels_are_compiled(last):
+    if not are_ready():
         console.print("Compiling the numerical kernels; this takes up to half a minute, once.")
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:

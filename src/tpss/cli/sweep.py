@@ -90,7 +90,7 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
 def _tell_of_compilation(console: Console) -> None:
     from tpss.kernel import kernels_are_compiled
 
-    if not kernels_are_compiled("gather"):
+    if not kernels_are_compiled():
         console.print("Compiling the numerical kernels; this takes up to a minute, once.")
 
 

@@ -11,9 +11,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from tpss import units
 from tpss.results.explain import warnings
 from tpss.results.result import Result
 from tpss.results.tables import train_steps
+from tpss.step.recorded import RECORDED
 
 MOST_TRAINS = 30
 MOST_VIOLATIONS = 5
@@ -77,19 +79,11 @@ _STATION_COLUMNS = (
     _Column("mean_converters", "converters", "mean", 1),
 )
 
-_STEP_COLUMNS = (
-    _Column("position_km", "position", "km", 3),
-    _Column("speed_kmh", "speed", "km/h", 2),
-    _Column("acceleration_m_s2", "accel.", "m/s²", 4),
-    _Column("pantograph_voltage_kv", "voltage", "kV", 3),
-    _Column("tractive_force_kn", "traction", "kN", 2),
-    _Column("braking_force_kn", "brakes", "kN", 2),
-    _Column("running_resistance_kn", "resist.", "kN", 2),
-    _Column("gradient_force_kn", "gradient", "kN", 2),
-    _Column("motor_current_a", "motor", "A", 1),
-    _Column("active_power_mw", "P", "MW", 3),
-    _Column("reactive_power_mvar", "Q", "Mvar", 3),
-)
+_STEP_COLUMNS = [
+    _Column(each.column, each.heading, units.label(each.column), each.digits)
+    for each in RECORDED
+    if each.heading
+]
 
 
 def _table(

@@ -17,11 +17,11 @@ import tomli_w
 from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
+from tpss.audit.verdict import LIMITS
 from tpss.errors import ResultError
 from tpss.report import plots, sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.validity import limits_of_validity
-from tpss.results.audit import LIMITS
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result

@@ -13,7 +13,7 @@ from tpss.results.result import Result
 MOST_ROWS = 1_000
 """Rows of a table; the saved result has them all."""
 
-DIGITS = {"MWh": 3, "MVArh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
+DIGITS = {"MWh": 3, "Mvarh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
 """Decimals that are shown, by unit; others have two."""
 
 

@@ -6,6 +6,12 @@ from tpss.results.file_kinds import Kind
 
 DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
 
+FORMAT_KEY, FORMAT = "result_format", 2
+"""Name and value of what a result says of how it is written.
+
+It grows when something is renamed, taken away or newly relied upon, not when something is added.
+"""
+
 REPORT = "report.html"
 REPORT_MARK, HEAD_BYTES = "TPSS report", 2_000
 """What a report says of itself, within so many first bytes."""

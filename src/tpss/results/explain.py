@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from tpss.kernel import plain
-from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.physics.locomotive import machine_force
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
-from tpss.simulation.run import INTERRUPTED, Outcome
-from tpss.simulation.state import DRIVING, DWELLING, PLANNED, Model
+from tpss.run.run import INTERRUPTED, Outcome, on_line
+from tpss.step.model import Model
+from tpss.vehicle.terms import Demand
+from tpss.vehicle.train_type import TrainType
 
 ALMOST = 0.99
 """Of the highest plausible voltage: from here on, the voltages ended the search by being too high."""
@@ -50,7 +50,7 @@ def explain(outcome: Outcome, model: Model) -> dict[str, str]:
     """Problem and advice of a run that did not finish; empty for one that did."""
     time_min = outcome.steps * model.options.step_s / 60.0
     if outcome.status == "collapsed":
-        return _collapse(outcome, time_min)
+        return _collapse(outcome, model, time_min)
     if outcome.status == "stalled":
         return _stall(outcome, model, time_min)
     if outcome.status == INTERRUPTED:
@@ -59,14 +59,15 @@ def explain(outcome: Outcome, model: Model) -> dict[str, str]:
     return {}
 
 
-def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
+def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
     flow, state = outcome.state.flow, outcome.state
     share = float(state.clock[0].carried_share)
-    places = flow.standing[: flow.sections[-1].end]
-    drawing = state.trains[places.train]
-    active_mw = drawing.active_power_w.sum() / 1e6
-    reactive_mvar = drawing.reactive_power_var.sum() / 1e6
-    lowest_kv, highest_kv = (b * BASE_VOLTAGE_V / 1e3 for b in (LOWEST_VOLTAGE, HIGHEST_VOLTAGE))
+    places = flow.standing[: on_line(state).sum()]
+    drawing = state.trains["demand"][places["train"]]
+    active_mw = drawing["active_power_w"].sum() / 1e6
+    reactive_mvar = drawing["reactive_power_var"].sum() / 1e6
+    system = model.network.system
+    lowest_kv, highest_kv = system.lowest_voltage_v / 1e3, system.highest_voltage_v / 1e3
     problem = (
         f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains ask for "
         f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and beyond {100 * share:.1f} % of that the "
@@ -75,11 +76,11 @@ def _collapse(outcome: Outcome, time_min: float) -> dict[str, str]:
     )
     advice = _STRENGTHEN
     if len(places) and share > 0.0:
-        voltage_kv = np.abs(places.voltage_v) / 1e3
+        voltage_kv = np.abs(places["voltage_v"]) / 1e3
         too_high = voltage_kv.max() > ALMOST * highest_kv
         k = int(np.argmax(voltage_kv) if too_high else np.argmin(voltage_kv))
         train, which = int(places[k].train), "highest" if too_high else "lowest"
-        place_km = state.trains[train].position_m / 1e3
+        place_km = state.trains[train].motion.position_m / 1e3
         name = outcome.trains[train].name
         problem += f" There, {name} at {place_km:.2f} km has {voltage_kv[k]:.2f} kV, the {which}."
         advice = (
@@ -95,21 +96,22 @@ def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
         return {"problem": problem, "advice": "Give simulation.duration_min, or check the traffic."}
     train = outcome.state.trains[clock.stalled_train]
     name = outcome.trains[clock.stalled_train].name
+    motion, demand = train.motion, train.demand
     doing = (
-        "stands and cannot start" if train.speed_m_s <= 0.0 else "slows down and would roll back"
+        "stands and cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
     )
     problem = (
-        f"At {time_min:.2f} min {name} {doing} at {train.position_m / 1e3:.2f} km: resistance and "
+        f"At {time_min:.2f} min {name} {doing} at {motion.position_m / 1e3:.2f} km: resistance and "
         f"gradient ask for {clock.force_needed_n / 1e3:.1f} kN, its machine and the rails give "
-        f"{clock.force_available_n / 1e3:.1f} kN at {train.voltage_v / 1e3:.2f} kV and "
-        f"{train.speed_m_s * 3.6:.1f} km/h."
+        f"{clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
+        f"{motion.speed_m_s * 3.6:.1f} km/h."
     )
-    on_line = np.isin(outcome.state.trains.phase, (DRIVING, PLANNED, DWELLING))
-    lowest_kv = outcome.state.trains.voltage_v[on_line].min() / 1e3
+    voltages_v = outcome.state.trains["demand"]["voltage_v"][on_line(outcome.state)]
+    lowest_kv = voltages_v.min() / 1e3
     problem += f" The lowest voltage on the line is {lowest_kv:.2f} kV."
-    unlimited_n = _force_without_current_limitation(train, model.types[train.train_type])
-    if train.wheel_force_n < unlimited_n:
-        share = 100.0 * train.wheel_force_n / unlimited_n
+    unlimited_n = _force_without_current_limitation(demand, model.types[train.train_type])
+    if demand.wheel_force_n < unlimited_n:
+        share = 100.0 * demand.wheel_force_n / unlimited_n
         problem += (
             f" At this voltage its current limitation lets {share:.0f} % of the force through that it "
             f"wants and could give otherwise, {unlimited_n / 1e3:.1f} kN."
@@ -118,13 +120,13 @@ def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
     return {"problem": problem, "advice": _HELP_THE_TRAIN}
 
 
-def _force_without_current_limitation(train: Any, kind: Any) -> float:
+def _force_without_current_limitation(demand: Demand, kind: TrainType) -> float:
     """Force at the wheel rim that driver, rails and machine would give at the train's voltage. [N]"""
-    motors_n = max(0.0, float(train.machine_force_n))
+    motors_n = max(0.0, float(demand.machine_force_n))
     machine_n = plain(machine_force)(
-        motors_n, train.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
+        motors_n, demand.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
     )
-    return float(min(train.force_cap_n, max(0.0, machine_n)))
+    return float(min(demand.force_cap_n, max(0.0, machine_n)))
 
 
 def warnings(summary: dict[str, Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""The key figures of a run, for whoever makes thousands: no dataset, no tables, a few hundred bytes."""
+"""The key figures of a run, from its recording: no dataset, no tables, a few hundred bytes."""
 
 import math
 from dataclasses import dataclass
@@ -8,16 +8,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.audit.aggregate import Figures, RunFigures, gather, new_figures
+from tpss.audit.balances import Balances
+from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
 from tpss.model.build import Layout
-from tpss.results.audit import LIMITS, Audit, judge, limits_of
+from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
+from tpss.run.run import Clock, Run, Start, advance_to_end, run_of
 from tpss.scenario.scenario import Scenario
-from tpss.simulation.aggregate import RUN_FIGURES, Figures, gather, new_figures
-from tpss.simulation.balances import BALANCES
-from tpss.simulation.run import Clock, Run, Start, advance_to_end
-from tpss.simulation.state import PENDING, Counter, Memory, Model
+from tpss.step.model import Model
+from tpss.step.recording import Memory
+from tpss.step.state import Counter
+from tpss.vehicle.train import Phase
 
 LIMITED = tuple(counter.name.lower() for counter in Counter)
 """Names of what is counted, in the order of the recording."""
@@ -65,13 +69,15 @@ class KeyFigures:
     name : str
         Name of the scenario.
     status : str
-        ``finished``, ``collapsed`` or ``stalled``.
+        ``finished``, ``collapsed``, ``stalled`` or ``interrupted``.
     steps : int
         Steps carried out.
     duration_min : float
         Simulated time; of a run that collapsed or stalled, when it did.
     carried_share : float
         Share of its load that the line could carry when it collapsed, otherwise 1.
+    studied_train : str or None
+        First train of the first service, once it has departed.
     trip_time_min, mean_speed_kmh : float
         Of the studied train, from its departure to its arrival.
     services, stations : tuple
@@ -94,6 +100,7 @@ class KeyFigures:
     steps: int
     duration_min: float
     carried_share: float
+    studied_train: str | None
     trip_time_min: float
     mean_speed_kmh: float
     services: tuple[ServiceFigures, ...]
@@ -127,6 +134,7 @@ class Frame:
     """Whether a node is at the contact line's level."""
     limits: dict[str, float]
     """Of the audit."""
+    system: System
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -139,6 +147,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         stations=layout.stations,
         at_line_level=np.array(layout.supply.node_level) == 1.0,
         limits=limits_of(model),
+        system=model.network.system,
     )
 
 
@@ -159,17 +168,23 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
     TooLargeError
         The recording would not fit into memory.
     """
-    run = Run(start.model, start.trains, start.capacity, clock, start.records, memory)
-    status = advance_to_end(run, start)
+    run = run_of(start, clock, memory)
+    return key_figures_of(run, advance_to_end(run, start), start, frame)
+
+
+def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
+    """Key figures of a run that has ended with a status."""
     figures = _gather(run, frame)
-    whole = dict(zip(RUN_FIGURES.names or (), figures.run.tolist()[0], strict=True))
-    trip_min, speed_kmh = _studied_trip(run, start.studied, figures)
+    whole = dict(zip(RunFigures.dtype.names or (), figures.run.tolist()[0], strict=True))
+    studied = start.studied if start.studied < run.departed else -1
+    trip_min, speed_kmh = _studied_trip(run, studied, figures)
     return KeyFigures(
         name=frame.name,
         status=status,
         steps=run.step,
         duration_min=run.step * run.model.options.step_s / 60.0,
-        carried_share=float(run.state.clock[0]["carried_share"]),
+        carried_share=float(run.state.clock[0].carried_share),
+        studied_train=run.trains[studied].name if studied >= 0 else None,
         trip_time_min=trip_min,
         mean_speed_kmh=speed_kmh,
         services=_services(run, start),
@@ -207,10 +222,10 @@ def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
 
 def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
     h, trips_min = start.model.options.step_s, [list[float]() for _ in start.services]
-    state = run.state.trains
-    arrivals_s = (state["arrival_step"] * h - state["stood_s"]).tolist()
+    timetable = run.state.trains["timetable"]
+    arrivals_s = (timetable["arrival_step"] * h - timetable["stood_s"]).tolist()
     for train, arrival_s in zip(run.trains, arrivals_s, strict=True):
-        if arrival_s >= 0 and train.phase == PENDING:
+        if arrival_s >= 0 and train.phase == Phase.PENDING:
             trips_min[train.route].append(arrival_s / 60.0 - train.departure_step * h / 60.0)
     return tuple(
         ServiceFigures(
@@ -225,13 +240,16 @@ def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
 
 def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, float]:
     """Trip time [min] and mean speed [km/h] of the studied train, NaN if it has not arrived."""
-    arrival = int(run.state.trains["arrival_step"][studied]) if studied >= 0 else -1
+    if studied < 0:
+        return math.nan, math.nan
+    timetable = run.state.trains[studied].timetable
+    arrival = int(timetable.arrival_step)
     if arrival < 0:
         return math.nan, math.nan
     trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
-    trip_s -= float(run.state.trains["stood_s"][studied])
-    way_m = figures.trains["last_m"][studied] - figures.trains["first_m"][studied]
-    return trip_s / 60.0, float(way_m) / trip_s * 3.6
+    trip_s -= float(timetable.stood_s)
+    distance_m = figures.trains[studied].last_m - figures.trains[studied].first_m
+    return trip_s / 60.0, float(distance_m) / trip_s * 3.6
 
 
 def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures, ...]:
@@ -289,10 +307,10 @@ def _dimensioning_train_kv(figures: Figures, step_s: float) -> float:
 
 
 def _audit(run: Run, figures: Figures, whole: dict[str, Any], frame: Frame) -> Audit:
-    found = dict(zip(BALANCES.names or (), figures.audit.balances.tolist()[0], strict=True))
-    found["stop_error_m"] = float(run.state.clock[0]["stop_error_m"])
+    found = dict(zip(Balances.dtype.names or (), figures.audit.balances.tolist()[0], strict=True))
+    found["stop_error_m"] = float(run.state.clock[0].stop_error_m)
     audited = {name: found[name] for name in LIMITS}
     lowest = min(whole["lowest_voltage_v"], whole["lowest_node_v"])
     if not math.isfinite(lowest):
-        return judge(audited, None, None, frame.limits)
-    return judge(audited, lowest, whole["highest_voltage_v"], frame.limits)
+        return judge(audited, None, None, frame.limits, frame.system)
+    return judge(audited, lowest, whole["highest_voltage_v"], frame.limits, frame.system)

@@ -13,6 +13,9 @@ from tpss.results import store, tables
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.scenario.scenario import Scenario
 
+STANDARDS = "standards"
+"""Part of the summary that takes as long as all else, so it is made when it is asked for."""
+
 
 @dataclass(frozen=True)
 class Result:
@@ -24,23 +27,30 @@ class Result:
         The scenario as run.
     dataset : xarray.Dataset
         Everything that was recorded; each variable carries its unit and a long name.
-    summary : dict
-        Key figures, the audit and the run's provenance.
+    figures : dict
+        The summary, with or without its part ``standards``.
     """
 
     scenario: Scenario
     dataset: xr.Dataset
-    summary: dict[str, Any]
+    figures: dict[str, Any]
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """Key figures, the audit, the run's provenance, and figures of `standards`."""
+        if STANDARDS in self.figures:
+            return self.figures
+        return {**self.figures, STANDARDS: self.standards.as_dict()}
 
     @property
     def status(self) -> str:
         """``finished``, ``collapsed``, ``stalled`` or ``interrupted``."""
-        return str(self.summary["status"])
+        return str(self.figures["status"])
 
     @property
     def audit(self) -> dict[str, Any]:
         """Figures of the audit; ``passed`` says whether all are within their limits."""
-        audit: dict[str, Any] = self.summary["audit"]
+        audit: dict[str, Any] = self.figures["audit"]
         return audit
 
     @cached_property
@@ -78,8 +88,8 @@ class Result:
             The changed scenario has faults.
         """
         paths = {f"standards.{path}": value for path, value in changes.items()}
-        judged = replace(self, scenario=self.scenario.with_(paths))
-        return replace(judged, summary={**self.summary, "standards": judged.standards.as_dict()})
+        others = {key: value for key, value in self.figures.items() if key != STANDARDS}
+        return replace(self, scenario=self.scenario.with_(paths), figures=others)
 
     def save(self, folder: str | Path | None = None, *, force: bool = False) -> Path:
         """Save into a folder, which is written whole or not at all.

@@ -16,15 +16,9 @@ import tomli_w
 import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
-from tpss.results.contents import DATASET, SCENARIO, SUMMARY, carry_over
+from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
-
-FORMAT_KEY, FORMAT = "result_format", 2
-"""Name and value of what a result says of the way in which it is written.
-
-It grows when something is renamed, taken away or newly relied upon, not when something is added.
-"""
 
 TRIAL_BYTES = 2**16
 """A disk without room for so much is full."""

@@ -5,6 +5,9 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
+from tpss.step.recorded import RECORDED
+from tpss.units import si_factor
+
 J_PER_MWH = 3.6e9
 
 
@@ -69,23 +72,8 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
     ).replace(-np.inf, np.nan)
 
 
-TRAIN_STEPS = {
-    # column: (variable, factor from SI)
-    "position_km": ("position", 1e-3),
-    "speed_kmh": ("speed", 3.6),
-    "acceleration_m_s2": ("acceleration", 1.0),
-    "pantograph_voltage_kv": ("pantograph_voltage", 1e-3),
-    "pantograph_angle_deg": ("pantograph_angle", 180.0 / np.pi),
-    "tractive_force_kn": ("tractive_force", 1e-3),
-    "braking_force_kn": ("braking_force", 1e-3),
-    "running_resistance_kn": ("running_resistance", 1e-3),
-    "gradient_force_kn": ("gradient_force", 1e-3),
-    "motor_current_a": ("motor_current", 1.0),
-    "active_power_mw": ("active_power", 1e-6),
-    "reactive_power_mvar": ("reactive_power", 1e-6),
-    "holding_time_s": ("holding_time", 1.0),
-}
-"""Columns of `train_steps` that are numbers."""
+TRAIN_STEPS = {each.column: each.name for each in RECORDED if each.column}
+"""Columns of `train_steps` that are numbers, and the variables that they show."""
 
 
 def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
@@ -104,8 +92,8 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
             "time_min": dataset.time.to_numpy()[instant] / 60.0,
             "state": np.array([*states, ""], dtype=object)[state],
             **{
-                column: dataset[name].to_numpy().T[there] * factor
-                for column, (name, factor) in TRAIN_STEPS.items()
+                column: dataset[name].to_numpy().T[there] / si_factor(column)
+                for column, name in TRAIN_STEPS.items()
             },
         }
     )

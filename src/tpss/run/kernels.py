@@ -1,8 +1,8 @@
-"""Compiled kernels before the first step: whether there are any, and a cold start on two cores.
+"""Compiled kernels before the first step: a cold start on two cores.
 
-The kernels are compiled in two parts, by two processes at once: the load flow, and what prepares and
-carries out a step.  What they have in common is little; what calls both, the clock, is compiled after
-them.  The second process keeps what it compiles in a cache folder of its own, as two that write into
+The kernels are compiled in parts, by two processes at once: first the load flow, and what prepares and
+carries out a step, which have little in common; then the clock, which calls both, and the audit.  The
+second process keeps what it compiles in a cache folder of its own, as two that write into
 one may spoil each other's entries.  The first one adopts from it whatever itself does not have.  Where a
 second process is of no use or does not succeed, the first one compiles everything, a little later.
 """
@@ -12,15 +12,19 @@ import pickle
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 
+from tpss.audit.aggregate import gather, new_figures
 from tpss.driving.braking import shortest_stop
 from tpss.driving.stops import stand_at_stop
 from tpss.driving.whole_steps import replan
-from tpss.driving.within_step import aim_to_stop, replan as replan_within
+from tpss.driving.within_step import replan as replan_within
 from tpss.kernel import cache_folder, kernels_are_compiled, switch
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Loads
@@ -41,13 +45,12 @@ Call = tuple[Any, tuple[Any, ...]]
 """A kernel, and arguments of the types with which the clock calls it."""
 
 
-def are_ready() -> bool:
-    """Whether all kernels of exactly this source are compiled; the clock's is compiled last."""
-    return kernels_are_compiled(advance.__name__)
+_ready: set[Clock] = set()
+"""Clocks all of whose kernels this process has compiled or loaded."""
 
 
-def warm_up(model: Model, clock: Clock = advance) -> None:
-    """Compile the kernels, or load them from the cache, without simulating anything.
+def make_ready(model: Model, clock: Clock = advance) -> None:
+    """Compile all kernels of a run, or load them from the cache, once in this process.
 
     What another clock than `advance` calls one by one is compiled by a step without trains.
 
@@ -58,11 +61,23 @@ def warm_up(model: Model, clock: Clock = advance) -> None:
     clock : callable
         What runs the steps.
     """
-    if not are_ready():
-        _compile_in_parts(model)
+    if clock in _ready:
+        return
+    if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
+        with _compiled_apart("step", model):
+            compile_calls(load_flow_calls(model))
+        with _compiled_apart("figures", model):
+            Run(model, [], 0).advance_to(0)
     Run(model, [], 0).advance_to(0)
     if clock is not advance:
         Run(model, [], 1, clock).advance_to(1)
+    compile_calls(figures_calls(model))
+    _ready.add(clock)
+
+
+def are_ready() -> bool:
+    """Whether all kernels of exactly this source are compiled; those of the audit are the last."""
+    return kernels_are_compiled(gather.__name__)
 
 
 def load_flow_calls(model: Model) -> list[Call]:
@@ -92,6 +107,14 @@ def step_calls(model: Model) -> list[Call]:
     ]
 
 
+def figures_calls(model: Model) -> list[Call]:
+    """Kernels that gather the figures of a run and audit it."""
+    trains = _start(model).trains
+    recording, blank = new_recording(model, 0, trains.size), new_figures(model, trains.size, [])
+    at_line_level = np.zeros(model.network.source_of_node.size, dtype=bool)
+    return [(gather, (0, 0, 0, at_line_level, trains, model, recording, blank))]
+
+
 def _start(model: Model) -> State:
     """State of a run with one train."""
     trains = [ScheduledTrain("", "", train_type=0, route=0, departure_step=0)]
@@ -101,22 +124,22 @@ def _start(model: Model) -> State:
 def compile_calls(calls: list[Call]) -> None:
     """Compile each kernel for its arguments, or load it from the cache, without running it."""
     for function, arguments in calls:
-        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        if hasattr(function, "compile"):  # not if compilation is switched off
+            function.compile(tuple(numba.typeof(argument) for argument in arguments))
 
 
-def _compile_in_parts(model: Model) -> None:
-    """Compile what the clock calls, in two processes; the clock itself is left."""
-    if (os.cpu_count() or 1) < 2 or not sys.executable:
-        return
+@contextmanager
+def _compiled_apart(part: str, model: Model) -> Iterator[None]:
+    """Have a part compiled by a second process meanwhile, and adopt what it has made at the end."""
     folder = cache_folder()
     with tempfile.TemporaryDirectory(prefix="part-", dir=folder) as apart:
         environment = {**os.environ, "NUMBA_CACHE_DIR": apart}
-        command = [sys.executable, "-m", "tpss.run.kernels"]
+        command = [sys.executable, "-m", "tpss.run.kernels", part]
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, **quiet) as second:  # type: ignore[call-overload]
             try:
                 _send(model, second)
-                compile_calls(load_flow_calls(model))
+                yield
                 second.wait()
             finally:
                 second.kill()
@@ -147,4 +170,5 @@ def adopt(apart: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    compile_calls(step_calls(pickle.load(sys.stdin.buffer)))
+    parts = {"step": step_calls, "figures": figures_calls}
+    compile_calls(parts[sys.argv[1]](pickle.load(sys.stdin.buffer)))

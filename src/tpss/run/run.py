@@ -259,49 +259,15 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     return Start(model, services, steps, capacity, trains, records, studied)
 
 
-def run_services(
-    model: Model,
-    services: list[Service],
-    steps: int | None,
-    report: Callable[[Progress], None] | None = None,
-    interrupted: Sequence[int] | None = None,
-    clock: Clock = advance,
-) -> Outcome:
-    """Run a model with its services: `begin`, then `run_on`."""
-    return run_on(begin(model, services, steps), report, interrupted, clock)
-
-
-def run_on(
-    start: Start,
-    report: Callable[[Progress], None] | None = None,
-    interrupted: Sequence[int] | None = None,
-    clock: Clock = advance,
-) -> Outcome:
-    """Run from a start to the end.
-
-    Parameters
-    ----------
-    start : Start
-    report : callable, optional
-        Called with the `Progress` after every stretch of steps.
-    interrupted : sequence, optional
-        Ends the run, once it is filled, with the status "interrupted"; see `interrupt.interruptible`.
-    clock : callable, optional
-        Runs the steps.
+def run_of(start: Start, clock: Clock = advance, memory: Memory = np.empty) -> Run:
+    """A run at its start.
 
     Raises
     ------
     TooLargeError
         The recording would not fit into memory.
-
-    Returns
-    -------
-    Outcome
-        Also of a run that ended early: what it has until then.
     """
-    run = Run(start.model, start.trains, start.capacity, clock, start.records)
-    status = advance_to_end(run, start, report, interrupted)
-    return _outcome(run, status, start.studied)
+    return Run(start.model, start.trains, start.capacity, clock, start.records, memory)
 
 
 def advance_to_end(
@@ -355,7 +321,7 @@ def _progress(run: Run, steps: int | None) -> Progress:
     return Progress(time_s=time_s, trains=trains, share=min(1.0, float(share)))
 
 
-def _outcome(run: Run, status: str, studied: int) -> Outcome:
+def outcome_of(run: Run, status: str, studied: int) -> Outcome:
     """The run as it ended, its recording cut to the steps carried out."""
     rows, count = run.step + 1, run.departed
     kept = run.recording

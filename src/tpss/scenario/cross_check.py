@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from tpss.errors import Finding
+from tpss.scenario.supply.supply import STATIONS
 
 
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
@@ -99,8 +100,9 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
 
 def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     stations: list[float] = []
-    for i, station in _items(supply, "converter_stations"):
-        key = f"supply.converter_stations.{i}.position_km"
+    listed = [(kind, i, each) for kind in STATIONS for i, each in _items(supply, kind)]
+    for kind, i, station in listed:
+        key = f"supply.{kind}.{i}.position_km"
         position = _number(station, "position_km")
         yield from _outside(key, position, length)
         if position is not None:

@@ -40,7 +40,7 @@ class ConverterLaw(Record):
 def converter_voltage(reactive_power_var: float, converters: float, law: ConverterLaw) -> float:
     r"""Terminal voltage of a station. [V]
 
-    .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{MVAr}]
+    .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{Mvar}]
 
     References
     ----------

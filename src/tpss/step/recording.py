@@ -8,48 +8,11 @@ import numpy.typing as npt
 
 from tpss.record import Record, Records
 from tpss.step.model import Model
+from tpss.step.recorded import NodeRow, StationRow, TrainRow
 from tpss.step.state import Counter, Floats, TrainState
 from tpss.vehicle.train import Journey
 
 Indices = npt.NDArray[np.int64]
-
-
-class TrainRow(Record):
-    """What is recorded of a train at an instant and over the interval that follows.
-
-    Voltages are kept as the load flow has them: magnitude and angle are found where they are asked for.
-    Of an interval in which forces change these are the means.
-    """
-
-    position: float
-    speed: float
-    acceleration: float
-    tractive_force: float
-    braking_force: float
-    running_resistance: float
-    gradient_force: float
-    motor_current: float
-    pantograph_real: float
-    pantograph_imag: float
-    active_power: float
-    reactive_power: float
-    holding_time: float
-
-
-class NodeRow(Record):
-    """Voltage of a node, at the contact line's level."""
-
-    node_real: float
-    node_imag: float
-
-
-class StationRow(Record):
-    """What is recorded of a feeding station."""
-
-    station_active_power: float
-    station_reactive_power: float
-    active_converters: float
-    converter_loading: float
 
 
 class Recording(NamedTuple):

@@ -7,7 +7,7 @@ from typing import Any, get_type_hints
 
 import pyarrow as pa
 
-from tpss.results.audit import LIMITS
+from tpss.audit.verdict import LIMITS
 from tpss.results.key_figures import LIMITED, KeyFigures, ServiceFigures, StationFigures
 from tpss.sweep.inputs import Inputs
 from tpss.sweep.variation import Variation

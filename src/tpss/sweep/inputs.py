@@ -70,10 +70,10 @@ def inputs_of(scenario: Scenario) -> Inputs:
     train, catenary = scenario.trains[first.train], supply.catenary
     place_km = {station.name: station.position_km for station in line.stations}
     begin_km, end_km = place_km[first.origin], place_km[first.destination]
-    stations_km = sorted(station.position_km for station in supply.converter_stations)
+    stations_km = sorted(station.position_km for station in supply.stations)
     transformers_km = transformer_positions_km(supply)
-    converters = [station.converters for station in supply.converter_stations]
-    ratings = [s.converters * s.type.rating_mva for s in supply.converter_stations]
+    converters = [station.installed for station in supply.stations]
+    ratings = [station.installed * station.unit_mva for station in supply.stations]
     headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]
     limits = _over([(s.from_km, s.speed_kmh) for s in line.speed_limits], begin_km, end_km)
     limits = [(way, min(speed, train.max_speed_kmh)) for way, speed in limits]

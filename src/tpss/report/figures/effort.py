@@ -1,20 +1,13 @@
 """Speed and force of a train against what its machine, its driver and the rails allow."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from tpss.kernel import blank_records, plain
-from tpss.model.trains import build_machine, build_train_types
-from tpss.physics.adhesion import DRY, WET, adhesion_limit
-from tpss.physics.locomotive import DEMAND, FULL_EFFORT_N, take_speed, wheel_force
-from tpss.physics.running_resistance import DavisCoefficients, running_resistance
+from tpss.model.effort_curve import adhesion, level_resistance, machine_limit
 from tpss.report.figures.time_distance import voltage_colours
-from tpss.report.style import STYLE, Floats, colour, legend, panels
+from tpss.report.style import STYLE, colour, legend, panels
 from tpss.results.result import Result
-from tpss.scenario.rolling_stock import Train
 
 SPEEDS = 120
 """Points of a curve over speed."""
@@ -47,15 +40,10 @@ def effort(result: Result, train: str | None = None) -> Figure:
             label=f"machine at {voltage_kv:.2f} kV",
         )  # fmt: skip
     simulation = result.scenario.simulation
-    rail = WET if simulation.rail == "wet" else DRY
-    factor = 1.0 if simulation.adhesion_speed_unit == "m/s" else 3.6
-    adhesion = [
-        plain(adhesion_limit)(kind.adhesive_mass_t * 1e3, v / 3.6 * factor, rail) / 1e3
-        for v in speeds
-    ]
-    panel.plot(speeds, adhesion, "-.", color=colour(2), label=f"adhesion, {simulation.rail}")
+    rails_kn = adhesion(kind, speeds / 3.6, simulation) / 1e3
+    panel.plot(speeds, rails_kn, "-.", color=colour(2), label=f"adhesion, {simulation.rail}")
     panel.plot(
-        speeds, resistance(kind, speeds / 3.6) / 1e3, ":", color=colour(3), linewidth=1.8,
+        speeds, level_resistance(kind, speeds / 3.6) / 1e3, ":", color=colour(3), linewidth=1.8,
         label="running resistance",
     )  # fmt: skip
     motoring = kn > 0.0
@@ -64,30 +52,6 @@ def effort(result: Result, train: str | None = None) -> Figure:
     )
     figure.colorbar(points, ax=panel, label="voltage at the pantograph [kV]", pad=0.02, aspect=40)
     panel.set_xlim(0.0, speeds[-1])
-    panel.set_ylim(0.0, 1.08 * max(float(np.nanmax(kn)), *adhesion))
+    panel.set_ylim(0.0, 1.08 * max(float(np.nanmax(kn)), *rails_kn))
     legend(figure, panel)
     return figure
-
-
-def machine_limit(kind: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
-    """Highest force at the wheel rim by machine and line current, on level track. [N]"""
-    types, points = build_train_types([kind])
-    machine = build_machine()[0]
-    train: Any = blank_records(1, DEMAND)[0]
-    train.force_cap_n = train.adhesion_n = FULL_EFFORT_N
-    train.free_band_v = -1.0
-    force, rolling = np.empty_like(speed_m_s), resistance(kind, speed_m_s)
-    for k, speed in enumerate(speed_m_s):
-        train.speed_m_s, train.taken_speed_m_s = speed, -1.0
-        train.resistance_n = rolling[k]
-        take_speed(voltage_v, types[0], train, machine, points)
-        force[k], _ = wheel_force(voltage_v, types[0], train, machine)
-    return force
-
-
-def resistance(kind: Train, speed_m_s: Floats) -> Floats:
-    """Running resistance on level track. [N]"""
-    davis = DavisCoefficients(
-        kind.resistance_a_n, kind.resistance_b_n_s_per_m, kind.resistance_c_n_s2_per_m2
-    )
-    return np.array([plain(running_resistance)(speed, davis) for speed in speed_m_s])

@@ -59,7 +59,7 @@ def station_loading(result: Result) -> Figure:
         held(axes[0], minutes, percent, style(s), as_text(station))
         held(axes[1], minutes, data.active_converters.to_numpy()[:, s], style(s))
     axes[0].set_ylim(bottom=0.0)
-    most = max(station.converters for station in result.scenario.supply.converter_stations)
+    most = max(station.installed for station in result.scenario.supply.stations)
     axes[1].set_ylim(0.0, most + 0.5)
     axes[1].yaxis.set_major_locator(MaxNLocator(integer=True))
     legend(figure, axes[0])

@@ -62,3 +62,8 @@ class ConverterStation(Part):
     def no_load_voltage_kv(self) -> float:
         """Terminal voltage without load. [kV]"""
         return self.type.no_load_voltage_kv
+
+    @property
+    def unit_mva(self) -> float:
+        """Rated power of one unit. [MVA]"""
+        return self.type.rating_mva

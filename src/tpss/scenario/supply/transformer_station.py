@@ -65,3 +65,8 @@ class TransformerStation(Part):
     def installed(self) -> int:
         """Number of transformers installed."""
         return self.transformers
+
+    @property
+    def unit_mva(self) -> float:
+        """Rated power of one unit. [MVA]"""
+        return self.transformer.rated_mva

@@ -1,21 +1,21 @@
-r"""Every run audits itself: balances recomputed from what was recorded, by another way than solved.
+"""The audit of `tpss.audit` once more, in array operations over all steps at once.
 
 The solver pushes voltages and currents along chains; the audit starts from the recorded voltages,
 forms the current of every piece of line and every branch from the voltages at its ends (the nodal
 admittance equations), and compares the powers that this asks for with the recorded ones.
 """
 
-from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+import tpss
+from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V, GRAVITY_M_S2
-from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network, resolution_va
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
-from tpss.results.audit_of_braking import braking_motion_error_m, braking_work
-from tpss.simulation.run import Outcome
+from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network
+from tpss.simulation.run import Outcome, advance_to_end, outcome_of, run_of
 from tpss.simulation.state import (
     AGGRESSIVE,
     STATE_ARRIVED,
@@ -29,67 +29,29 @@ from tpss.simulation.state import (
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 
-JUDGED_VA = 10.0 * TOLERANCE * BASE_POWER_VA
-"""Power mismatch that is judged, an order above the solver's tolerance. [VA]"""
 
-LIMITS = {
-    "power_mismatch_va": JUDGED_VA,
-    "converter_residual": 1e-9,
-    "network_balance": 1e-9,
-    "traction_balance": 1e-9,
-    "force_balance": 1e-9,
-    "motion_error_m": 1e-6,
-    "stop_error_m": 1e-3,
-}
-"""Highest value that each figure of a sound run may have; see `limits_of`."""
+OF_A_LIMIT = 1e-3
+"""The audit's figures are themselves rounding errors, which another order of operations changes."""
 
 
-@dataclass(frozen=True)
-class Audit:
-    """Figures of a run's audit, and what is wrong with them.
+def assert_agree(found: Audit, expected: Audit, limits: dict[str, float]) -> None:
+    """Assert that two audits agree, as far as rounding errors can."""
+    for name in LIMITS:
+        own, other = getattr(found, name), getattr(expected, name)
+        # What is not judged may be large, and what a forgery has spoilt not a number.
+        gap = OF_A_LIMIT * limits.get(name, LIMITS[name]) + 1e-9 * abs(other)
+        assert abs(own - other) <= gap or (math.isnan(own) and math.isnan(other)), name
+    for name in ("lowest_voltage_v", "highest_voltage_v", "passed"):
+        assert getattr(found, name) == getattr(expected, name), name
 
-    Attributes
-    ----------
-    power_mismatch_va : float
-        Largest power mismatch over nodes, trains and steps. [VA]
-    converter_residual : float
-        Largest residual of the converters' voltage [p.u.] and angle [rad].
-    network_balance : float
-        Energy of the stations less that of the trains and losses, relative to the first. [1]
-    traction_balance : float
-        Work of the motors less resistance, climb, kinetic energy and brakes, relative. [1]
-    force_balance : float
-        Largest difference between the forces on a train and its mass times acceleration, relative to
-        its weight. [1]
-    motion_error_m : float
-        Largest difference between a train's way in a step and that of its speeds. [m]
-    stop_error_m : float
-        Largest distance between where a braking plan ended and its stop. [m]
-    lowest_voltage_v, highest_voltage_v : float
-        Range of all voltages at pantographs and contact-line nodes, if there are any. [V]
-    failures : tuple of str
-        Figures beyond their limits, in words; empty for a sound run.
-    """
 
-    power_mismatch_va: float
-    converter_residual: float
-    network_balance: float
-    traction_balance: float
-    force_balance: float
-    motion_error_m: float
-    stop_error_m: float
-    lowest_voltage_v: float | None
-    highest_voltage_v: float | None
-    failures: tuple[str, ...]
-
-    @property
-    def passed(self) -> bool:
-        """Whether every figure is within its limit."""
-        return not self.failures
-
-    def as_dict(self) -> dict[str, Any]:
-        """The figures by name."""
-        return {**vars(self), "failures": list(self.failures), "passed": self.passed}
+def audit_of(scenario: tpss.Scenario) -> tuple[Audit, dict[str, float]]:
+    """Audit of the run of a scenario, and the limits by which it is judged."""
+    prepared = tpss.prepare(scenario)
+    start, model = prepared.start, prepared.start.model
+    run = run_of(start, prepared.clock)
+    outcome = outcome_of(run, advance_to_end(run, start), start.studied)
+    return audit(outcome, model, np.array(prepared.layout.supply.node_level)), limits_of(model)
 
 
 def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
@@ -120,51 +82,6 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     lowest = float(voltages.min()) if voltages.size else None
     highest = float(voltages.max()) if voltages.size else None
     return judge(figures, lowest, highest, limits_of(model))
-
-
-def judge(
-    figures: dict[str, float],
-    lowest: float | None,
-    highest: float | None,
-    limits: dict[str, float],
-) -> Audit:
-    """An audit from its figures, the range of voltages if there are any, and the limits."""
-    failures = (*_beyond_limits(figures, limits), *_out_of_range(lowest, highest))
-    return Audit(**figures, lowest_voltage_v=lowest, highest_voltage_v=highest, failures=failures)
-
-
-def limits_of(model: Model) -> dict[str, float]:
-    """Limits of the figures that are judged in a run of this model.
-
-    Over impedances of some microohms, a few metres of line, rounding alone is a visible mismatch; the
-    limits of what it touches follow it, and a train between two pieces of line meets the roundings of
-    both.  A traction balance billed at the start of a step, or with what slip wastes, does not close,
-    and is not judged.
-    """
-    limits = dict(LIMITS)
-    blurred = model.network.tolerance / TOLERANCE
-    shortest_ohm = np.abs(model.network.sections["impedance_ohm_per_m"]).min() * SHORTEST_PIECE_M
-    limits["power_mismatch_va"] *= max(blurred, 2.0 * resolution_va(shortest_ohm) / JUDGED_VA)
-    limits["converter_residual"] *= blurred
-    limits["network_balance"] *= blurred
-    if not model.options.mean_power or model.options.driver == AGGRESSIVE:
-        del limits["traction_balance"]
-    return limits
-
-
-def _beyond_limits(figures: dict[str, float], limits: dict[str, float]) -> list[str]:
-    return [
-        f"{name} is {figures[name]:.3g}, limit {limit:g}"
-        for name, limit in limits.items()
-        if not figures[name] <= limit
-    ]
-
-
-def _out_of_range(lowest_v: float | None, highest_v: float | None) -> list[str]:
-    low, high = LOWEST_VOLTAGE * BASE_VOLTAGE_V, HIGHEST_VOLTAGE * BASE_VOLTAGE_V
-    if lowest_v is None or highest_v is None or (low <= lowest_v and highest_v <= high):
-        return []
-    return [f"voltages leave the range of {low:g} to {high:g} V"]
 
 
 def phasors(rows: Any, place: str) -> Complexes:
@@ -389,3 +306,51 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
         way = braking_motion_error_m(before, after, _kinds(outcome, model), step_s)
     speed = after["speed"] - before["speed"] - step_s * before["acceleration"]
     return max(_largest(way[both]), _largest(speed[both]) * step_s, key=_nan_is_largest)
+
+
+def braking_work(before: Any, after: Any, kind: Any, step_s: float) -> Floats:
+    """Work of resistances and brakes, phase by phase. [J]
+
+    Of the resistances the mean over the step is recorded, for a part of which the train may stand.  To
+    hold the speed downhill takes brakes; the rest of their recorded impulse slows the train down.
+
+    Parameters
+    ----------
+    before, after : records of `TRAIN_ROW`, shape (steps, trains)
+        At the instants before and after each step.
+    kind : records of `TRAIN_TYPE`, shape (trains,)
+    step_s : float
+        Time step. [s]
+    """
+    v, hold_s = before["speed"], before["holding_time"]
+    brake_s = (v - after["speed"]) / kind.highest_retardation_m_s2
+    moving_s = hold_s + brake_s
+    impulse_ns = step_s * (before["running_resistance"] + before["gradient_force"])
+    resistance_n = impulse_ns / np.where(moving_s > 0.0, moving_s, np.nan)
+    holding_ns = np.maximum(0.0, -resistance_n) * hold_s
+    stopping_ns = before["braking_force"] * step_s - holding_ns
+    while_holding = (resistance_n * hold_s + holding_ns) * v
+    while_braking = (resistance_n * brake_s + stopping_ns) * (v + after["speed"]) / 2.0
+    return np.asarray(while_holding + while_braking, dtype=float)
+
+
+def braking_motion_error_m(before: Any, after: Any, kind: Any, step_s: float) -> Floats:
+    """Difference between the way of each step and that of its speeds. [m]
+
+    A step that holds the speed v for τ, then brakes with b, goes v τ + (v² - v'²)/2b; together that
+    takes the whole step, or less of it if the train stops.  A step without τ is a uniform one, but that
+    a train may come to its stop in any part of it: it goes no less than with b, and no further than
+    uniformly.  Parameters are those of `braking_work`.
+    """
+    v, w, hold_s = before["speed"], after["speed"], before["holding_time"]
+    way_m = after["position"] - before["position"]
+    brake_s = (v - w) / kind.highest_retardation_m_s2
+    over_s = hold_s + brake_s - step_s
+    over_s = np.where(w > 0.0, np.abs(over_s), np.maximum(0.0, over_s))
+    held_m = v * hold_s + (v + w) / 2.0 * brake_s
+    uniform_m = step_s * (v + w) / 2.0
+    shortest_m = np.minimum(uniform_m, v / 2.0 * brake_s)
+    stop_m = np.clip(way_m, shortest_m, uniform_m)
+    other_m = np.where((w == 0.0) & (v > 0.0), stop_m, uniform_m)
+    error = np.where(hold_s > 0.0, np.abs(way_m - held_m) + v * over_s, way_m - other_m)
+    return np.asarray(error, dtype=float)

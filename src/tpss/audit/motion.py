@@ -1,0 +1,109 @@
+"""The audit of the trains: work, forces and motion."""
+
+from tpss.audit.balances import Balances, worst
+from tpss.driving.data import Braking, Driver
+from tpss.kernel import inlined
+from tpss.numerics.curve import curve_at
+from tpss.physics.constants import GRAVITY_M_S2
+from tpss.step.model import Model
+from tpss.step.recorded import TrainRow
+from tpss.step.recording import Recording
+from tpss.step.state import TrainState
+from tpss.vehicle.train_type import TrainType
+
+
+@inlined
+def audit_train(
+    step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
+) -> None:
+    """Add a train's step to the balances of energy, force and motion.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11), (F.19), (2.29) and (2.30).
+    """
+    before, after = recording.trains[step, i], recording.trains[step + 1, i]
+    h = model.options.step_s
+    figures.drawn_j += before.active_power * h
+    # Not the difference of positions, which would round a short way of a train far along the line.
+    way_m = h * (before.speed + after.speed) / 2.0
+    efficiency = curve_at(before.speed, kind.efficiency.first, kind.efficiency.points, model.points)
+    power_w = (before.active_power - kind.auxiliary_power_w) * efficiency
+    figures.work_j += power_w * h / kind.slip_factor
+    force, rotor = before.tractive_force, 0.0
+    if force > 0.0:
+        rotor = max(-force, kind.rotor_mass_kg * before.acceleration)
+    opposing = before.running_resistance + before.gradient_force + before.braking_force
+    if before.holding_time > 0.0:
+        figures.moving_j += _braking_work(before, after.speed, kind, h)
+    elif way_m > 0.0:
+        figures.moving_j += (rotor + opposing) * way_m
+    kinetic = kind.inertia_kg / 2.0 * (after.speed * after.speed - before.speed * before.speed)
+    figures.kinetic_j += kinetic
+    figures.fallen_j -= min(before.gradient_force, 0.0) * way_m
+    figures.slowed_j -= min(kinetic, 0.0)
+    _audit_motion(step, i, kind, model, recording, figures)
+
+
+@inlined
+def _braking_work(before: TrainRow, next_speed_m_s: float, kind: TrainType, step_s: float) -> float:
+    """Work of resistances and brakes in a step that holds the speed, then brakes. [J]
+
+    Of the resistances the mean over the step is recorded, for a part of which the train may stand.  To
+    hold the speed downhill takes brakes; the rest of their recorded impulse slows the train down.
+    """
+    v, hold_s = before.speed, before.holding_time
+    brake_s = (v - next_speed_m_s) / kind.highest_retardation_m_s2
+    impulse_ns = step_s * (before.running_resistance + before.gradient_force)
+    resistance_n = impulse_ns / (hold_s + brake_s)
+    holding_ns = max(0.0, -resistance_n) * hold_s
+    stopping_ns = before.braking_force * step_s - holding_ns
+    while_holding = (resistance_n * hold_s + holding_ns) * v
+    return while_holding + (resistance_n * brake_s + stopping_ns) * (v + next_speed_m_s) / 2.0
+
+
+@inlined
+def _braking_motion_error(before: TrainRow, after: TrainRow, kind: TrainType, step_s: float) -> float:
+    """Difference between a step's movement and that of its speeds, where trains brake within steps. [m]
+
+    A step that holds the speed v for τ, then brakes with b, goes v τ + (v² - v'²)/2b; together that
+    takes the whole step, or less of it if the train stops.  A step without τ is a uniform one, but that
+    a train may come to its stop in any part of it: it goes no less than with b, and no further than
+    uniformly.
+    """
+    v, w, hold_s = before.speed, after.speed, before.holding_time
+    way_m = after.position - before.position
+    brake_s = (v - w) / kind.highest_retardation_m_s2
+    uniform_m = step_s * (v + w) / 2.0
+    if hold_s > 0.0:
+        over_s = hold_s + brake_s - step_s
+        over_s = abs(over_s) if w > 0.0 else max(0.0, over_s)
+        return abs(way_m - v * hold_s - (v + w) / 2.0 * brake_s) + v * over_s
+    if w == 0.0 and v > 0.0:
+        shortest_m = min(uniform_m, v / 2.0 * brake_s)
+        return way_m - min(max(way_m, shortest_m), uniform_m)
+    return way_m - uniform_m
+
+
+@inlined
+def _audit_motion(
+    step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
+) -> None:
+    """Note how far a train is off the equations of force and motion in a step."""
+    before, after = recording.trains[step, i], recording.trains[step + 1, i]
+    h = model.options.step_s
+    if model.options.braking == Braking.WITHIN_STEP:
+        way = _braking_motion_error(before, after, kind, h)
+    else:
+        way = after.position - before.position - h * (before.speed + after.speed) / 2.0
+    figures.motion_error_m = worst(figures.motion_error_m, way)
+    change = after.speed - before.speed - h * before.acceleration
+    figures.motion_error_m = worst(figures.motion_error_m, change * h)
+    state = recording.train_state[step, i]
+    if state in (TrainState.MOTORING, TrainState.COASTING, TrainState.BRAKING):
+        inertia_kg = kind.inertia_kg
+        if model.options.driver == Driver.AGGRESSIVE and state == TrainState.COASTING:
+            inertia_kg = kind.coasting_inertia_kg
+        rest = before.tractive_force - before.braking_force - before.running_resistance
+        rest -= before.gradient_force + inertia_kg * before.acceleration
+        figures.force_balance = worst(figures.force_balance, rest / (kind.mass_kg * GRAVITY_M_S2))

@@ -1,0 +1,150 @@
+"""The audit of the network: power balances, and the laws of the sources.
+
+The solver pushes voltages and currents along chains; the audit starts from the recorded voltages, forms
+the current of every piece of line and every branch from the voltages at its ends (the nodal admittance
+equations), and compares the powers that this asks for with the recorded ones.  That a source's law is
+right is the business of its own tests; that the solution obeys it is the audit's.
+"""
+
+from tpss.audit.balances import Balances, Scratch, worst
+from tpss.kernel import inlined
+from tpss.numerics.pairs import magnitude
+from tpss.powerflow.network import SHORTEST_PIECE_M
+from tpss.powerflow.placing import section_at
+from tpss.sources.kinds import residual
+from tpss.step.model import Model
+from tpss.step.recording import Recording
+from tpss.step.state import TrainState
+
+
+@inlined
+def draws_power(state: int) -> bool:
+    """Whether a train of this `TrainState` is on the line."""
+    return state >= 0 and state != TrainState.ARRIVED
+
+
+@inlined
+def audit_network(step: int, model: Model, recording: Recording, scratch: Scratch) -> None:
+    """Power mismatch of every node and train in a step.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (F.35)-(F.38).
+    """
+    network, figures = model.network, scratch.balances[0]
+    for n in range(scratch.node_v.size):
+        row = recording.nodes[step, n]
+        scratch.node_v[n] = complex(row.node_real, row.node_imag)
+        scratch.leaving_a[n] = 0.0
+    for b in range(network.branches.size):
+        branch = network.branches[b]
+        drop = scratch.node_v[branch.start_node] - scratch.node_v[branch.end_node]
+        current = drop / branch.impedance_ohm
+        scratch.leaving_a[branch.start_node] += current
+        scratch.leaving_a[branch.end_node] -= current
+    count = _sort_trains(step, model, recording, scratch)
+    k = 0
+    for s in range(network.sections.size):
+        k = _audit_section(step, s, k, count, model, recording, scratch)
+    for n in range(scratch.node_v.size):
+        power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
+        s = network.source_of_node[n]
+        if s >= 0:
+            row = recording.stations[step, s]
+            power -= complex(row.station_active_power, row.station_reactive_power)
+        figures.power_mismatch_va = worst(figures.power_mismatch_va, magnitude(power))
+
+
+@inlined
+def _sort_trains(step: int, model: Model, recording: Recording, scratch: Scratch) -> int:
+    """Bring the trains on the line to the front of ``scratch.order``; return their number.
+
+    They stand by section and position, and at the same place by number.
+    """
+    order, count, near = scratch.order, 0, 0
+    for k in range(order.size):
+        i = order[k]
+        if draws_power(recording.train_state[step, i]):
+            order[k], order[count] = order[count], i
+            count += 1
+            near = section_at(recording.trains[step, i].position, near, model.network.sections)
+            scratch.section[i] = near
+    for k in range(1, count):
+        i, place = order[k], k
+        while place > 0 and not _stands_behind(step, i, order[place - 1], recording, scratch):
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = i
+    return count
+
+
+@inlined
+def _stands_behind(step: int, i: int, j: int, recording: Recording, scratch: Scratch) -> bool:
+    """Whether train `i` stands behind train `j`."""
+    if scratch.section[i] != scratch.section[j]:
+        return scratch.section[i] > scratch.section[j]
+    position, other = recording.trains[step, i].position, recording.trains[step, j].position
+    return position > other or (position == other and i > j)
+
+
+@inlined
+def _audit_section(
+    step: int, s: int, first: int, count: int, model: Model, recording: Recording, scratch: Scratch
+) -> int:
+    """Mismatch of a section's trains, and its part of what leaves its nodes; return the next train."""
+    section, figures = model.network.sections[s], scratch.balances[0]
+    voltage, place_m = scratch.node_v[section.start_node], section.start_m
+    entering = complex(0.0, 0.0)  # into the point before, through the piece before
+    at_node = True
+    k = first
+    while True:
+        more = k < count and scratch.section[scratch.order[k]] == s
+        if more:
+            row = recording.trains[step, scratch.order[k]]
+            ahead = complex(row.pantograph_real, row.pantograph_imag)
+            ahead_m = row.position
+        else:
+            ahead, ahead_m = scratch.node_v[section.end_node], section.end_m
+        length_m = max(SHORTEST_PIECE_M, ahead_m - place_m)
+        current = (voltage - ahead) / (section.impedance_ohm_per_m * length_m)
+        shunt = complex(0.0, 0.5 * section.susceptance_s_per_m * length_m)
+        leaving = current + shunt * voltage
+        if at_node:
+            scratch.leaving_a[section.start_node] += leaving
+        else:
+            _audit_demand(
+                step, scratch.order[k - 1], voltage, entering - leaving, recording, figures
+            )
+        entering = current - shunt * ahead
+        if not more:
+            scratch.leaving_a[section.end_node] -= entering
+            return k
+        voltage, place_m, at_node = ahead, ahead_m, False
+        k += 1
+
+
+@inlined
+def _audit_demand(
+    step: int, i: int, voltage: complex, current: complex, recording: Recording, figures: Balances
+) -> None:
+    """Mismatch between what a train draws and what flows into it."""
+    row = recording.trains[step, i]
+    drawn = complex(row.active_power, row.reactive_power)
+    mismatch = magnitude(voltage * current.conjugate() - drawn)
+    figures.power_mismatch_va = worst(figures.power_mismatch_va, mismatch)
+
+
+@inlined
+def audit_sources(step: int, model: Model, recording: Recording, scratch: Scratch) -> None:
+    """Residual of the sources' laws, and the energy that they feed."""
+    network, figures = model.network, scratch.balances[0]
+    for s in range(network.sources.size):
+        source, row = network.sources[s], recording.stations[step, s]
+        figures.fed_j += row.station_active_power * model.options.step_s
+        node = recording.nodes[step, source.node]
+        voltage = complex(node.node_real, node.node_imag)
+        power = complex(row.station_active_power, row.station_reactive_power)
+        current = (power / voltage).conjugate()
+        off, _, _ = residual(voltage, current, row.active_converters, source)
+        per_unit = magnitude(off) / network.system.base_voltage_v
+        figures.converter_residual = worst(figures.converter_residual, per_unit)
