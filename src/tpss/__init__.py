@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from tpss.results.key_figures import KeyFigures
     from tpss.results.result import Result, load_result
     from tpss.results.standards.evidence import Evidence
-    from tpss.scenario import Scenario, load_scenario
     from tpss.run.run import Progress
+    from tpss.scenario import Scenario, load_scenario
     from tpss.sweep.campaign import run_study
     from tpss.sweep.folder import load_table
     from tpss.sweep.study import Study, load_study

@@ -44,8 +44,8 @@ def source_digest(package_folder: Path) -> str:
     version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for file in (Path(__file__).name, "record.py"):
-        digest.update((package_folder / file).read_bytes())
+    for shared in (Path(__file__).name, "record.py"):
+        digest.update((package_folder / shared).read_bytes())
     for name in KERNEL_PACKAGES:
         for file in sorted((package_folder / name).rglob("*.py")):
             digest.update(file.relative_to(package_folder).as_posix().encode())

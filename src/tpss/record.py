@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 _R = TypeVar("_R", covariant=True)
+_Index = int | np.integer[Any]
 
 
 class Records(Generic[_R]):
@@ -31,9 +32,9 @@ class Records(Generic[_R]):
     shape: tuple[int, ...]
 
     @overload
-    def __getitem__(self, index: int | np.integer[Any] | tuple[Any, ...]) -> _R: ...
+    def __getitem__(self, index: _Index | tuple[_Index, _Index]) -> _R: ...
     @overload
-    def __getitem__(self, index: str | slice | npt.NDArray[Any]) -> Any: ...
+    def __getitem__(self, index: str | slice | npt.NDArray[Any] | tuple[Any, ...]) -> Any: ...
     def __getitem__(self, index: Any) -> Any:
         """A record, or a part of the array."""
         raise NotImplementedError("mypy's picture of a numpy.recarray")

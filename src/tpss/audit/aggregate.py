@@ -201,7 +201,8 @@ def _gather_trains(
 
 
 @inlined
-def _note_useful_voltage(voltage_v: float, row: TrainRow, train: TrainFigures, zones: Records[Zone]
+def _note_useful_voltage(
+    voltage_v: float, row: TrainRow, train: TrainFigures, zones: Records[Zone]
 ) -> None:
     """Add a train's voltage to its own useful voltage, and to that of the zone in which it is.
 
@@ -222,7 +223,11 @@ def _note_useful_voltage(voltage_v: float, row: TrainRow, train: TrainFigures, z
 
 @inlined
 def _gather_network(
-    step: int, h: float, at_line_level: npt.NDArray[np.bool_], recording: Recording, figures: Figures
+    step: int,
+    h: float,
+    at_line_level: npt.NDArray[np.bool_],
+    recording: Recording,
+    figures: Figures,
 ) -> None:
     """Add a step of stations, nodes and losses."""
     run = figures.run[0]
@@ -236,8 +241,8 @@ def _gather_network(
         station.peak_loading = max(station.peak_loading, row.converter_loading)
     for n in range(at_line_level.size):
         if at_line_level[n]:
-            row = recording.nodes[step, n]
-            voltage = magnitude(complex(row.node_real, row.node_imag))
+            node = recording.nodes[step, n]
+            voltage = magnitude(complex(node.node_real, node.node_imag))
             run.lowest_node_v = min(run.lowest_node_v, voltage)
             run.highest_voltage_v = max(run.highest_voltage_v, voltage)
 

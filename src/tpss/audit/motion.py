@@ -63,7 +63,9 @@ def _braking_work(before: TrainRow, next_speed_m_s: float, kind: TrainType, step
 
 
 @inlined
-def _braking_motion_error(before: TrainRow, after: TrainRow, kind: TrainType, step_s: float) -> float:
+def _braking_motion_error(
+    before: TrainRow, after: TrainRow, kind: TrainType, step_s: float
+) -> float:
     """Difference between a step's movement and that of its speeds, where trains brake within steps. [m]
 
     A step that holds the speed v for τ, then brakes with b, goes v τ + (v² - v'²)/2b; together that

@@ -50,8 +50,8 @@ def audit_network(step: int, model: Model, recording: Recording, scratch: Scratc
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
         if s >= 0:
-            row = recording.stations[step, s]
-            power -= complex(row.station_active_power, row.station_reactive_power)
+            fed = recording.stations[step, s]
+            power -= complex(fed.station_active_power, fed.station_reactive_power)
         figures.power_mismatch_va = worst(figures.power_mismatch_va, magnitude(power))
 
 

@@ -12,7 +12,8 @@ from tpss.powerflow.system import System
 from tpss.step.model import Model
 
 LIMITS = {
-    "power_mismatch_va": 10.0 * TOLERANCE,  # of the base power: an order above the solver's tolerance
+    "power_mismatch_va": 10.0
+    * TOLERANCE,  # of the base power: an order above the solver's tolerance
     "converter_residual": 1e-9,
     "network_balance": ALLOWED_BALANCE,
     "traction_balance": 1e-9,

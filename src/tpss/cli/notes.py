@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from tpss.kernel import plain
-from tpss.physics.adhesion import DRY, WET, adhesion_limit
+from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.line import Line
@@ -124,7 +124,7 @@ def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
     start_km, end_km, permille = max(way, key=lambda piece: piece[2])
     train = scenario.trains[entry.train]
     needed_kn = _starting_force_n(train, permille) / 1e3
-    rail = WET if scenario.simulation.rail == "wet" else DRY
+    rail = Rail[scenario.simulation.rail.upper()]
     given_kn = plain(adhesion_limit)(si(train, "adhesive_mass_t"), 0.0, rail) / 1e3
     if needed_kn > given_kn:
         yield (

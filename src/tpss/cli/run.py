@@ -18,8 +18,8 @@ from tpss.errors import ResultError
 
 if TYPE_CHECKING:
     from tpss.results.result import Result
-    from tpss.scenario import Scenario
     from tpss.run.run import Progress
+    from tpss.scenario import Scenario
 
 DONE, BAD_INPUT, NO_SOLUTION, AUDIT_FAILED, INTERRUPTED = 0, 2, 3, 4, 130
 

@@ -88,9 +88,9 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
 
 
 def _tell_of_compilation(console: Console) -> None:
-    from tpss.kernel import kernels_are_compiled
+    from tpss.run.kernels import are_ready
 
-    if not kernels_are_compiled():
+    if not are_ready():
         console.print("Compiling the numerical kernels; this takes up to a minute, once.")
 
 

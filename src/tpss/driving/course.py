@@ -101,7 +101,9 @@ def part_of_step(
 
 
 @kernel
-def distance_of_part(speed_m_s: float, next_speed_m_s: float, hold_s: float, brake_s: float) -> float:
+def distance_of_part(
+    speed_m_s: float, next_speed_m_s: float, hold_s: float, brake_s: float
+) -> float:
     """Distance of a step that holds, then brakes. [m]"""
     return speed_m_s * hold_s + (speed_m_s + next_speed_m_s) / 2.0 * brake_s
 

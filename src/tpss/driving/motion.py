@@ -12,9 +12,7 @@ from tpss.vehicle.train_type import TrainType
 
 
 @inlined
-def update_resistances(
-    train: Train, kind: TrainType, gradients: Profile, options: Options
-) -> None:
+def update_resistances(train: Train, kind: TrainType, gradients: Profile, options: Options) -> None:
     """Find the forces on a train that do not depend on what its driver does, for this step.
 
     A standing train is held by its brakes; no running resistance is billed.

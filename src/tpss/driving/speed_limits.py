@@ -19,10 +19,10 @@ and n such steps, all but the first of them with the brakes alone, bring a train
 
     distance = v (n h - (v - w)/b) + (v² - w²)/2b.
 
-These distances grow with v' and v too, and again a step of the latest braking leads from a speed from which
-the limit can be met to another.  The train comes to the limit's position with w, or is that slow up
-to a step before it.  Other than steps of full braking these may be too long for a train that has been
-placed too near to a limit: it is driven in uniform steps.
+These distances grow with v' and v too, and again a step of the latest braking leads from a speed from
+which the limit can be met to another.  The train comes to the limit's position with w, or is that
+slow up to a step before it.  Other than steps of full braking these may be too long for a train that
+has been placed too near to a limit: it is driven in uniform steps.
 """
 
 import math
@@ -90,7 +90,7 @@ def slowing_distance(
 def latest_slowing_distance(
     speed_m_s: float, limit_m_s: float, retardation_m_s2: float, step_s: float
 ) -> float:
-    r"""Distance to a limit, in whole steps that end with full braking and of which the first holds its speed.
+    r"""Distance to a limit in whole steps that end with full braking, the first holding its speed.
 
     In metres, 0 at or below the limit.
 
@@ -141,7 +141,9 @@ def can_meet_limit(
     if slowing == HOLD_FIRST:
         slower_m_s = max(0.0, speed_m_s - next_speed_m_s)
         faster_m_s = max(0.0, next_speed_m_s - speed_m_s)
-        distance = step_s * (speed_m_s + faster_m_s / 2.0) - slower_m_s**2 / (2.0 * retardation_m_s2)
+        distance = step_s * (speed_m_s + faster_m_s / 2.0) - slower_m_s**2 / (
+            2.0 * retardation_m_s2
+        )
         slowing_m = latest_slowing_distance(next_speed_m_s, limit_m_s, retardation_m_s2, step_s)
     else:
         distance = step_s * (speed_m_s + next_speed_m_s) / 2.0

@@ -66,9 +66,7 @@ def _follow(
     part = part_of_step(v, hold_s, brake_s, h)
     decision.hold_s, decision.brake_s, decision.target_speed_m_s = part
     decision.moving_share = (decision.hold_s + decision.brake_s) / h
-    distance_m = distance_of_part(
-        v, decision.target_speed_m_s, decision.hold_s, decision.brake_s
-    )
+    distance_m = distance_of_part(v, decision.target_speed_m_s, decision.hold_s, decision.brake_s)
     update_gradient(train, kind, distance_m, data)
 
 

@@ -88,9 +88,7 @@ def build_supply(supply: Supply, length_km: float) -> tuple[Network, SupplyPlan]
     """
     plan = plan_supply(supply, length_km)
     sources = build_sources(plan.sources, supply.stations)
-    network = assemble(
-        len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    )
+    network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
     return network, plan
 
 

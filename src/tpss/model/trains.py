@@ -40,7 +40,9 @@ _NETWORK_INPUTS = {
 def _rc4() -> Any:
     """The networks of the Rc4, a row of `Networks`."""
     coefficients = library.networks()
-    built = {name: build_network(coefficients[name], to_si) for name, to_si in _NETWORK_INPUTS.items()}
+    built = {
+        name: build_network(coefficients[name], to_si) for name, to_si in _NETWORK_INPUTS.items()
+    }
     return Networks.row(**{name: network.tolist() for name, network in built.items()})  # type: ignore[attr-defined]
 
 

@@ -49,6 +49,7 @@ EIGHTH_OVER_FIRST = 10.21
 LONGEST_MOVE = 0.5
 """Farthest that a series lets the input of a neuron move from its centre. [1]"""
 
+
 class FeedForwardNetwork(Record):
     """A network of logsig neurons with the scaling folded in: inputs and output in SI units."""
 

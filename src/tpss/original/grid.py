@@ -61,9 +61,14 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
     Every piece between neighbours on the contact line is a π-section of its own.
     """
     fixed, branches = flow.nodes.size, network.branches
-    start, end, impedance, susceptance = [], [], [], []
-    first_piece, last_piece = [], []
-    for section, found in zip(network.sections, flow.sections, strict=True):
+    start: list[int] = []
+    end: list[int] = []
+    impedance: list[complex] = []
+    susceptance: list[float] = []
+    first_piece: list[int] = []
+    last_piece: list[int] = []
+    for s in range(network.sections.size):
+        section, found = network.sections[s], flow.sections[s]
         trains = [fixed + k for k in range(found.first, found.end)]
         points = [section.start_node, *trains, section.end_node]
         pieces_m = [*flow.standing["piece_m"][found.first : found.end], found.closing_m]

@@ -9,7 +9,7 @@ The motors' force and the force at the wheel rim differ by what accelerates the 
 with c = 4 K_J (κ + 1) the inertia of the rotors and M that of the train.
 """
 
-from tpss.kernel import fused, inlined
+from tpss.kernel import fused
 
 
 @fused

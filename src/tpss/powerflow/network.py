@@ -236,7 +236,8 @@ def assemble(
         At most one a node.
     system : System
     """
-    edges = [(part.start_node, part.end_node) for part in (*sections, *branches)]
+    edges = [(part.start_node, part.end_node) for part in sections]
+    edges += [(part.start_node, part.end_node) for part in branches]
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]

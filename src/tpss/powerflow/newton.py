@@ -292,7 +292,9 @@ def _conclude(sign: float, network: Network, flow: Flow) -> Solution:
 
 
 @kernel
-def newton(scale: float, start: Pass, network: Network, flow: Flow, loads: Loads) -> tuple[int, int]:
+def newton(
+    scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
+) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
     Parameters

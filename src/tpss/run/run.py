@@ -135,7 +135,7 @@ class Run:
     def ends_m(self, route: int) -> tuple[float, float]:
         """Where the trains of a route begin and end. [m]"""
         begin_m = next(train.position_m for train in self.trains if train.route == route)
-        return begin_m, float(self.model.stops[route].position_m[-1])
+        return begin_m, float(self.model.stops["position_m"][route, -1])
 
     def grow(self, capacity: int, departing: list[ScheduledTrain]) -> None:
         """Make room for more steps and for the trains that depart in them."""
@@ -156,8 +156,8 @@ class Run:
         self.recording = new_recording(
             self.model, capacity, len(self.trains), with_journeys=self.with_journeys
         )
-        for row, kept in zip(self.recording, before, strict=True):
-            row[tuple(slice(n) for n in kept.shape)] = kept
+        for name, kept in before._asdict().items():
+            getattr(self.recording, name)[tuple(slice(n) for n in kept.shape)] = kept
         self.capacity = capacity
 
 

@@ -69,7 +69,9 @@ class ScheduledTrain(NamedTuple):
     plan_last: float = 0.0
 
 
-def departing_trains(services: list[Service], step_s: float, first: int, last: int) -> list[ScheduledTrain]:
+def departing_trains(
+    services: list[Service], step_s: float, first: int, last: int
+) -> list[ScheduledTrain]:
     """Trains that depart at steps `first` to `last` - 1, by time and, at the same time, by service."""
     trains = []
     for service in services:

@@ -23,9 +23,7 @@ def find_stalled(count: int, state: State) -> bool:
         if train.motion.phase == Phase.DWELLING:
             continue
         forces = train.forces
-        powerless = (
-            train.motion.speed_m_s <= 0.0 and forces.tractive_n < train.decision.force_n
-        )
+        powerless = train.motion.speed_m_s <= 0.0 and forces.tractive_n < train.decision.force_n
         if forces.next_speed_m_s < 0.0 or (powerless and forces.next_speed_m_s <= 0.0):
             clock = state.clock[0]
             clock.stalled_train = i

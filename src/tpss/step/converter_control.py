@@ -1,6 +1,7 @@
 """Converter stations switch converters on and off by their loading, every three minutes."""
 
 import math
+
 from tpss.kernel import at, fused, inlined
 from tpss.powerflow.network import NodeFlow
 from tpss.sources.kinds import loading

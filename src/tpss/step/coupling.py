@@ -69,7 +69,7 @@ def settle_all(count: int, model: Model, state: State) -> bool:
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]
         kind = model.types[at(train.train_type)]
-        # Of the load flow's last pass, as the powers: near a knee the last roundings of the voltage count.
+        # Of the last pass, as the powers: near a knee the last roundings of the voltage count.
         train.forces.tractive_n = min(train.demand.wheel_force_n, train.demand.adhesion_n)
         train.forces.braking_n = 0.0
         if train.motion.phase == Phase.DWELLING:

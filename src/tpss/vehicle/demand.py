@@ -47,9 +47,7 @@ def motors_force(
 ) -> tuple[float, float]:
     """Largest force of all motors at a line voltage and the present speed, and its slope. [N], [N/V]"""
     network = kind.networks.tractive_effort
-    return highest_force(
-        voltage_v, demand.speed_m_s, kind.effort, demand.effort, network, scratch
-    )
+    return highest_force(voltage_v, demand.speed_m_s, kind.effort, demand.effort, network, scratch)
 
 
 @inlined
