@@ -3,25 +3,26 @@
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 
 from tpss.kernel import blank_records, plain
 from tpss.model.trains import build_machine, build_train_types
 from tpss.physics.adhesion import DRY, WET, adhesion_limit
 from tpss.physics.locomotive import DEMAND, FULL_EFFORT_N, take_speed, wheel_force
 from tpss.physics.running_resistance import DavisCoefficients, running_resistance
-from tpss.report.figures.time_distance import voltage_colours
-from tpss.report.style import STYLE, Floats, colour, legend, panels
+from tpss.report.drawings.parts import DASH_DOTTED, DOTTED, Colours, Curve, Drawing, Panel
+from tpss.report.drawings.time_distance import colour_range
+from tpss.report.palette import BLACK
+from tpss.report.sampling import Floats
+from tpss.report.trains import chosen_train
 from tpss.results.result import Result
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.simulation import Simulation
 
 SPEEDS = 120
 """Points of a curve over speed."""
 
 
-@rc_context(STYLE)
-def effort(result: Result, train: str | None = None) -> Figure:
+def effort(result: Result, train: str | None = None) -> Drawing:
     """Tractive force of a train over its speed, a point a step, coloured by the voltage.
 
     The curves are the machine's limit at the highest and lowest voltage that the train met, adhesion,
@@ -33,40 +34,33 @@ def effort(result: Result, train: str | None = None) -> Figure:
     train : str, optional
         Name of the train; the studied train by default.
     """
-    data = result.dataset.sel(train=train or result.summary["studied_train"])
+    data = result.dataset.sel(train=chosen_train(result, train))
     kind_of = {entry.name: entry.train for entry in result.scenario.traffic}
     kind = result.scenario.trains[kind_of[str(data.service.item())]]
     kmh, kn = data.speed.to_numpy() * 3.6, data.tractive_force.to_numpy() / 1e3
     kv = data.pantograph_voltage.to_numpy() / 1e3
     speeds = np.linspace(0.0, max(float(np.nanmax(kmh)) * 1.1, 10.0), SPEEDS)
-    figure, (panel,) = panels(["tractive force [kN]"], "speed [km/h]", panel_inch=4.2)
-    for k, voltage_kv in enumerate((float(np.nanmax(kv)), float(np.nanmin(kv)))):
-        limit = machine_limit(kind, speeds / 3.6, voltage_kv * 1e3) / 1e3
-        panel.plot(
-            speeds, limit, "-" if k == 0 else "--", color=colour(5),
-            label=f"machine at {voltage_kv:.2f} kV",
-        )  # fmt: skip
-    simulation = result.scenario.simulation
+    simulation, motoring = result.scenario.simulation, kn > 0.0
+    curves = []
+    for dash, volts in enumerate((float(np.nanmax(kv)), float(np.nanmin(kv)))):
+        limit = machine_limit(kind, speeds / 3.6, volts * 1e3) / 1e3
+        curves.append(Curve(speeds, limit, f"machine at {volts:.2f} kV", BLACK, dash))
+    adhesion, rolling = adhesion_kn(kind, speeds, simulation), resistance(kind, speeds / 3.6) / 1e3
+    curves.append(Curve(speeds, adhesion, f"adhesion, {simulation.rail}", 2, DASH_DOTTED))
+    curves.append(Curve(speeds, rolling, "running resistance", 3, DOTTED, width=1.5))
+    colours = Colours(kv[motoring], "voltage at the pantograph [kV]", *colour_range(kv))
+    curves.append(Curve(kmh[motoring], kn[motoring], joined=False, colours=colours))
+    highest = 1.08 * max(float(np.nanmax(kn)), float(adhesion.max()))
+    panel = Panel("tractive force [kN]", curves, span=(0.0, highest))
+    return Drawing("speed [km/h]", [panel], (0.0, float(speeds[-1])), panel_inch=4.2)
+
+
+def adhesion_kn(kind: Train, speed_kmh: Floats, simulation: Simulation) -> Floats:
+    """Highest force that the rails carry. [kN]"""
     rail = WET if simulation.rail == "wet" else DRY
     factor = 1.0 if simulation.adhesion_speed_unit == "m/s" else 3.6
-    adhesion = [
-        plain(adhesion_limit)(kind.adhesive_mass_t * 1e3, v / 3.6 * factor, rail) / 1e3
-        for v in speeds
-    ]
-    panel.plot(speeds, adhesion, "-.", color=colour(2), label=f"adhesion, {simulation.rail}")
-    panel.plot(
-        speeds, resistance(kind, speeds / 3.6) / 1e3, ":", color=colour(3), linewidth=1.8,
-        label="running resistance",
-    )  # fmt: skip
-    motoring = kn > 0.0
-    points = panel.scatter(
-        kmh[motoring], kn[motoring], c=kv[motoring], s=12, cmap=voltage_colours(), zorder=3
-    )
-    figure.colorbar(points, ax=panel, label="voltage at the pantograph [kV]", pad=0.02, aspect=40)
-    panel.set_xlim(0.0, speeds[-1])
-    panel.set_ylim(0.0, 1.08 * max(float(np.nanmax(kn)), *adhesion))
-    legend(figure, panel)
-    return figure
+    limit, mass_kg = plain(adhesion_limit), kind.adhesive_mass_t * 1e3
+    return np.array([limit(mass_kg, v / 3.6 * factor, rail) for v in speed_kmh]) / 1e3
 
 
 def machine_limit(kind: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
