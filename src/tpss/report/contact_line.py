@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from tpss.report.sampling import Floats
-from tpss.scenario.standards import VoltageLimits
 
 MOST_POSITIONS = 240
 MOST_TIMES = 320
@@ -58,8 +57,7 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
     node_v = _phasors(dataset, "node")[:steps, on_line]
     train_m, train_v = dataset.position.to_numpy()[:steps], _phasors(dataset, "pantograph")[:steps]
     per_column = -(-steps // MOST_TIMES)
-    lowest, highest = np.full(MOST_POSITIONS, np.inf), np.full(MOST_POSITIONS, -np.inf)
-    total = np.zeros(MOST_POSITIONS)
+    highest, total = np.full(MOST_POSITIONS, -np.inf), np.zeros(MOST_POSITIONS)
     columns = np.full((-(-steps // per_column), MOST_POSITIONS), np.inf)
     for k in range(steps):
         there = np.isfinite(train_v[k])
@@ -68,33 +66,19 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
         order = np.argsort(at_m, kind="stable")
         volts = np.abs(np.interp(position_m, at_m[order], at_v[order]))
         total += volts
-        row = columns[k // per_column]
-        np.minimum(row, volts, out=row)
         cell = np.abs(position_m[:, None] - train_m[k, there]).argmin(axis=0)
-        for extreme, worse in ((row, np.minimum), (lowest, np.minimum), (highest, np.maximum)):
+        for extreme, worse in ((columns[k // per_column], np.minimum), (highest, np.maximum)):
+            worse(extreme, volts, out=extreme)
             worse.at(extreme, cell, np.abs(train_v[k, there]))
-        np.maximum(highest, volts, out=highest)
-    np.minimum(lowest, columns.min(axis=0), out=lowest)
     return LineVoltage(
         position_km=position_m / 1e3,
-        lowest_kv=lowest / 1e3,
+        lowest_kv=columns.min(axis=0) / 1e3,
         mean_kv=total / steps / 1e3,
         highest_kv=highest / 1e3,
         time_min=dataset.time.to_numpy()[:steps:per_column] / 60.0,
         map_kv=columns.T / 1e3,
         steps_a_column=per_column,
     )
-
-
-def voltage_marks(limits: VoltageLimits) -> dict[str, float]:
-    """Nominal voltage and limits by their names in EN 50163, which a figure of voltages shows. [kV]"""
-    return {
-        "Umin2": limits.umin2_kv,
-        "Umin1": limits.umin1_kv,
-        "Un": limits.un_kv,
-        "Umax1": limits.umax1_kv,
-        "Umax2": limits.umax2_kv,
-    }
 
 
 def _phasors(dataset: xr.Dataset, place: str) -> np.ndarray:
