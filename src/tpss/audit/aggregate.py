@@ -11,7 +11,7 @@ import numpy as np
 from tpss.audit.balances import Scratch, audit_run, new_scratch
 from tpss.kernel import blank_records, inlined, kernel, records
 from tpss.powerflow.pairs import magnitude
-from tpss.simulation.state import Model, Recording
+from tpss.simulation.state import ABSENT, Model, Recording
 
 RUN_FIGURES = np.dtype(
     [
@@ -160,6 +160,8 @@ def _gather_trains(
     """Add a step of every train on the line."""
     run = figures.run[0]
     for i in range(figures.trains.size):
+        if recording.train_state[step, i] == ABSENT:
+            continue
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.position, train)

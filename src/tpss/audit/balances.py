@@ -15,7 +15,7 @@ from tpss.kernel import blank_records, inlined, kernel
 from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V, GRAVITY_M_S2
 from tpss.physics.curve import curve_at
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE
-from tpss.powerflow.pairs import magnitude
+from tpss.powerflow.pairs import magnitude, scaled, squared
 from tpss.simulation.state import (
     AGGRESSIVE,
     STATE_ARRIVED,
@@ -180,7 +180,7 @@ def _audit_section(
     Trains at the place of a section's end belong to the next one, if there is one.
     """
     section, figures = model.network.sections[s], scratch.balances[0]
-    is_last = s == model.network.sections.size - 1
+    is_last, z = s == model.network.sections.size - 1, section.impedance_ohm_per_m
     voltage, place_m = scratch.node_v[section.start_node], section.start_m
     entering = complex(0.0, 0.0)  # into the point before, through the piece before
     at_node = True
@@ -196,7 +196,7 @@ def _audit_section(
         else:
             ahead, ahead_m = scratch.node_v[section.end_node], section.end_m
         length_m = max(SHORTEST_PIECE_M, ahead_m - place_m)
-        current = (voltage - ahead) / (section.impedance_ohm_per_m * length_m)
+        current = scaled((voltage - ahead) * z.conjugate(), 1.0 / (squared(z) * length_m))
         shunt = complex(0.0, 0.5 * section.susceptance_s_per_m * length_m)
         leaving = current + shunt * voltage
         if at_node:
