@@ -15,6 +15,9 @@ from tpss.simulation.recorded import RECORDED, Recorded
 from tpss.simulation.run import Outcome
 from tpss.simulation.state import ABSENT, PENDING, Floats, Model
 
+NODE_KIND = {"units": "", "long_name": "what the node is"}
+"""Attributes of the nodes' kinds."""
+
 
 def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
     """Dataset of a run.
@@ -133,6 +136,7 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
         "arrival_time": ("train", arrival_s, of("s", "arrival")),
         "node": ("node", plan.nodes, of("", "node")),
+        "node_kind": ("node", plan.node_kinds, NODE_KIND),
         "node_position": ("node", node_m, of("m", "position of the node")),
         "station": ("station", list(layout.stations), of("", "converter station")),
         "station_position": ("station", np.array(layout.station_m), of("m", "position")),
