@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from tpss.model.supply import CONTACT_LINE
 from tpss.report.sampling import Floats
 
 MOST_POSITIONS = 240
 MOST_TIMES = 320
 """Cells of the map of voltages, along the line and over time."""
-
-ON_THE_LINE = "contact line"
-"""How the names of the nodes on the contact line begin."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,7 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
     steps = dataset.sizes["time"] - 1
     if steps < 1:
         return None
-    on_line = np.char.startswith(dataset.node.to_numpy().astype(str), ON_THE_LINE)
+    on_line = dataset.node_kind.to_numpy() == CONTACT_LINE
     node_m = dataset.node_position.to_numpy()[on_line]
     position_m = np.linspace(node_m.min(), node_m.max(), MOST_POSITIONS)
     node_v = _phasors(dataset, "node")[:steps, on_line]
