@@ -6,6 +6,7 @@ Headings carry the units, as in ``energy [MWh]``.
 import io
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -14,26 +15,12 @@ import pandas as pd
 from tpss import units
 from tpss.errors import ResultError
 from tpss.results import store
-from tpss.results.contents import WORKBOOK
+from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.file_kinds import Kind
 from tpss.results.result import Result
 
 TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
-    "trips": lambda result: result.trips,
-    "stations": lambda result: result.stations,
-    "violations": lambda result: result.standards.violations,
-    "voltage": lambda result: result.standards.voltage,
-    "excursions": lambda result: result.standards.excursions,
-    "useful_voltage_zones": lambda result: result.standards.useful_voltage_zones,
-    "useful_voltage_trains": lambda result: result.standards.useful_voltage_trains,
-    "energy": lambda result: result.standards.energy,
-    "energy_blocks": lambda result: result.standards.energy_blocks,
-    "station_power": lambda result: result.standards.station_power,
-    "load_duration": lambda result: result.standards.load_duration,
-    "converters": lambda result: result.standards.converters,
-    "losses": lambda result: result.standards.losses,
-    "branch_current": lambda result: result.standards.branch_current,
-    "trains": lambda result: result.train_steps,
+    name: attrgetter(place) for name, place in TABLE_PLACES.items()
 }
 """Tables by the names of their files, or of their sheets."""
 

@@ -9,6 +9,7 @@ from tpss.scenario.fields import (
     FromLibrary,
     Name,
     Part,
+    Position,
     Real,
     Whole,
     ascending_numbers,
@@ -76,9 +77,9 @@ class HighVoltageLine(Part):
     type: Annotated[LineType, FromLibrary("high_voltage_lines")] = Field(
         description="Library name, or a table of your own."
     )
-    transformers_km: Annotated[tuple[Real, ...], ascending_numbers("transformers_km")] | None = (
-        Field(default=None, description="Positions of the transformers between stations.")
-    )
+    transformers_km: (
+        Annotated[tuple[Position, ...], ascending_numbers("transformers_km")] | None
+    ) = Field(default=None, description="Positions of the transformers between stations.")
     transformers: Whole | None = Field(
         default=None,
         ge=0,
@@ -126,7 +127,7 @@ class ConverterStation(Part):
     """A converter station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Real = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(ge=0, description="Position on the line.")
     type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )
