@@ -14,7 +14,7 @@ import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
-from tpss.results import store
+from tpss.files.several import check_files, save_files
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.file_kinds import Kind
 from tpss.results.result import Result
@@ -60,12 +60,12 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
     """
     _demand_package(kind)
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
-    store.check_files(folder, names, force)
+    check_files(folder, names, force)
     tables = {name: with_units(table(result)) for name, table in TABLES.items()}
     contents = (
         [_workbook(tables)] if kind is Kind.XLSX else [_bytes(t, kind) for t in tables.values()]
     )
-    return store.save_files(folder, dict(zip(names, contents, strict=True)), force)
+    return save_files(folder, dict(zip(names, contents, strict=True)), force)
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:
