@@ -239,8 +239,8 @@ def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, floa
         return math.nan, math.nan
     trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
     trip_s -= float(run.state.trains["stood_s"][studied])
-    way_m = figures.trains["last_m"][studied] - figures.trains["first_m"][studied]
-    return trip_s / 60.0, float(way_m) / trip_s * 3.6
+    distance_m = figures.trains["last_m"][studied] - figures.trains["first_m"][studied]
+    return trip_s / 60.0, float(distance_m) / trip_s * 3.6
 
 
 def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures, ...]:
