@@ -24,7 +24,7 @@ from tpss.approximator.approximator import Approximator
 from tpss.approximator.compare import given_by
 from tpss.approximator.train import read_table, usable
 from tpss.report.palette import COLOURS
-from tpss.report.style import STYLE
+from tpss.report.render.static import STYLE
 from tpss.units import label
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -18,6 +18,7 @@ from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
 from tpss.run.run import Clock, Progress, Start, advance_to_end, begin, outcome_of, run_of
 from tpss.scenario.scenario import Scenario
+from tpss.step.model import Model
 from tpss.units import si
 
 
@@ -55,14 +56,17 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
-    make_ready(build_model(scenario)[0], _clock_of(scenario))
-    return build(scenario)
+    clock, (model, layout) = _clock_of(scenario), build_model(scenario)
+    make_ready(model, clock)
+    return _prepared(scenario, clock, model, layout)
 
 
 def build(scenario: Scenario) -> "Prepared":
     """`prepare` that leaves kernels to be compiled by the run."""
-    clock = _clock_of(scenario)
-    model, layout = build_model(scenario)
+    return _prepared(scenario, _clock_of(scenario), *build_model(scenario))
+
+
+def _prepared(scenario: Scenario, clock: Clock, model: Model, layout: Layout) -> "Prepared":
     services = build_services(scenario, model)
     duration = scenario.simulation.duration_min
     steps = None

@@ -7,10 +7,10 @@ import pytest
 
 from tpss.errors import ResultError
 from tpss.report.contact_line import line_voltage
+from tpss.report.drawings.effort import machine_limit
+from tpss.report.drawings.energy import used_by_trains
 from tpss.report.figures import FIGURES, draw, effort, energy_flow, time_distance, voltage_envelope
-from tpss.report.figures.catalogue import NothingToDrawError
-from tpss.report.figures.effort import machine_limit
-from tpss.report.figures.energy import used_by_trains
+from tpss.report.trains import NothingToDrawError
 
 from scenarios import run, short_line, stops
 
@@ -39,7 +39,7 @@ def test_paths_are_coloured_by_the_voltage_of_their_step(hilly):
     paths = time_distance(hilly).axes[0].collections[0]
     data = hilly.dataset
     stays = np.isfinite(data.position[:-1]).to_numpy() & np.isfinite(data.position[1:]).to_numpy()
-    step, train = np.nonzero(stays)
+    train, step = np.nonzero(stays.T)
     volts = data.pantograph_voltage.to_numpy()[step, train]
     np.testing.assert_array_equal(paths.get_array(), volts / 1e3)
     segment = paths.get_segments()[0]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tpss
-from tpss.report.html import report
+from tpss.report.html import comparison, report
 from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
 from pages import Page
@@ -127,3 +127,9 @@ def test_a_day_with_hundreds_of_trains_stays_small_and_says_what_it_leaves_out(s
 def test_a_short_run_is_drawn_whole_and_says_nothing_of_leaving_out(page):
     assert len(page.encode()) < LIMIT_BYTES
     assert "a part of the time steps" not in Page(page).text
+
+
+def test_a_run_without_a_train_is_compared_with_one_that_has_some(short):
+    empty = run({"traffic.0.first_departure_min": 50.0, "simulation.duration_min": 5.0})
+    assert 'id="journey"' in comparison({"empty": empty, "some": short})
+    assert 'id="journey"' not in comparison({"empty": empty, "empty too": empty})

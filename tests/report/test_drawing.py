@@ -5,7 +5,9 @@ import pandas as pd
 import pytest
 
 from tpss.report.contact_line import line_voltage
-from tpss.report.plots import journey, station_powers
+from tpss.report.drawings.journey import journey
+from tpss.report.drawings.stations import station_powers
+from tpss.report.render.interactive import render
 from tpss.report.sampling import kept, sample_trains
 from tpss.report.tables import of_frame
 
@@ -66,13 +68,13 @@ def test_a_run_without_a_step_has_no_voltage_along_the_line(collapsed):
 
 
 def test_curves_differ_in_colour_and_in_line_style(short):
-    figure = station_powers({"": short})
-    looks = {(trace.line.color, trace.line.dash) for trace in figure.data[::2]}
+    figure = render(station_powers({"": short}), 440)
+    looks = {(trace.line.color, trace.line.dash) for trace in figure.data[:2]}
     assert len({colour for colour, _ in looks}) == len({dash for _, dash in looks}) == 2
 
 
 def test_a_journey_shows_the_speed_that_was_recorded(short):
-    speed = journey({"": short}).data[0]
+    speed = render(journey({"": short}, shown=["speed [km/h]"]), 560).data[0]
     assert max(speed.y) == pytest.approx(float(short.dataset.speed.max()) * 3.6, rel=1e-6)
 
 

@@ -296,7 +296,7 @@ def test_stations_have_a_row_each(main_line):
 def test_nodes_of_the_high_voltage_line_are_recorded_at_its_level(high_voltage):
     """The line is loaded lightly: within 3 % of 132 kV."""
     dataset = high_voltage.dataset
-    high = dataset.node.str.startswith("high-voltage line").to_numpy()
+    high = (dataset.node_kind == "high-voltage line").to_numpy()
     voltage = dataset.node_voltage.to_numpy()[:-1]
     assert high.sum() == 5
     assert voltage[:, high] == pytest.approx(132e3, rel=0.03)

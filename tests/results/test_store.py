@@ -1,15 +1,20 @@
 """Result folders are written whole or not at all, whatever befalls the program."""
 
+import gzip
 import os
+import shutil
 import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
-from tpss import ResultError, load_result
+from tpss import ResultError, load_result, simulate, write_report
+from tpss.report.contact_line import line_voltage
 from tpss.results import store
 
 from scenarios import run
@@ -146,3 +151,36 @@ def test_a_link_stays_when_what_it_leads_to_is_replaced(old, new, tmp_path):
     new.save(tmp_path / "link", force=True)
     assert (tmp_path / "link").is_symlink()
     assert load_result(folder).scenario.name == "new"
+
+
+@pytest.fixture
+def earlier(tmp_path):
+    """A result of the AT line with its high-voltage line, saved before nodes had a `node_kind`."""
+    folder = tmp_path / "earlier"
+    shutil.copytree(Path(__file__).parent / "earlier", folder)
+    packed = folder / "result.nc.gz"
+    (folder / "result.nc").write_bytes(gzip.decompress(packed.read_bytes()))
+    packed.unlink()
+    return folder
+
+
+def test_nodes_of_an_earlier_result_have_the_kinds_that_they_have_now(earlier):
+    with xr.open_dataset(earlier / "result.nc", engine="netcdf4") as stored:
+        assert "node_kind" not in stored.coords
+    result = load_result(earlier)
+    now = simulate(result.scenario)
+    assert set(now.dataset.node_kind.to_numpy()) == {
+        "contact line", "AT feeder", "high-voltage line"
+    }  # fmt: skip
+    xr.testing.assert_equal(result.dataset.node_kind, now.dataset.node_kind)
+    assert result.dataset.node_kind.attrs == now.dataset.node_kind.attrs
+    assert set(result.dataset.coords) == set(now.dataset.coords)
+
+
+def test_an_earlier_result_is_reported_as_one_of_now(earlier, tmp_path):
+    result = load_result(earlier)
+    then, now = line_voltage(result.dataset), line_voltage(simulate(result.scenario).dataset)
+    np.testing.assert_allclose(then.map_kv, now.map_kv, rtol=1e-6)
+    assert write_report(result, tmp_path / "report.html").stat().st_size > 100_000
+    again = load_result(result.save(tmp_path / "again"))
+    xr.testing.assert_identical(again.dataset, result.dataset)

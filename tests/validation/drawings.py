@@ -9,15 +9,9 @@ from matplotlib.figure import Figure
 
 import tpss
 from tpss.report import figures
-from tpss.report.style import STYLE, colour, legend, line, panels
+from tpss.report.render.static import STYLE, colour, legend, line, panels
 
 from outcomes import Outcome
-
-
-def station_loading(runs: Mapping[str, tpss.Result]) -> Figure:
-    """Loading of the converters in the only run."""
-    (result,) = runs.values()
-    return figures.station_loading(result)
 
 
 @rc_context(STYLE)
@@ -99,6 +93,6 @@ DRAWINGS: dict[str, Callable[..., Figure]] = {
     "journey": figures.journey,
     "voltage_along_line": figures.voltage_along_line,
     "station_powers": figures.station_powers,
-    "station_loading": station_loading,
+    "station_loading": figures.station_loading,
     "stop": stop,
 }

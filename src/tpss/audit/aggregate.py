@@ -19,6 +19,7 @@ from tpss.record import Record, Records
 from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
+from tpss.step.state import TrainState
 from tpss.vehicle.train import Train
 
 
@@ -181,6 +182,8 @@ def _gather_trains(
     """Add a step of every train on the line."""
     run = figures.run[0]
     for i in range(figures.trains.size):
+        if recording.train_state[step, i] == TrainState.ABSENT:
+            continue
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.position, train)

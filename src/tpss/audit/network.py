@@ -8,7 +8,7 @@ right is the business of its own tests; that the solution obeys it is the audit'
 
 from tpss.audit.balances import Balances, Scratch, worst
 from tpss.kernel import inlined
-from tpss.numerics.pairs import magnitude
+from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.powerflow.placing import section_at
 from tpss.sources.kinds import residual
@@ -93,6 +93,7 @@ def _audit_section(
 ) -> int:
     """Mismatch of a section's trains, and its part of what leaves its nodes; return the next train."""
     section, figures = model.network.sections[s], scratch.balances[0]
+    z = section.impedance_ohm_per_m
     voltage, place_m = scratch.node_v[section.start_node], section.start_m
     entering = complex(0.0, 0.0)  # into the point before, through the piece before
     at_node = True
@@ -106,7 +107,7 @@ def _audit_section(
         else:
             ahead, ahead_m = scratch.node_v[section.end_node], section.end_m
         length_m = max(SHORTEST_PIECE_M, ahead_m - place_m)
-        current = (voltage - ahead) / (section.impedance_ohm_per_m * length_m)
+        current = scaled((voltage - ahead) * z.conjugate(), 1.0 / (squared(z) * length_m))
         shunt = complex(0.0, 0.5 * section.susceptance_s_per_m * length_m)
         leaving = current + shunt * voltage
         if at_node:

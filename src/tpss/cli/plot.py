@@ -36,6 +36,7 @@ def plot_result(
         cannot be written.
     """
     from tpss.report.figures import catalogue
+    from tpss.report.trains import NothingToDrawError
     from tpss.results import store
     from tpss.results.result import load_result
 
@@ -50,7 +51,7 @@ def plot_result(
     for name, file in names.items():
         try:
             drawn = catalogue.draw(name, result, train, against)
-        except catalogue.NothingToDrawError as error:
+        except NothingToDrawError as error:
             left_out.append((name, str(error)))
             continue
         contents[file] = _bytes(drawn, Path(file).suffix.removeprefix("."))

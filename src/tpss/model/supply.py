@@ -21,6 +21,7 @@ CONTACT_LINE = "contact line"
 HIGH_VOLTAGE_LINE = "high-voltage line"
 TRANSFORMER = "transformer"
 CONNECTION = "connection"
+FEEDER = "AT feeder"
 
 
 @dataclass
@@ -28,6 +29,7 @@ class SupplyPlan:
     """Nodes, branches and sections by name, before they become arrays."""
 
     nodes: list[str] = field(default_factory=list)
+    node_kinds: list[str] = field(default_factory=list)
     node_km: list[float] = field(default_factory=list)
     node_level: list[float] = field(default_factory=list)
     """Own voltage of the node over that of the contact line."""
@@ -39,9 +41,10 @@ class SupplyPlan:
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
 
-    def add_node(self, name: str, position_km: float, level: float = 1.0) -> int:
-        """Add a node and return its index."""
-        self.nodes.append(f"{name} at {position_km:g} km")
+    def add_node(self, kind: str, position_km: float, level: float = 1.0) -> int:
+        """Add a node and return its index; its name begins with its kind."""
+        self.nodes.append(f"{kind} at {position_km:g} km")
+        self.node_kinds.append(kind)
         self.node_km.append(position_km)
         self.node_level.append(level)
         return len(self.nodes) - 1
@@ -122,7 +125,7 @@ def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
     connection = _connection_impedance(supply.catenary)
     if connection:
         for km, station in sorted(stations.items()):
-            feeding[km] = plan.add_node("AT feeder", km)
+            feeding[km] = plan.add_node(FEEDER, km)
             plan.add_branch(CONNECTION, station.name, feeding[km], line_node[km], connection)
     if supply.high_voltage_line is not None:
         stands = sorted({*stations, *transformers})

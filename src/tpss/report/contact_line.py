@@ -10,15 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from tpss.model.supply import CONTACT_LINE
 from tpss.report.sampling import Floats
-from tpss.scenario.standards import VoltageLimits
 
 MOST_POSITIONS = 240
 MOST_TIMES = 320
 """Cells of the map of voltages, along the line and over time."""
-
-ON_THE_LINE = "contact line"
-"""How the names of the nodes on the contact line begin."""
 
 
 @dataclass(frozen=True)
@@ -52,14 +49,13 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
     steps = dataset.sizes["time"] - 1
     if steps < 1:
         return None
-    on_line = np.char.startswith(dataset.node.to_numpy().astype(str), ON_THE_LINE)
+    on_line = dataset.node_kind.to_numpy() == CONTACT_LINE
     node_m = dataset.node_position.to_numpy()[on_line]
     position_m = np.linspace(node_m.min(), node_m.max(), MOST_POSITIONS)
     node_v = _phasors(dataset, "node")[:steps, on_line]
     train_m, train_v = dataset.position.to_numpy()[:steps], _phasors(dataset, "pantograph")[:steps]
     per_column = -(-steps // MOST_TIMES)
-    lowest, highest = np.full(MOST_POSITIONS, np.inf), np.full(MOST_POSITIONS, -np.inf)
-    total = np.zeros(MOST_POSITIONS)
+    highest, total = np.full(MOST_POSITIONS, -np.inf), np.zeros(MOST_POSITIONS)
     columns = np.full((-(-steps // per_column), MOST_POSITIONS), np.inf)
     for k in range(steps):
         there = np.isfinite(train_v[k])
@@ -68,33 +64,19 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
         order = np.argsort(at_m, kind="stable")
         volts = np.abs(np.interp(position_m, at_m[order], at_v[order]))
         total += volts
-        row = columns[k // per_column]
-        np.minimum(row, volts, out=row)
         cell = np.abs(position_m[:, None] - train_m[k, there]).argmin(axis=0)
-        for extreme, worse in ((row, np.minimum), (lowest, np.minimum), (highest, np.maximum)):
+        for extreme, worse in ((columns[k // per_column], np.minimum), (highest, np.maximum)):
+            worse(extreme, volts, out=extreme)
             worse.at(extreme, cell, np.abs(train_v[k, there]))
-        np.maximum(highest, volts, out=highest)
-    np.minimum(lowest, columns.min(axis=0), out=lowest)
     return LineVoltage(
         position_km=position_m / 1e3,
-        lowest_kv=lowest / 1e3,
+        lowest_kv=columns.min(axis=0) / 1e3,
         mean_kv=total / steps / 1e3,
         highest_kv=highest / 1e3,
         time_min=dataset.time.to_numpy()[:steps:per_column] / 60.0,
         map_kv=columns.T / 1e3,
         steps_a_column=per_column,
     )
-
-
-def voltage_marks(limits: VoltageLimits) -> dict[str, float]:
-    """Nominal voltage and limits by their names in EN 50163, which a figure of voltages shows. [kV]"""
-    return {
-        "Umin2": limits.umin2_kv,
-        "Umin1": limits.umin1_kv,
-        "Un": limits.un_kv,
-        "Umax1": limits.umax1_kv,
-        "Umax2": limits.umax2_kv,
-    }
 
 
 def _phasors(dataset: xr.Dataset, place: str) -> np.ndarray:

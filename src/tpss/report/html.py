@@ -6,7 +6,7 @@ program is part of the file.  The page forbids itself all access to the network.
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
@@ -19,8 +19,16 @@ from plotly.offline import get_plotlyjs
 
 from tpss.audit.verdict import LIMITS
 from tpss.errors import ResultError
-from tpss.report import plots, sampling, tables
+from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.report.drawings.journey import journey
+from tpss.report.drawings.losses import losses
+from tpss.report.drawings.parts import Drawing
+from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.time_distance import time_distance
+from tpss.report.drawings.voltage import envelopes
+from tpss.report.render.interactive import render
+from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
@@ -33,6 +41,16 @@ STATUS_IN_WORDS = {
     "stalled": "A train stalled, and ended the run.",
     "interrupted": "The run was interrupted.",
 }
+
+OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
+    "powers": (station_powers, 440),
+    "converters": (station_loading, 440),
+    "losses": (losses, 260),
+}
+"""Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
+
+OF_A_JOURNEY = ("speed [km/h]", "voltage [kV]", "gradient [‰]")
+"""Panels of a journey; the page fills them anew when another train is chosen."""
 
 
 def write_report(
@@ -112,13 +130,12 @@ def comparison(results: Mapping[str, Result]) -> str:
     runs = {label: result for label, (result, _) in drawn.items()}
     figures, data = {}, {}
     if drawn:
-        figures = {
-            "envelopes": plots.envelopes(drawn),
-            "journey": plots.journey(runs),
-            "powers": plots.station_powers(runs),
-            "converters": plots.converters(runs),
-            "losses": plots.losses(runs),
+        figures = {"envelopes": render(envelopes(drawn, with_trains=True), 460), **_over_time(runs)}
+        driven = {
+            f"{label}: {chosen_train(run)}": run for label, run in runs.items() if seen_trains(run)
         }
+        if driven:
+            figures["journey"] = render(journey(driven, shown=OF_A_JOURNEY), 560)
         data = _moving(runs, "envelopes")
     left_out = [f"{label}: nothing to draw" for label in results if label not in drawn]
     return _page(
@@ -128,27 +145,25 @@ def comparison(results: Mapping[str, Result]) -> str:
         data=data,
         tables=[],
         key_figures=tables.of_figures(trusted) if trusted else None,
-        notes=[*left_out, *_about_trains(data), *_about_curves(runs)],
+        notes=[*left_out, *_about_samples(data, runs)],
     )
 
 
 def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], dict[str, Any]]:
     """Figures of a result, and what the page needs to move trains and to show any journey."""
-    runs = {"": result}
-    data = _moving(runs, "moment")
-    names = [train["name"] for train in data["runs"][0]["trains"]]
-    studied = result.summary["studied_train"]
-    chosen = studied if studied in names else next(iter(names), None)
     figures = {
-        "moment": plots.line_at_a_moment(result, voltage),
-        "graph": plots.time_distance(result, voltage),
-        "powers": plots.station_powers(runs),
-        "converters": plots.converters(runs),
-        "losses": plots.losses(runs),
+        "moment": render(envelopes({"": (result, voltage)}, with_trains=True), 460),
+        "graph": render(time_distance(result, voltage), 520),
+        **_over_time({"": result}),
     }
+    chosen = chosen_train(result) if seen_trains(result) else None
     if chosen is not None:
-        figures["journey"] = plots.journey(runs, chosen)
-    return figures, {**data, "chosen": chosen}
+        figures["journey"] = render(journey({chosen: result}, shown=OF_A_JOURNEY), 560)
+    return figures, {**_moving({"": result}, "moment"), "chosen": chosen}
+
+
+def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
+    return {key: render(describe(runs), height) for key, (describe, height) in OVER_TIME.items()}
 
 
 def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
@@ -193,25 +208,25 @@ def _notes(result: Result, voltage: LineVoltage | None, data: Mapping[str, Any])
             f"a column of the time-distance graph shows the lowest voltage of {voltage.steps_a_column} "
             "time steps"
         )
-    return [*notes, *_about_trains(data), *_about_curves({"": result})]
+    return [*notes, *_about_samples(data, {"": result})]
 
 
-def _about_trains(data: Mapping[str, Any]) -> list[str]:
-    if not data or not data["thinned"]:
-        return []
-    return [
-        "the journeys and the moving trains are drawn from a part of the time steps, which holds the "
-        "lowest and highest speeds and voltages; between them trains move evenly"
-    ]
-
-
-def _about_curves(runs: Mapping[str, Result]) -> list[str]:
-    if not plots.is_thinned(runs.values()):
-        return []
-    return [
-        "the curves over time are drawn from a part of the time steps, which holds the lowest and "
-        "highest value of each stretch; the saved result has them all"
-    ]
+def _about_samples(data: Mapping[str, Any], runs: Mapping[str, Result]) -> list[str]:
+    """What trains and curves are drawn from, where that is not every time step."""
+    notes = []
+    if data and data["thinned"]:
+        notes.append(
+            "the journeys and the moving trains are drawn from a part of the time steps, which holds "
+            "the lowest and highest speeds and voltages; between them trains move evenly"
+        )
+    curves = 2 * sum(run.dataset.sizes["station"] for run in runs.values())
+    most = sampling.share(sampling.MOST_OF_CURVES, curves)
+    if any(run.dataset.sizes["time"] > most for run in runs.values()):
+        notes.append(
+            "the curves over time are drawn from a part of the time steps, which holds the lowest and "
+            "highest value of each stretch; the saved result has them all"
+        )
+    return notes
 
 
 def _page(

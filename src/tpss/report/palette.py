@@ -3,8 +3,31 @@
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
 """Colours that colour-blind people tell apart (Okabe and Ito)."""
 
-VOLTAGE_SCALE = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
+BLACK = 5
+"""Number of that colour."""
+
+STRONG_GREY, GREY = "#444444", "#999999"
+"""Of limits and their names, and of places on the line."""
+
+Stops = tuple[tuple[float, str], ...]
+"""A scale of colours by its stops, from 0 to 1."""
+
+AREA_SCALE: Stops = ((0.0, "#A84300"), (0.35, "#E08214"), (0.7, "#F7CF8B"), (1.0, "#FFFDF5"))
 """From a low voltage, dark, to a high one: in black and white too."""
 
-LEAST_SPAN_KV = 2.0
-"""Span of that scale at least, so that a voltage that hardly falls does not look like one that does."""
+LINE_SCALE: Stops = (
+    (0.0, "#07051B"), (0.125, "#290B55"), (0.25, "#540F6D"), (0.375, "#7A1D6D"), (0.5, "#A22B62"),
+    (0.625, "#C73E4C"), (0.75, "#E45A31"), (0.875, "#F78212"), (1.0, "#FCAE12"),
+)  # fmt: skip
+"""The same for lines and points: inferno without its palest colours, which are not seen on white."""
+
+
+def colour(k: int) -> str:
+    """Colour of the k-th curve."""
+    return COLOURS[k % len(COLOURS)]
+
+
+def tint(pure: str, strength: float) -> str:
+    """A colour mixed with white; of strength 1 it is pure, of strength 0 white."""
+    parts = (int(pure[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255 - strength * (255 - part)):02X}" for part in parts)

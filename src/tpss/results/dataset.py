@@ -1,18 +1,24 @@
 """The recording as an xarray dataset with names, units and coordinates."""
 
 import json
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from xarray.indexes import PandasIndex
 
 from tpss.model.build import Layout
 from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.run.run import Outcome
 from tpss.step.model import Model
 from tpss.step.recorded import RECORDED, Recorded
+from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
+
+NODE_KIND = {"units": "", "long_name": "what the node is"}
+"""Attributes of the nodes' kinds."""
 
 
 def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
@@ -22,11 +28,35 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
     Trains that are not on the line are NaN, and so is the motor current of a train whose motors'
     voltage is not described.
     """
+    arrays = _arrays(outcome, layout)
     variables = {
-        each.name: (each.dimensions, _values(each, outcome, layout), _described(each))
+        each.name: xr.Variable(each.dimensions, arrays[each.name], _described(each))
         for each in RECORDED
     }
-    return xr.Dataset(variables, coords=_coordinates(outcome, model, layout))
+    return xr.Dataset(variables, coords=_indexed(_coordinates(outcome, model, layout)))
+
+
+def _indexed(coordinates: dict[str, Any]) -> xr.Coordinates:
+    """Coordinates with an index for each dimension."""
+    variables = {name: xr.Variable(*each) for name, each in coordinates.items()}
+    indexes = {}
+    for name, variable in list(variables.items()):
+        if variable.dims == (name,):
+            is_text = variable.dtype.kind == "U"
+            index = _index(name, tuple(variable.values)) if is_text else _new_index(name, variable)
+            indexes[name] = index
+            variables.update(index.create_variables({name: variable}))
+    return xr.Coordinates(variables, indexes)
+
+
+@lru_cache(maxsize=64)
+def _index(dimension: str, names: tuple[str, ...]) -> PandasIndex:
+    """Index of names: it takes as long as a hundred steps, and runs of the same line share it."""
+    return _new_index(dimension, xr.Variable(dimension, list(names)))
+
+
+def _new_index(dimension: str, values: xr.Variable) -> PandasIndex:
+    return PandasIndex.from_variables({dimension: values}, options={})
 
 
 def _described(each: Recorded) -> dict[str, Any]:
@@ -38,22 +68,39 @@ def _described(each: Recorded) -> dict[str, Any]:
     return described
 
 
-def _values(each: Recorded, outcome: Outcome, layout: Layout) -> npt.NDArray[Any]:
-    """Values of a variable; voltages of nodes and currents of branches are those at their own level."""
+def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
+    """Values of the variables by name; what is of nodes and branches is at their own level."""
     recording, plan = outcome.recording, layout.supply
-    if each.array:
-        values = np.asarray(getattr(recording, each.array))
-        own_level = np.array(plan.branch_levels()) if each.of == "branch" else None
-        return values if own_level is None else values / own_level
-    rows = {"train": recording.trains, "node": recording.nodes, "station": recording.stations}
-    parts = [rows[each.of][field] for field in each.fields]
-    if not each.phasor:
-        return np.asarray(parts[0])
-    real, imag = parts
-    if each.unit == "rad":
-        return np.asarray(np.arctan2(imag, real))
-    magnitude = np.sqrt(real * real + imag * imag)
-    return np.asarray(magnitude * np.array(plan.node_level) if each.of == "node" else magnitude)
+    rows = {
+        "train": np.asarray(recording.trains),
+        "node": np.asarray(recording.nodes),
+        "station": np.asarray(recording.stations),
+    }
+    arrays: dict[str, npt.NDArray[Any]] = {}
+    for each in RECORDED:
+        if each.array:
+            arrays[each.name] = getattr(recording, each.array)
+        elif not each.phasor:
+            arrays[each.name] = rows[each.of][each.name]
+    for place, of, there in (
+        ("pantograph", "train", recording.train_state != TrainState.ABSENT),
+        ("node", "node", ...),
+    ):
+        magnitude, angle = _polar(rows[of], place, there)
+        arrays[f"{place}_voltage"], arrays[f"{place}_angle"] = magnitude, angle
+    arrays["node_voltage"] *= np.array(plan.node_level)
+    arrays["branch_current"] = arrays["branch_current"] / np.array(plan.branch_levels())
+    return arrays
+
+
+def _polar(rows: Any, place: str, there: Any) -> tuple[Floats, Floats]:
+    """Magnitude and angle of recorded phasors; NaN but `there`, as reading takes most of the time."""
+    _, offset = rows.dtype.fields[f"{place}_real"]
+    phasors = rows.getfield(np.complex128, offset)[there]
+    magnitude, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
+    magnitude[there] = np.sqrt(phasors.real * phasors.real + phasors.imag * phasors.imag)
+    angle[there] = np.arctan2(phasors.imag, phasors.real)
+    return magnitude, angle
 
 
 def attributes(summary: dict[str, Any], step_s: float) -> dict[str, Any]:
@@ -91,6 +138,7 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
         "arrival_time": ("train", arrival_s, of("s", "arrival")),
         "node": ("node", plan.nodes, of("", "node")),
+        "node_kind": ("node", plan.node_kinds, NODE_KIND),
         "node_position": ("node", node_m, of("m", "position of the node")),
         "station": ("station", list(layout.stations), of("", "converter station")),
         "station_position": ("station", np.array(layout.station_m), of("m", "position")),

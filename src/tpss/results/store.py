@@ -17,6 +17,7 @@ import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
+from tpss.results.dataset import NODE_KIND
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
 
@@ -268,7 +269,15 @@ def _as_netcdf(dataset: xr.Dataset) -> memoryview:
 
 def _read_netcdf(path: Path) -> xr.Dataset:
     with ONE_AT_A_TIME, xr.open_dataset(path, engine="netcdf4") as stored:
-        return stored.load()
+        return _with_node_kinds(stored.load())
+
+
+def _with_node_kinds(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset with the kinds of its nodes: earlier ones have them in the nodes' names only."""
+    if "node" not in dataset.coords or "node_kind" in dataset.coords:
+        return dataset
+    kinds = [name.rpartition(" at ")[0] for name in dataset.node.to_numpy().tolist()]
+    return dataset.assign_coords(node_kind=("node", kinds, NODE_KIND))
 
 
 def _demand_this_format(folder: Path, summary: Any) -> None:

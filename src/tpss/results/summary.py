@@ -3,6 +3,7 @@
 import datetime as dt
 import math
 import platform
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -39,10 +40,15 @@ def summarise(
 
 def provenance() -> dict[str, str]:
     """Versions, platform and time of a run."""
+    return {**_versions(), "created": dt.datetime.now(dt.UTC).isoformat(timespec="seconds")}
+
+
+@cache
+def _versions() -> dict[str, str]:
+    """What stays the same as long as the program runs, and takes as long to find out as a short run."""
     packages = ("tpss", "numpy", "numba", "xarray")
     return {
         **{f"{name}_version": version(name) for name in packages},
         "python_version": platform.python_version(),
         "platform": platform.platform(),
-        "created": dt.datetime.now(dt.UTC).isoformat(timespec="seconds"),
     }

@@ -1,10 +1,10 @@
 """Compiled kernels before the first step: a cold start on two cores.
 
-The kernels are compiled in parts, by two processes at once: first the load flow, and what prepares and
-carries out a step, which have little in common; then the clock, which calls both, and the audit.  The
-second process keeps what it compiles in a cache folder of its own, as two that write into
-one may spoil each other's entries.  The first one adopts from it whatever itself does not have.  Where a
-second process is of no use or does not succeed, the first one compiles everything, a little later.
+The kernels are compiled by two processes at once: first the load flow, and what prepares and carries
+out a step, which have little in common; then the clock, which calls both, and the audit.  The second
+process keeps what it compiles in a cache folder of its own, as two that write into one may spoil each
+other's entries.  The first one adopts from it whatever itself does not have.  Where a second process is
+of no use or does not succeed, the first one compiles everything, a little later.
 """
 
 import os
@@ -12,8 +12,6 @@ import pickle
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +23,7 @@ from tpss.driving.braking import shortest_stop
 from tpss.driving.stops import stand_at_stop
 from tpss.driving.whole_steps import replan
 from tpss.driving.within_step import replan as replan_within
-from tpss.kernel import cache_folder, kernels_are_compiled, switch
+from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, switch
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import newton
@@ -63,15 +61,13 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
     """
     if clock in _ready:
         return
-    if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
-        with _compiled_apart("step", model):
-            compile_calls(load_flow_calls(model))
-        with _compiled_apart("figures", model):
-            Run(model, [], 0).advance_to(0)
-    Run(model, [], 0).advance_to(0)
-    if clock is not advance:
-        Run(model, [], 1, clock).advance_to(1)
-    compile_calls(figures_calls(model))
+    with quick_inlining():
+        if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
+            _compile_in_parts(model)
+        Run(model, [], 0).advance_to(0)
+        if clock is not advance:
+            Run(model, [], 1, clock).advance_to(1)
+        compile_calls(figures_calls(model))
     _ready.add(clock)
 
 
@@ -128,22 +124,33 @@ def compile_calls(calls: list[Call]) -> None:
             function.compile(tuple(numba.typeof(argument) for argument in arguments))
 
 
-@contextmanager
-def _compiled_apart(part: str, model: Model) -> Iterator[None]:
-    """Have a part compiled by a second process meanwhile, and adopt what it has made at the end."""
+def _compile_in_parts(model: Model) -> None:
+    """Compile all kernels with the help of a second process."""
     folder = cache_folder()
     with tempfile.TemporaryDirectory(prefix="part-", dir=folder) as apart:
         environment = {**os.environ, "NUMBA_CACHE_DIR": apart}
-        command = [sys.executable, "-m", "tpss.run.kernels", part]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, **quiet) as second:  # type: ignore[call-overload]
+        command = [sys.executable, "-m", "tpss.run.kernels"]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+        theirs = Path(apart) / "tpss" / folder.name
+        with subprocess.Popen(command, env=environment, **pipes) as second:  # type: ignore[call-overload]
             try:
                 _send(model, second)
-                yield
+                compile_calls(load_flow_calls(model))
+                second.stdout.readline()  # it has compiled what the clock calls, or has ended
+                adopt(theirs, folder)
+                Run(model, [], 0).advance_to(0)
                 second.wait()
             finally:
                 second.kill()
-        adopt(Path(apart) / "tpss" / folder.name, folder)
+        adopt(theirs, folder)
+
+
+def _help(model: Model) -> None:
+    """The second process: compile what the clock calls, say so, then what audits a run."""
+    with quick_inlining():
+        compile_calls(step_calls(model))
+        print("step", flush=True)
+        compile_calls(figures_calls(model))
 
 
 def _send(model: Model, process: "subprocess.Popen[bytes]") -> None:
@@ -170,5 +177,4 @@ def adopt(apart: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    parts = {"step": step_calls, "figures": figures_calls}
-    compile_calls(parts[sys.argv[1]](pickle.load(sys.stdin.buffer)))
+    _help(pickle.load(sys.stdin.buffer))

@@ -10,8 +10,10 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
+from tpss import library
 from tpss.errors import Finding
-from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.machine import CurrentLimitation
+from tpss.scenario.supply.supply import DEFAULT_SYSTEM, STATIONS, SYSTEMS
 
 
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
@@ -22,6 +24,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
         length = None  # a fault of its own; nothing can be measured against it
     findings = [*_line(line, length), *_supply(supply, length)]
     findings += _driver(_table(document, "simulation"))
+    findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     for i, zone in _items(_table(document, "standards"), "zones"):
         findings += _outside(f"standards.zones.{i}.to_km", _number(zone, "to_km"), length)
     places = {
@@ -96,6 +99,28 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
         problem = "too long for the aggressive driver, who looks at the speed only once a step"
         remedy = f'take {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
+
+
+def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[_Fault]:
+    """Limits of another system than that of the supply."""
+    if not isinstance(system, str) or system not in library.entries(SYSTEMS):
+        return  # a fault of its own
+    limits = _table(_table(document, "standards"), "voltage_limits")
+    named = limits.get("system", system)
+    if isinstance(named, str) and named != system and named in library.entries("voltage_limits"):
+        problem = f"the limits of another system than that of the supply, {system}"
+        remedy = "leave it out, or choose supply.system; single limits can be overridden beside it"
+        yield "standards.voltage_limits.system", repr(named), problem, remedy
+    nominal_kv = library.values(SYSTEMS, system)["nominal_kv"]
+    for name, train in _table(document, "trains").items():
+        limitation = _table(train, "current_limitation") if isinstance(train, Mapping) else {}
+        un_kv = _number(limitation, "un_kv") or CurrentLimitation.model_fields["un_kv"].default
+        if limitation and un_kv != nominal_kv:
+            problem = f"not the nominal voltage of the system {system}, {nominal_kv:g} kV"
+            remedy = (
+                f"write un_kv = {nominal_kv:g}, and umin2_kv and max_current_a that belong to it"
+            )
+            yield f"trains.{name}.current_limitation.un_kv", f"{un_kv:g}", problem, remedy
 
 
 def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, model_validator
 
+from tpss import library
 from tpss.scenario.fields import Name, Part, Version, unique
 from tpss.scenario.line import Line
 from tpss.scenario.override import copy_of, override
@@ -15,6 +16,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import Supply
+from tpss.scenario.supply.supply import DEFAULT_SYSTEM, SYSTEMS
 from tpss.scenario.traffic import Traffic
 from tpss.scenario.validate import validate
 
@@ -43,6 +45,21 @@ class Scenario(Part):
     standards: Standards = Field(
         default={}, validate_default=True, description="By what the result is judged."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _judge_by_the_limits_of_the_system(cls, given: Any) -> Any:
+        """Take the voltage limits of the supply's system, unless the standards name others."""
+        if not isinstance(given, dict):
+            return given
+        supply, standards = given.get("supply", {}), given.get("standards", {})
+        if not isinstance(supply, dict) or not isinstance(standards, dict):
+            return given  # which has a fault of its own
+        limits, system = standards.get("voltage_limits", {}), supply.get("system", DEFAULT_SYSTEM)
+        if not isinstance(limits, dict) or system not in library.entries(SYSTEMS):
+            return given
+        standards = {**standards, "voltage_limits": {"system": system, **limits}}
+        return {**given, "standards": standards}
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))

@@ -26,7 +26,8 @@ class VoltageLimits(Part):
     """Limits of the voltage at the pantograph: those of a system in the library, or one's own."""
 
     system: Annotated[Name, AfterValidator(_is_a_library_system)] = Field(
-        default="15kV-16.7Hz", description="Library entry; the other keys override its values."
+        default="15kV-16.7Hz",
+        description="Library entry, that of the supply's system; the other keys override its values.",
     )
     un_kv: Real = Field(gt=0, description="Nominal voltage, Un.")
     umin2_kv: Real = Field(gt=0, description="Lowest non-permanent voltage, Umin2.")

@@ -48,7 +48,7 @@ def contact_line_losses_mwh(result):
     """
     dataset, catenary = result.dataset, result.scenario.supply.catenary
     impedance = complex(catenary.r_ohm_per_km, catenary.x_ohm_per_km) / 1e3
-    on_line = dataset.node.str.startswith("contact line").to_numpy()
+    on_line = (dataset.node_kind == "contact line").to_numpy()
     node_m = dataset.node_position.to_numpy()[on_line]
     node_v = (dataset.node_voltage * np.exp(1j * dataset.node_angle)).to_numpy()[:, on_line]
     train_m = dataset.position.to_numpy()

@@ -1,27 +1,25 @@
-"""Figures of results, one function a figure.
+"""Figures of results for print, one function a figure.
 
 Those of one train or of stations take runs by their labels and overlay them: the first solid, the next
 dashed, then dash-dotted.  All return a matplotlib figure, which is neither shown nor saved:
 ``journey({"as built": result}).savefig("journey.png")``.  `draw` makes one by its name.
 """
 
-from tpss.report.figures.catalogue import FIGURES, draw
-from tpss.report.figures.effort import effort
-from tpss.report.figures.energy import energy_flow
-from tpss.report.figures.journey import journey
-from tpss.report.figures.stations import station_loading, station_powers
-from tpss.report.figures.time_distance import time_distance
-from tpss.report.figures.voltage import voltage_along_line, voltage_envelope
+from tpss.report.drawings import effort as _effort
+from tpss.report.drawings import energy as _energy
+from tpss.report.drawings import journey as _journey
+from tpss.report.drawings import stations as _stations
+from tpss.report.drawings import time_distance as _time_distance
+from tpss.report.drawings import voltage as _voltage
+from tpss.report.figures.catalogue import FIGURES as FIGURES
+from tpss.report.figures.catalogue import draw as draw
+from tpss.report.render.static import static
 
-__all__ = [
-    "FIGURES",
-    "draw",
-    "effort",
-    "energy_flow",
-    "journey",
-    "station_loading",
-    "station_powers",
-    "time_distance",
-    "voltage_along_line",
-    "voltage_envelope",
-]
+effort = static(_effort.effort)
+energy_flow = static(_energy.energy_flow)
+journey = static(_journey.journey)
+station_loading = static(_stations.station_loading)
+station_powers = static(_stations.station_powers)
+time_distance = static(_time_distance.time_distance)
+voltage_along_line = static(_voltage.voltage_along_line)
+voltage_envelope = static(_voltage.voltage_envelope)

@@ -1,24 +1,17 @@
 """Where the energy of a run comes from, and where it goes."""
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 
-from tpss.report.palette import COLOURS
-from tpss.report.style import STYLE, as_text, legend, panels
+from tpss.report.drawings.parts import Bar, Drawing, Panel
+from tpss.report.palette import COLOURS, tint
+from tpss.report.sampling import Floats
 from tpss.results.result import Result
 from tpss.results.tables import J_PER_MWH
 
-Floats = npt.NDArray[np.float64]
-
-Parts = dict[str, tuple[float, Any]]
+Parts = dict[str, tuple[float, str]]
 """Energy of the parts of a bar [MWh], and their colours."""
 
 NARROWEST = 0.06
@@ -41,8 +34,7 @@ USES = {
 """Colours of what trains do; with those of stations and losses, the palette of Okabe and Ito."""
 
 
-@rc_context(STYLE)
-def energy_flow(result: Result) -> Figure:
+def energy_flow(result: Result) -> Drawing:
     """Three bars of one length: what is fed, what the network loses and trains draw, what trains do.
 
     A part of what trains do that is negative on balance, such as the climb of trains that run
@@ -52,41 +44,26 @@ def energy_flow(result: Result) -> Figure:
     ----------
     result : Result
     """
-    losses, stations = result.standards.losses, result.stations
-    used = used_by_trains(result)
-    given = {name: (-mwh, USES[name]) for name, mwh in used.items() if mwh < 0.0}
-    taken = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
+    losses, stations, used = result.standards.losses, result.stations, used_by_trains(result)
     fed = _tinted(stations.station, stations.energy_mwh, COLOURS[0])
-    network = _tinted(
-        [f"{kind} losses" for kind in losses.branch_kind], losses.energy_mwh, COLOURS[1]
-    )
-    lost = sum(mwh for mwh, _ in network.values())
-    to_trains = sum(mwh for mwh, _ in taken.values())
-    bars: dict[str, Parts] = {
-        "fed": {**fed, **given},
-        "network": {**network, "trains": (to_trains, "#AAAAAA")},
-        "trains": taken,
-    }
+    fed |= {name: (-mwh, USES[name]) for name, mwh in used.items() if mwh < 0.0}
+    taken = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
+    kinds = [f"{kind} losses" for kind in losses.branch_kind]
+    network = _tinted(kinds, losses.energy_mwh, COLOURS[1])
+    lost, to_trains = (sum(mwh for mwh, _ in each.values()) for each in (network, taken))
+    network["trains"] = (to_trains, "#AAAAAA")
     width = max(lost + to_trains, 1e-9)
-    figure, (panel,) = panels([""], "energy [MWh]", panel_inch=4.2)
-    for row, parts in enumerate(bars.values()):
-        _bar(panel, row, lost if row == 2 else 0.0, parts, width)
-    panel.set_yticks(range(len(bars)), list(bars))
-    panel.set_ylim(len(bars) - 0.5, -0.5)
-    panel.set_xlim(0.0, width)
-    panel.grid(visible=False, axis="y")
-    panel.tick_params(axis="y", length=0)
-    legend(figure, panel, columns=2)
-    return figure
+    bars = [*_bar(0, 0.0, fed, width), *_bar(1, 0.0, network, width), *_bar(2, lost, taken, width)]
+    panel = Panel("", bars, rows=("fed", "network", "trains"))
+    return Drawing("energy [MWh]", [panel], (0.0, width), panel_inch=4.2)
 
 
 def _tinted(names: Iterable[str], mwh: Iterable[float], colour: str) -> Parts:
     """Parts in tints of one colour."""
-    parts, pure = {}, np.array(to_rgb(colour))
-    for k, (name, value) in enumerate(zip(names, mwh, strict=True)):
-        tint = TINTS[k % len(TINTS)]
-        parts[str(name)] = (float(value), tuple(1.0 - tint * (1.0 - pure)))
-    return parts
+    return {
+        str(name): (float(value), tint(colour, TINTS[k % len(TINTS)]))
+        for k, (name, value) in enumerate(zip(names, mwh, strict=True))
+    }
 
 
 def used_by_trains(result: Result) -> dict[str, float]:
@@ -143,29 +120,11 @@ def work_of_forces(data: xr.Dataset) -> tuple[Floats, Floats, Floats, Floats]:
     )
 
 
-def _bar(panel: Axes, row: int, start: float, parts: Parts, width: float) -> None:
-    """Draw the parts of a bar side by side, each named in the legend."""
+def _bar(row: int, start: float, parts: Parts, width: float) -> Iterator[Bar]:
+    """The parts of a bar side by side, each named in the legend."""
     for name, (mwh, colour) in parts.items():
         if mwh < SMALLEST * width:
             continue
-        panel.barh(
-            row,
-            mwh,
-            left=start,
-            height=0.62,
-            color=colour,
-            edgecolor="white",
-            linewidth=0.8,
-            label=f"{as_text(name)}: {mwh:.3g} MWh",
-        )
-        if mwh > NARROWEST * width:
-            light = float(np.dot((0.3, 0.59, 0.11), to_rgb(colour)))
-            panel.text(
-                start + mwh / 2.0,
-                row,
-                f"{mwh:.3g}",
-                ha="center",
-                va="center",
-                color="black" if light > 0.5 else "white",
-            )
+        words = f"{mwh:.3g}" if mwh > NARROWEST * width else ""
+        yield Bar(row, start, mwh, f"{name}: {mwh:.3g} MWh", words, colour)
         start += mwh

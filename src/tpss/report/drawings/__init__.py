@@ -1,0 +1,1 @@
+"""What each figure shows, one file a figure: functions of results that describe drawings."""

@@ -1,0 +1,126 @@
+"""What a drawing consists of: plain data that knows no plotting library.
+
+`tpss.report.render` makes figures of it, for print or for a page.  Colours and dashes are numbers, which
+it looks up; labels end with their units in brackets; only what is printed may hold formulae.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tpss.report.palette import GREY
+from tpss.report.sampling import Floats
+
+TIME, POSITION = "time [min]", "position [km]"
+"""Horizontal axes of most figures."""
+
+SOLID, DASHED, DASH_DOTTED, DOTTED = range(4)
+"""Line styles, so that curves differ in black and white too."""
+
+
+@dataclass(frozen=True)
+class Colours:
+    """Values that are shown as colours, from a low one, dark, to a high one."""
+
+    values: Floats
+    label: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line through points, which NaN interrupts, or points alone if they are not joined.
+
+    Values that are held stay until the next instant, rather than change evenly.  Points may have
+    words of their own, to be read by pointing at them.
+    """
+
+    x: Floats
+    y: Floats
+    name: str = ""
+    colour: int = 0
+    dash: int = SOLID
+    width: float = 1.0
+    held: bool = False
+    joined: bool = True
+    words: Sequence[str] = ()
+    colours: Colours | None = None
+
+
+@dataclass(frozen=True)
+class Band:
+    """What lies between a lowest and a highest curve, shaded."""
+
+    x: Floats
+    lowest: Floats
+    highest: Floats
+    colour: int = 0
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A line across the panel at a value of its vertical axis or, if upright, of the horizontal one."""
+
+    value: float
+    words: str = ""
+    printed: str = ""
+    dash: int = SOLID
+    colour: str = GREY
+    upright: bool = False
+
+
+@dataclass(frozen=True)
+class Map:
+    """Values over both axes, a row of them for every y and a column for every x."""
+
+    x: Floats
+    y: Floats
+    colours: Colours
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A part of the bar in a row, counted from 0 and from above."""
+
+    row: int
+    start: float
+    length: float
+    name: str
+    words: str
+    colour: str
+
+
+Item = Curve | Band | Mark | Map | Bar
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What is drawn over one vertical axis, in that order.
+
+    The axis has a span, or begins at 0, or fits what is drawn; its ticks may have a fixed step.  Of
+    bars it carries the names of their rows.
+    """
+
+    label: str
+    items: Sequence[Item]
+    printed: str = ""
+    span: tuple[float, float] | None = None
+    from_zero: bool = False
+    tick: float | None = None
+    rows: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Panels above each other with one horizontal axis; the legend is that of the first panel."""
+
+    axis: str
+    panels: Sequence[Panel]
+    span: tuple[float, float] | None = None
+    panel_inch: float = 1.25
+    """Height of a panel in print."""
+
+
+def unit_of(label: str) -> str:
+    """Unit in the brackets at the end of a label; empty without one."""
+    return label.partition("[")[2].rstrip("]")

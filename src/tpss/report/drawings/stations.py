@@ -1,0 +1,73 @@
+"""What the converter stations feed, how loaded they are, and how many converters run."""
+
+from collections.abc import Callable, Mapping
+
+import xarray as xr
+
+from tpss.report.drawings.parts import DOTTED, TIME, Curve, Drawing, Mark, Panel
+from tpss.report.palette import BLACK, COLOURS
+from tpss.results.result import Result
+
+
+def station_powers(runs: Mapping[str, Result]) -> Drawing:
+    """Active and reactive power that each converter station feeds into the railway, over time.
+
+    A colour is a station, a line style a run.
+
+    Parameters
+    ----------
+    runs : mapping of str to Result
+        Results to overlay, by label.
+
+    References
+    ----------
+    [Boullanger2009]_, the layout of figure 3-14.
+    """
+    active = _curves(runs, lambda data: data.station_active_power / 1e6)
+    reactive = _curves(runs, lambda data: data.station_reactive_power / 1e6)
+    panels = [
+        Panel("active [MW]", active, "$P_G$ [MW]"),
+        Panel("reactive [Mvar]", reactive, "$Q_G$ [MVAr]"),
+    ]
+    return Drawing(TIME, panels, panel_inch=2.0)
+
+
+def station_loading(runs: Result | Mapping[str, Result]) -> Drawing:
+    """Loading of the running converters of each station, and how many run, over time.
+
+    Parameters
+    ----------
+    runs : Result or mapping of str to Result
+        A result, or results to overlay by their labels.
+
+    References
+    ----------
+    [Boullanger2009]_, figures 3-13 and 3-16, which draw a tenth of the number in the same panel.
+    """
+    runs = {"": runs} if isinstance(runs, Result) else runs
+    rating = Mark(100.0, dash=DOTTED, colour=COLOURS[BLACK])
+    loading = _curves(runs, lambda data: data.converter_loading * 100.0)
+    running = _curves(runs, lambda data: data.active_converters)
+    supplies = [result.scenario.supply for result in runs.values()]
+    most = max(each.installed for supply in supplies for each in supply.stations)
+    span, tick = (0.0, most + 0.5), 1.0 + most // 8
+    panels = [
+        Panel(
+            "loading [%]", [*loading, rating], "loading of running\nconverters [%]", from_zero=True
+        ),
+        Panel("converters running", running, "converters\nrunning", span=span, tick=tick),
+    ]
+    return Drawing(TIME, panels, panel_inch=1.8)
+
+
+def _curves(
+    runs: Mapping[str, Result], values: Callable[[xr.Dataset], xr.DataArray]
+) -> list[Curve]:
+    """A curve a station and run; stations of a single run differ by their line styles too."""
+    curves, several = [], len(runs) > 1
+    for k, (label, result) in enumerate(runs.items()):
+        minutes, drawn = result.dataset.time.to_numpy() / 60.0, values(result.dataset).to_numpy()
+        for s, station in enumerate(result.dataset.station.to_numpy()):
+            name, dash = (f"{station}, {label}", k) if several else (str(station), s)
+            curves.append(Curve(minutes, drawn[:, s], name, s, dash, held=True))
+    return curves

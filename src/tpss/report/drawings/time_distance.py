@@ -1,0 +1,54 @@
+"""The time-distance graph, coloured by the voltage."""
+
+import numpy as np
+
+from tpss.report.contact_line import LineVoltage
+from tpss.report.drawings import parts
+from tpss.report.palette import BLACK
+from tpss.report.sampling import Floats
+from tpss.results.result import Result
+
+LEAST_SPAN_KV = 2.0
+"""Span of a scale of voltages at least, so that a voltage that hardly falls does not look like one that
+does."""
+
+
+def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.Drawing:
+    """Paths of all trains over time, coloured by the voltage at their pantographs.
+
+    Stations of the line are named at the right.
+
+    Parameters
+    ----------
+    result : Result
+    voltage : LineVoltage, optional
+        Of this run: it is shown in colours below paths in black, without the stations.
+    """
+    data, line = result.dataset, result.scenario.line
+    minutes, km = data.time.to_numpy() / 60.0, data.position.to_numpy() / 1e3
+    kv, trains = data.pantograph_voltage.to_numpy() / 1e3, data.train.to_numpy().astype(str)
+    span = float(minutes[0]), float(minutes[-1])
+    # One train after another, each over its time on the line, with a gap after it.
+    below = ((0, 1), (0, 0))
+    train, step = np.nonzero(np.pad(np.isfinite(km), below, constant_values=True).T)
+    km, kv = (np.pad(all_, below, constant_values=np.nan)[step, train] for all_ in (km, kv))
+    minutes, names = np.append(minutes, np.nan)[step], trains[train].tolist()
+    items: list[parts.Item]
+    if voltage is None:
+        colours = parts.Colours(kv, "voltage at the pantograph [kV]", *colour_range(kv))
+        items = [parts.Mark(station.position_km, station.name) for station in line.stations]
+        items.append(parts.Curve(minutes, km, width=1.3, words=names, colours=colours))
+    else:
+        middle_min = voltage.time_min + voltage.steps_a_column * data.attrs["time_step_s"] / 120.0
+        label, kv = "voltage of the contact line [kV]", voltage.map_kv
+        colours = parts.Colours(kv, label, *colour_range(kv))
+        items = [parts.Map(middle_min, voltage.position_km, colours)]
+        items.append(parts.Curve(minutes, km, colour=BLACK, width=0.6, words=names))
+    panel = parts.Panel(parts.POSITION, items, span=(0.0, line.length_km))
+    return parts.Drawing(parts.TIME, [panel], span, panel_inch=4.6)
+
+
+def colour_range(kv: Floats) -> tuple[float, float]:
+    """Lowest and highest of the voltages that colours tell apart. [kV]"""
+    highest = float(np.nanmax(kv))
+    return min(float(np.nanmin(kv)), highest - LEAST_SPAN_KV), highest

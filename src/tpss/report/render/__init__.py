@@ -1,0 +1,1 @@
+"""Figures of drawings: static ones by matplotlib, interactive ones by plotly."""
