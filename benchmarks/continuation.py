@@ -1,11 +1,11 @@
 r"""A slow, obvious load flow: admittance matrix, and all loads raised together from zero.
 
-It shares nothing with `tpss.powerflow` but the trains' demand and the converter law.  With all
+It shares nothing with `tpss.powerflow` but the trains' demand and the sources' laws.  With all
 voltages V and the admittance matrix Y in per unit, and the share λ of the loads,
 
     train:                I + λ conj(S(\|V\|) / V) = 0       I = Y V
     node without source:  I = 0
-    node with source:     V = f(V conj(I))
+    node with source:     V = f(V, I)
 
 The path of solutions from λ = 0 on is followed by its tangent and corrected by Newton's method.  A step
 counts if the correction is small and the tangent goes on in the same direction; where it would turn
@@ -13,27 +13,26 @@ back, the branch has turned.  So the path cannot jump to another branch, and its
 which the line can carry.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
-from tpss.powerflow.external import find_demands, find_terminals
 from tpss.powerflow.network import Flow, Loads, Network
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, LOWEST_VOLTAGE
+from tpss.powerflow.outside import find_demands, find_residuals
+from tpss.powerflow.system import System
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 
-BASE_ADMITTANCE_S = BASE_POWER_VA / BASE_VOLTAGE_V**2
 CONVERGED, MOST_ITERATIONS = 1e-9, 8
 ROUNDINGS = 4
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.05, 0.1, 1e-6
 LARGEST_CORRECTION = 0.02
 SLIGHTLY = 1e-5
-"""Of base power: differences of the converter law."""
+"""Of base voltage and base current: differences of the sources' laws. [p.u.]"""
 
 
 def admittance_matrix(network: Network, flow: Flow) -> Complexes:
@@ -76,13 +75,19 @@ class Equations:
     @classmethod
     def of(cls, network: Network, flow: Flow, loads: Loads) -> "Equations":
         """Equations of a network with the trains placed in `flow`."""
+        system = network.system
+        base_admittance_s = system.base_power_va / system.base_voltage_v**2
         return cls(
-            admittance=admittance_matrix(network, flow) / BASE_ADMITTANCE_S,
+            admittance=admittance_matrix(network, flow) / base_admittance_s,
             network=network,
             loads=loads,
             standing=flow.standing.copy(),
             running=flow.sources.copy(),
         )
+
+    @property
+    def system(self) -> System:
+        return self.network.system
 
     @property
     def buses(self) -> int:
@@ -100,17 +105,19 @@ class Equations:
     def demand(self, voltage: Complexes) -> tuple[Complexes, Complexes]:
         """Powers of the trains, and their slopes over the magnitude."""
         found = np.zeros((self.standing.size, 4))
-        magnitude_v = BASE_VOLTAGE_V * np.abs(voltage[self.nodes :])
+        base_v, base_va = self.system.base_voltage_v, self.system.base_power_va
+        magnitude_v = base_v * np.abs(voltage[self.nodes :])
         find_demands(magnitude_v, self.standing, self.loads, found)
         power, slope = found[:, 0] + 1j * found[:, 1], found[:, 2] + 1j * found[:, 3]
-        return power / BASE_POWER_VA, slope * BASE_VOLTAGE_V / BASE_POWER_VA
+        return power / base_va, slope * base_v / base_va
 
-    def law(self, power: Complexes) -> Complexes:
-        """Voltages of the sources by their powers."""
-        found = np.zeros((power.size, 5))
-        powers = BASE_POWER_VA * np.column_stack([power.real, power.imag])
-        find_terminals(powers, self.network.sources, self.running, found)
-        return found[:, 0] * np.exp(1j * found[:, 1]) / BASE_VOLTAGE_V
+    def law(self, voltage: Complexes, current: Complexes) -> Complexes:
+        """Voltages that the sources ask for at their voltages and the currents that they feed."""
+        found = np.zeros((voltage.size, 5), dtype=complex)
+        base_v, base_va = self.system.base_voltage_v, self.system.base_power_va
+        sources = self.network.sources
+        find_residuals(base_v * voltage, base_va / base_v * current, sources, self.running, found)
+        return voltage - found[:, 0] / base_v
 
     def residual(self, voltage: Complexes, share: float) -> Complexes:
         """What is left of the equations."""
@@ -119,7 +126,7 @@ class Equations:
         drawn, _ = self.demand(voltage)
         left[self.nodes :] += share * np.conj(drawn / voltage[self.nodes :])
         at = self.network.sources.node
-        left[at] = voltage[at] - self.law(voltage[at] * np.conj(current[at]))
+        left[at] = voltage[at] - self.law(voltage[at], current[at])
         return left
 
     def jacobian(self, voltage: Complexes, share: float) -> Floats:
@@ -133,27 +140,34 @@ class Equations:
         by_conjugate[trains, trains] += (
             half * at_train - share * np.conj(drawn) / at_train.conj()
         ) / at_train.conj()
-        # 2. Sources: V - f(S), S = V conj(Y V), with f by differences.
-        for s, node in enumerate(self.network.sources.node):
+        # 2. Sources: V - f(V, Y V), with f by differences.
+        at = self.network.sources.node
+        (f_v, f_v_conjugate), (f_i, f_i_conjugate) = self._law_slopes(
+            voltage[at], self.admittance[at] @ voltage
+        )
+        for s, node in enumerate(at):
             row = self.admittance[node]
-            power = voltage * 0.0
-            current = row @ voltage
-            power_by_v, power_by_conjugate = power.copy(), voltage[node] * row.conj()
-            power_by_v[node] = current.conj()
-            f_p, f_q = self._law_slopes(s, voltage[node] * current.conj())
-            f_s, f_conjugate = (f_p - 1j * f_q) / 2.0, (f_p + 1j * f_q) / 2.0
-            by_v[node] = -(f_s * power_by_v + f_conjugate * power_by_conjugate.conj())
-            by_v[node, node] += 1.0
-            by_conjugate[node] = -(f_s * power_by_conjugate + f_conjugate * power_by_v.conj())
+            by_v[node], by_conjugate[node] = -f_i[s] * row, -f_i_conjugate[s] * row.conj()
+            by_v[node, node] += 1.0 - f_v[s]
+            by_conjugate[node, node] -= f_v_conjugate[s]
         plus, minus = by_v + by_conjugate, by_v - by_conjugate
         return np.block([[plus.real, -minus.imag], [plus.imag, minus.real]])
 
-    def _law_slopes(self, s: int, power: complex) -> tuple[complex, complex]:
-        """Slopes of a source's voltage over P and Q."""
-        powers = np.zeros((4, self.network.sources.size), dtype=complex)
-        powers[:, s] = power + SLIGHTLY * np.array([1.0, -1.0, 1j, -1j])
-        up_p, down_p, up_q, down_q = (self.law(row)[s] for row in powers)
-        return (up_p - down_p) / (2 * SLIGHTLY), (up_q - down_q) / (2 * SLIGHTLY)
+    def _law_slopes(
+        self, voltage: Complexes, current: Complexes
+    ) -> tuple[tuple[Complexes, Complexes], tuple[Complexes, Complexes]]:
+        """Slopes of the sources' laws over voltages and over currents, and over their conjugates."""
+
+        def slopes(law: Callable[[complex], Complexes]) -> tuple[Complexes, Complexes]:
+            by_real, by_imaginary = (
+                (law(SLIGHTLY * unit) - law(-SLIGHTLY * unit)) / (2 * SLIGHTLY) for unit in (1, 1j)
+            )
+            return (by_real - 1j * by_imaginary) / 2.0, (by_real + 1j * by_imaginary) / 2.0
+
+        return (
+            slopes(lambda change: self.law(voltage + change, current)),
+            slopes(lambda change: self.law(voltage, current + change)),
+        )
 
     def correct(self, voltage: Complexes, share: float) -> Complexes | None:
         """Newton's method without damping; None if it does not converge."""
@@ -182,12 +196,16 @@ class Equations:
 
 
 def carry(
-    equations: Equations, most: float = 1.0, highest: float = HIGHEST_VOLTAGE
+    equations: Equations, most: float = 1.0, highest: float | None = None
 ) -> tuple[float, Complexes]:
     """Follow the path; return the share of the loads at its end (at `most`), and the voltages there.
 
-    It ends where a voltage leaves the plausible band, whose upper bound is `highest`. [p.u.]
+    It ends where a voltage leaves the plausible band, whose upper bound is `highest`, by default
+    that of the system. [p.u.]
     """
+    system = equations.system
+    lowest = system.lowest_voltage_v / system.base_voltage_v
+    highest = system.highest_voltage_v / system.base_voltage_v if highest is None else highest
     share, step = 0.0, FIRST_STEP
     voltage = equations.correct(np.ones(equations.buses, dtype=complex), 0.0)
     assert voltage is not None, "no solution without load"
@@ -196,7 +214,7 @@ def carry(
         target = min(most, share + step)
         predicted = voltage + (target - share) * tangent
         found = equations.correct(predicted, target)
-        if found is not None and _goes_on(found, predicted, highest):
+        if found is not None and _goes_on(found, predicted, lowest, highest):
             following = equations.tangent(found, target)
             if np.vdot(following, tangent).real > 0.0:
                 share, voltage, tangent = target, found, following
@@ -206,8 +224,8 @@ def carry(
     return share, voltage
 
 
-def _goes_on(found: Complexes, predicted: Complexes, highest: float) -> bool:
+def _goes_on(found: Complexes, predicted: Complexes, lowest: float, highest: float) -> bool:
     """Whether a corrected point is near to its prediction, and within the plausible band."""
     size = np.abs(found)
-    within = size.min() >= LOWEST_VOLTAGE and size.max() <= highest
+    within = size.min() >= lowest and size.max() <= highest
     return bool(within and np.abs(found - predicted).max() < LARGEST_CORRECTION)

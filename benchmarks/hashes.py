@@ -85,7 +85,9 @@ def largest_difference(now: np.ndarray, before: np.ndarray) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("folders", nargs="*", type=Path, default=[EXAMPLES])
     parser.add_argument("--keep", type=Path, metavar="FILE.npz")
     parser.add_argument("--compare", type=Path, metavar="FILE.npz")

@@ -20,8 +20,8 @@ import scipy
 
 import tpss
 from tpss.original.least_squares import advance_by_least_squares
-from tpss.simulation.advance import advance
-from tpss.simulation.run import advance_to_end, run_of
+from tpss.run.run import advance_to_end, run_of
+from tpss.step.advance import advance
 
 CLOCKS = {"equations": advance, "least-squares": advance_by_least_squares}
 EXAMPLE = Path(__file__).parents[1] / "examples" / "thesis_3_3.toml"

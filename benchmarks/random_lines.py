@@ -6,14 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from tpss.kernel import blank_records, kernel
-from tpss.model.trains import build_machine, build_train_types
-from tpss.physics.adhesion import DRY, adhesion_limit
-from tpss.physics.locomotive import TRAIN_TYPE, note_cap, prove_free_band, take_speed
-from tpss.powerflow.chain import place_trains, sort_by_position
-from tpss.powerflow.network import SOURCE, Flow, Loads, Network, assemble, new_flow
+from tpss.kernel import kernel
+from tpss.model.trains import build_train_types
+from tpss.numerics.series import SCRATCH_SHAPE
+from tpss.physics.adhesion import Rail, adhesion_limit
+from tpss.powerflow.network import (
+    BranchPart,
+    Flow,
+    Loads,
+    Network,
+    SectionPart,
+    assemble,
+    new_flow,
+)
+from tpss.powerflow.placing import locate_trains, measure_pieces
+from tpss.powerflow.system import system
 from tpss.scenario.rolling_stock import Train
-from tpss.simulation.state import TRAIN
+from tpss.sources.kinds import Source, SourceKind
+from tpss.vehicle import train as train_records
+from tpss.vehicle.demand import certify_free_band, update_cap_terms, update_speed_terms
+from tpss.vehicle.train_type import TrainType
 
 Random = np.random.Generator
 
@@ -27,7 +39,8 @@ LOCOMOTIVES, POINTS = build_train_types(
         Train(model=MODEL, tractive_effort=LIMITS, power_factor=0.95),
     ]
 )
-MACHINE = build_machine()
+SCRATCH = np.zeros(SCRATCH_SHAPE)
+SYSTEM = system(15e3, 16.5e3, 10e6, 16.7, 0.5, 1.2)
 CATENARIES = {
     # Impedance [ohm/m], susceptance [S/m], and connection impedance [ohm].
     "BT": (complex(0.21, 0.20) * 1e-3, 0.0, 0j),
@@ -63,23 +76,24 @@ def moved(rng: Random, line: Line) -> Line:
     """The line a step later: all trains a little further, a few with quite another load."""
     trains, types = line.loads.trains.copy(), line.loads.types.copy()
     end_m = line.network.sections.end_m[-1]
-    trains.position_m = np.clip(trains.position_m + rng.uniform(0.0, 60.0, trains.size), 0.0, end_m)
-    trains.speed_m_s = np.clip(trains.speed_m_s + rng.uniform(-1.0, 1.0, trains.size), 0.0, None)
+    motion = trains.motion
+    motion.position_m = np.clip(motion.position_m + rng.uniform(0.0, 60.0, trains.size), 0.0, end_m)
+    motion.speed_m_s = np.clip(motion.speed_m_s + rng.uniform(-1.0, 1.0, trains.size), 0.0, None)
     factor = rng.uniform(0.9, 1.1, trains.size)
     others = rng.random(trains.size) < OTHER_LOAD
     factor[others] = rng.uniform(0.0, 2.0, others.sum())
-    trains.force_cap_n *= factor
+    trains.demand.force_cap_n *= factor
     types.auxiliary_power_w *= factor
     types.auxiliary_reactive_power_var *= factor
-    prepare(trains, types, MACHINE, POINTS)
+    prepare(trains, types, SCRATCH, POINTS)
     return put_on_line(line.network, line.loads._replace(trains=trains, types=types))
 
 
 def put_on_line(network: Network, loads: Loads) -> Line:
     count = loads.trains.size
     flow = new_flow(network, count)
-    sort_by_position(flow.standing, count, loads.trains)
-    place_trains(count, loads.trains, network, flow)
+    locate_trains(count, loads.trains, network, flow)
+    measure_pieces(count, network, flow)
     return Line(network, loads, flow)
 
 
@@ -97,37 +111,37 @@ def random_network(rng: Random, length_m: float) -> Network:
     if connection:
         for m in stations:
             feeding[m], n_nodes = n_nodes, n_nodes + 1
-            branches.append((feeding[m], node[m], connection))
+            branches.append(BranchPart(feeding[m], node[m], connection))
     before: tuple[float, int] | None = None
     for m in sorted([*stations, *transformers]) if high_voltage else []:
         upper, n_nodes = n_nodes, n_nodes + 1
         ohm = (
             TRANSFORMERS_OHM["station"] if m in stations else TRANSFORMERS_OHM["line"] + connection
         )
-        branches.append((feeding[m], upper, ohm))
+        branches.append(BranchPart(feeding[m], upper, ohm))
         if before is not None:
-            branches.append((before[1], upper, HIGH_VOLTAGE_OHM_PER_M * (m - before[0])))
+            ohm = HIGH_VOLTAGE_OHM_PER_M * (m - before[0])
+            branches.append(BranchPart(before[1], upper, ohm))
         before = (m, upper)
     sections = [
-        (node[a], node[b], a, b, per_m, susceptance)
+        SectionPart(node[a], node[b], a, b, per_m, susceptance)
         for a, b in zip(points, points[1:], strict=False)
     ]
-    return assemble(
-        n_nodes, sections, branches, random_sources(rng, [feeding[m] for m in stations])
-    )
+    sources = random_sources(rng, [feeding[m] for m in stations])
+    return assemble(n_nodes, sections, branches, sources, SYSTEM)
 
 
 def random_sources(rng: Random, nodes: list[int]) -> Any:
     """All stations with the converter law, or all of them ideal."""
-    rows = blank_records(len(nodes), SOURCE)
-    rows.node = nodes
-    rows.no_load_voltage_v = rng.uniform(15_500.0, 17_000.0)
-    rows.motor_voltage_v = 16_500.0
+    rows = Source.blank(len(nodes))
+    rows.node, rows.kind, law = nodes, SourceKind.CONVERTER, rows.converter
+    law.no_load_voltage_v = rng.uniform(15_500.0, 17_000.0)
+    law.motor_voltage_v = 16_500.0
     rows.installed = rng.integers(1, 7, len(nodes))
     if rng.random() < 0.7:
-        rows.droop_v_per_var = 50e-6
-        rows.generator_reactance_ohm = 0.53 * 16.5**2 / 10.0
-        rows.motor_reactance_ohm = 0.49 * 16.5**2 / 10.7
+        law.droop_v_per_var = 50e-6
+        law.generator_reactance_ohm = 0.53 * 16.5**2 / 10.0
+        law.motor_reactance_ohm = 0.49 * 16.5**2 / 10.7
     return rows
 
 
@@ -135,11 +149,11 @@ def random_loads(rng: Random, network: Network) -> Loads:
     """Trains that draw a constant P and Q, locomotives, or some of both."""
     count = int(rng.integers(1, MOST_TRAINS + 1))
     share = rng.choice([0.0, 0.5, 1.0])
-    types, trains = blank_records(count, TRAIN_TYPE), blank_records(count, TRAIN)
+    types, trains = TrainType.blank(count), train_records.Train.blank(count)
     trains.train_type = np.arange(count)
-    trains.position_m = random_places(rng, network, count)
-    trains.mean_speed_weight_s = rng.choice([0.0, 1.5])
-    trains.voltage_v = 15_000.0
+    trains.motion.position_m = random_places(rng, network, count)
+    trains.demand.mean_speed_weight_s = rng.choice([0.0, 1.5])
+    trains.demand.voltage_v = 15_000.0
     largest_w = 10.0 ** rng.uniform(5.8, 7.8)
     for k in range(count):
         if rng.random() < share:
@@ -147,8 +161,8 @@ def random_loads(rng: Random, network: Network) -> Loads:
             drive(rng, trains[k], types[k])
         else:
             types[k] = constant_load(rng.uniform(0.0, largest_w), rng.uniform(-0.3, 0.8))
-    prepare(trains, types, MACHINE, POINTS)
-    return Loads(trains, types, MACHINE)
+    prepare(trains, types, SCRATCH, POINTS)
+    return Loads(trains, types, SCRATCH)
 
 
 def random_places(rng: Random, network: Network, count: int) -> Any:
@@ -171,20 +185,20 @@ def constant_load(active_w: float, reactive_share: float) -> Any:
 
 def drive(rng: Random, train: Any, kind: Any) -> None:
     """Speed, gradient and wanted force of a locomotive; half of them want all that they can get."""
-    train.speed_m_s = rng.uniform(0.0, kind.highest_speed_m_s)
-    train.resistance_n = rng.uniform(0.0, 250e3)
-    adhesion = adhesion_limit(kind.adhesive_mass_kg, train.speed_m_s, DRY)
-    train.adhesion_n = adhesion
-    train.force_cap_n = adhesion * min(1.0, rng.uniform(0.0, 2.0))
-    train.driven_share = 1.0
+    demand, speed_m_s = train.demand, rng.uniform(0.0, kind.highest_speed_m_s)
+    train.motion.speed_m_s = speed_m_s
+    demand.resistance_n = rng.uniform(0.0, 250e3)
+    demand.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed_m_s, Rail.DRY)
+    demand.force_cap_n = demand.adhesion_n * min(1.0, rng.uniform(0.0, 2.0))
+    demand.driven_share = 1.0
 
 
 @kernel
-def prepare(trains: Any, types: Any, machine: Any, points: Any) -> None:
+def prepare(trains: Any, types: Any, scratch: Any, points: Any) -> None:
     """What stays fixed of all trains while they are solved, as the clock prepares it."""
     for k in range(trains.size):
         train, kind = trains[k], types[trains[k].train_type]
-        train.taken_speed_m_s = -1.0
-        take_speed(train.voltage_v, kind, train, machine[0], points)
-        prove_free_band(kind, train)
-        note_cap(kind, train)
+        train.demand.speed_m_s = -1.0
+        update_speed_terms(train.motion.speed_m_s, kind, train.demand, points, scratch)
+        certify_free_band(kind, train.demand)
+        update_cap_terms(kind, train.demand)

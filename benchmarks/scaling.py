@@ -15,7 +15,8 @@ import numpy as np
 import tpss
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.simulation.run import advance_to_end, begin, compile_kernels, run_of
+from tpss.run.kernels import make_ready
+from tpss.run.run import advance_to_end, begin, run_of
 
 from report import FIGURES, arguments, caption, deliver, machine, stay_on_one_core, table
 
@@ -134,7 +135,7 @@ def measure(stations: int, transformers: int, trains: int, runs: int) -> Point:
     """Median over some runs of what the summary of a result gives as ``simulation_s``."""
     case = scenario(stations, transformers, trains)
     model, _ = build_model(case)
-    compile_kernels(model)
+    make_ready(model)
     start = begin(model, build_services(case, model), STEPS)
     times = []
     for _ in range(runs):

@@ -20,10 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.newton import SOLVED as NEWTON_SOLVED
-from tpss.powerflow.newton import newton
+from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.solve import solve
 
 from continuation import Complexes, Equations, carry
@@ -87,7 +85,7 @@ class Tally:
 def voltages(line: Line) -> Complexes:
     """Of the fixed nodes, then of the trains along the line. [p.u.]"""
     found = np.concatenate([line.flow.nodes.voltage_v, line.flow.standing.voltage_v])
-    return found / BASE_VOLTAGE_V
+    return found / line.network.system.base_voltage_v
 
 
 def judge(line: Line, share: float, carried: float, expected: Complexes) -> str:
@@ -122,13 +120,13 @@ def scatter(rng: Random, line: Line) -> None:
         angle = rng.uniform(-widest, widest, count)
         return rng.uniform(low, high, count) * np.exp(1j * angle)
 
-    nodes.voltage_v = BASE_VOLTAGE_V * any_phasor(0.1, 1.2, nodes.size, 1.0)
+    nodes.voltage_v = line.network.system.base_voltage_v * any_phasor(0.1, 1.2, nodes.size, 1.0)
     sections.current_a = any_phasor(0.0, 2000.0, sections.size, np.pi)
 
 
 def set_state(line: Line, voltage: Complexes) -> None:
     """Put a line's state to a solution, given by all of its voltages."""
-    flow, volts = line.flow, BASE_VOLTAGE_V * voltage
+    flow, volts = line.flow, line.network.system.base_voltage_v * voltage
     flow.nodes.voltage_v = volts[: flow.nodes.size]
     for section, found in zip(line.network.sections, flow.sections, strict=True):
         beside, length_m = section.end_node, found.closing_m
@@ -154,7 +152,7 @@ def from_the_lower_branch(rng: Random, line: Line, carried: float) -> tuple[str,
         return None
     set_state(line, lower)
     status, passes = newton(share, WARM, line.network, line.flow, line.loads)
-    if status != NEWTON_SOLVED:
+    if status != Solution.SOLVED:
         return REFUSED, passes
     back = np.abs(voltages(line) - upper).max() < SAME_VOLTAGE_AT_THE_END
     return SOLVED if back else "other branch", passes

@@ -16,6 +16,17 @@ def central_difference(function: Callable[[float], float], at: float, reach: flo
     return (function(at + reach) - function(at - reach)) / (2.0 * reach)
 
 
+def pair_by_differences(
+    function: Callable[[complex], complex], at: complex, reach: float
+) -> tuple[complex, complex]:
+    """Derivatives over z and over its conjugate, by differences along both axes."""
+    along, across = (
+        (function(at + reach * unit) - function(at - reach * unit)) / (2.0 * reach)
+        for unit in (1.0, 1j)
+    )
+    return (along - 1j * across) / 2.0, (along + 1j * across) / 2.0
+
+
 def climb(position_m: float, way_m: float, from_m: Array, gradient: Array) -> float:
     """Altitude difference over a way: each stair's gradient times the part of the way on it."""
     begins = np.concatenate([[-math.inf], from_m[1:]])

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tpss.kernel import kernels_are_compiled, plain
+from tpss.kernel import plain
 
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -26,13 +26,15 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile the kernels once, before the processes start that would each do so."""
-    if config.option.tx and not hasattr(config, "workerinput") and not kernels_are_compiled():
+    if config.option.tx and not hasattr(config, "workerinput"):
         import tpss
+        from tpss.run.kernels import are_ready
 
         from scenarios import short_line
 
-        print("Compiling the numerical kernels, once.", file=sys.stderr)
-        tpss.simulate(short_line())
+        if not are_ready():
+            print("Compiling the numerical kernels, once.", file=sys.stderr)
+            tpss.simulate(short_line())
 
 
 @pytest.fixture(params=["compiled", "plain"])

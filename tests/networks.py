@@ -1,16 +1,29 @@
 """Small supply networks with constant loads, for tests of the load flow."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine
-from tpss.physics.locomotive import TRAIN_TYPE
-from tpss.powerflow.chain import place_trains, sort_by_position
-from tpss.powerflow.network import SOURCE, Flow, Loads, Network, assemble, new_flow
-from tpss.simulation.state import TRAIN
+from tpss.numerics.series import SCRATCH_SHAPE
+from tpss.powerflow.network import (
+    BranchPart,
+    Flow,
+    Loads,
+    Network,
+    SectionPart,
+    assemble,
+    new_flow,
+)
+from tpss.powerflow.placing import locate_trains, measure_pieces
+from tpss.powerflow.system import system
+from tpss.record import Records
+from tpss.sources.converter import ConverterLaw
+from tpss.sources.kinds import Source, SourceKind
+from tpss.vehicle.train import Train
+from tpss.vehicle.train_type import TrainType
+
+SYSTEM = system(15e3, 16.5e3, 10e6, 16.7, 0.5, 1.2)
+"""15 kV, 16.7 Hz, with the base quantities of the thesis."""
 
 BT = complex(0.21, 0.20) * 1e-3
 STIFF = {
@@ -47,37 +60,56 @@ class Case:
         return nodes.voltage_v * nodes.leaving_current_a.conj()
 
 
-def sources(*kinds: tuple[int, dict[str, float]]) -> np.recarray:
-    """Records of sources from pairs of node and parameters."""
-    rows = blank_records(len(kinds), SOURCE)
-    for row, (node, parameters) in zip(rows, kinds, strict=True):
-        row.node = node
-        for name, value in parameters.items():
-            row[name] = value
-    return rows
+def network_of(
+    n_nodes: int, sections: list[tuple], branches: list[tuple], sources: Records[Source]
+) -> Network:
+    """Network of the 15 kV system from plain tuples."""
+    return assemble(
+        n_nodes,
+        [SectionPart(*each) for each in sections],
+        [BranchPart(*each) for each in branches],
+        sources,
+        SYSTEM,
+    )
+
+
+def sources(*kinds: tuple[int, dict[str, float]]) -> Records[Source]:
+    """Converter stations from pairs of node and parameters; what is not given is 0."""
+    rows = []
+    for node, given in kinds:
+        law = {name: given.get(name, 0.0) for name in ConverterLaw.dtype.names}
+        rows.append(
+            Source.row(
+                node=node,
+                kind=SourceKind.CONVERTER,
+                installed=given["installed"],
+                controlled=False,
+                rating_va=given["rating_va"],
+                converter=ConverterLaw.row(**law),
+            )
+        )
+    return Source.array(rows)
 
 
 def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     """Trains that draw the same power at any voltage."""
-    types = blank_records(len(powers_va), TRAIN_TYPE)
+    types = TrainType.blank(len(powers_va))
     types.inertia_kg, types.slip_factor = 1.0, 1.0
-    types.filter_reactance_ohm = math.inf
     types.auxiliary_power_w = np.real(powers_va)
     types.auxiliary_reactive_power_var = np.imag(powers_va)
-    trains = blank_records(len(powers_va), TRAIN)
+    trains = Train.blank(len(powers_va))
     trains.train_type = np.arange(len(powers_va))
-    trains.position_m = positions_m
-    trains.per_efficiency = 1.0
-    return Loads(trains, types, build_machine())
+    trains.motion.position_m = positions_m
+    trains.demand.per_efficiency = 1.0
+    return Loads(trains, types, np.zeros(SCRATCH_SHAPE))
 
 
 def place(network: Network, loads: Loads) -> Case:
     """Put the trains of `loads` onto the line."""
     count = loads.trains.size
     flow = new_flow(network, count)
-    flow.standing.train = np.arange(count)
-    sort_by_position(flow.standing, count, loads.trains)
-    place_trains(count, loads.trains, network, flow)
+    locate_trains(count, loads.trains, network, flow)
+    measure_pieces(count, network, flow)
     return Case(network, flow, loads)
 
 
@@ -86,7 +118,6 @@ def simple_line(
     impedance: complex = BT, susceptance: float = 0.0,
 ) -> Case:  # fmt: skip
     """A line of one section with a source at its start, and at its end if a second one is given."""
-    network = assemble(
-        2, [(0, 1, 0.0, length_m, impedance, susceptance)], [], sources(*enumerate(ends))
-    )
+    section = (0, 1, 0.0, length_m, impedance, susceptance)
+    network = network_of(2, [section], [], sources(*enumerate(ends)))
     return place(network, constant_loads(positions_m, powers_va))

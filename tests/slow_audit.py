@@ -13,18 +13,13 @@ import numpy.typing as npt
 
 import tpss
 from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V, GRAVITY_M_S2
+from tpss.driving.data import Braking, Driver
+from tpss.physics.constants import GRAVITY_M_S2
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network
-from tpss.simulation.run import Outcome, advance_to_end, outcome_of, run_of
-from tpss.simulation.state import (
-    AGGRESSIVE,
-    STATE_ARRIVED,
-    STATE_BRAKING,
-    STATE_COASTING,
-    STATE_MOTORING,
-    WITHIN_STEP,
-    Model,
-)
+from tpss.run.run import Outcome, advance_to_end, outcome_of, run_of
+from tpss.sources.kinds import SourceKind
+from tpss.step.model import Model
+from tpss.step.state import TrainState
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -73,7 +68,7 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     figures: dict[str, float] = {
         "power_mismatch_va": power_mismatch_va(outcome, model.network),
         "converter_residual": converter_residual(outcome, model.network),
-        "network_balance": network_balance(outcome, model.options.step_s),
+        "network_balance": network_balance(outcome, model),
         "traction_balance": traction_balance(outcome, model),
         "force_balance": force_balance(outcome, model),
         "motion_error_m": motion_error_m(outcome, model),
@@ -81,7 +76,7 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     }
     lowest = float(voltages.min()) if voltages.size else None
     highest = float(voltages.max()) if voltages.size else None
-    return judge(figures, lowest, highest, limits_of(model))
+    return judge(figures, lowest, highest, limits_of(model), model.network.system)
 
 
 def phasors(rows: Any, place: str) -> Complexes:
@@ -127,7 +122,7 @@ def power_mismatch_va(outcome: Outcome, network: Network) -> float:
         stations["station_active_power"] + 1j * stations["station_reactive_power"]
     )
     on_line = outcome.recording.train_state[rows] >= 0
-    on_line &= outcome.recording.train_state[rows] != STATE_ARRIVED
+    on_line &= outcome.recording.train_state[rows] != TrainState.ARRIVED
     drawn = trains["active_power"] + 1j * trains["reactive_power"]
     return max(
         _largest(node_v * leaving_a.conj() - fed),
@@ -177,17 +172,30 @@ def _contact_line_currents(
 
 
 def converter_residual(outcome: Outcome, network: Network) -> float:
-    """Largest residual of the converters' equations, voltage in p.u. and angle in rad.
+    """Largest distance of a station's voltage from the phasor that its law asks for. [p.u.]"""
+    rows = slice(0, outcome.steps)
+    stations, nodes = outcome.recording.stations[rows], outcome.recording.nodes[rows]
+    sources = network.sources
+    p, q = stations["station_active_power"], stations["station_reactive_power"]
+    n, node_v = stations["active_converters"], phasors(nodes, "node")[:, sources.node]
+    asked_v = np.empty_like(node_v)
+    for kind, phasor in (
+        (SourceKind.CONVERTER, converter_phasor),
+        (SourceKind.GRID, grid_phasor),
+    ):
+        own = sources.kind == kind
+        asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
+    return _largest((node_v - asked_v) / network.system.base_voltage_v)
+
+
+def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any) -> Complexes:
+    """Voltage and angle that converters ask for, as a phasor. [V]
 
     References
     ----------
     [Boullanger2009]_, eq. (2.1)-(2.4).
     """
-    rows = slice(0, outcome.steps)
-    stations, nodes = outcome.recording.stations[rows], outcome.recording.nodes[rows]
-    law = network.sources
-    p, q = stations["station_active_power"], stations["station_reactive_power"]
-    n = stations["active_converters"]
+    law = sources.converter
     voltage = law.no_load_voltage_v - law.droop_v_per_var * q / n
     square = law.motor_voltage_v**2
     q50 = law.grid_reactive_power_var
@@ -196,22 +204,26 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     motor = np.arctan(x_motor * p / (square + x_motor * q50)) / 3
     generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
     angle = law.grid_angle_rad - grid - motor - generator
-    node_v = phasors(nodes, "node")[:, law.node]
-    return max(
-        _largest((np.abs(node_v) - voltage) / BASE_VOLTAGE_V),
-        _largest(np.angle(node_v) - angle),
-        key=_nan_is_largest,
-    )
+    return np.asarray(voltage * np.exp(1j * angle))
 
 
-def network_balance(outcome: Outcome, step_s: float) -> float:
+def grid_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any) -> Complexes:
+    """Voltage behind the impedances of grid and transformers, at the current that is fed. [V]"""
+    law = sources.grid
+    fed_a = np.conj((p + 1j * q) / node_v)
+    impedance_ohm = law.grid_impedance_ohm + law.transformer_impedance_ohm / n
+    return np.asarray(law.no_load_voltage_v - impedance_ohm * fed_a)
+
+
+def network_balance(outcome: Outcome, model: Model) -> float:
     """Relative difference between the stations' energy and that of trains and losses. [1]"""
-    recording = outcome.recording
+    recording, step_s = outcome.recording, model.options.step_s
     fed = np.nansum(recording.stations["station_active_power"]) * step_s
     drawn = np.nansum(recording.trains["active_power"]) * step_s
     lost = np.nansum(recording.network_losses) * step_s
     # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
-    least = TOLERANCE * BASE_POWER_VA / LIMITS["network_balance"] * step_s * max(outcome.steps, 1)
+    mismatch_w = TOLERANCE * model.network.system.base_power_va
+    least = mismatch_w / LIMITS["network_balance"] * step_s * max(outcome.steps, 1)
     return float(abs(fed - drawn - lost) / max(abs(fed), least))
 
 
@@ -255,11 +267,11 @@ def _efficiency(speed: Floats, kind: Any, points: Any) -> Floats:
 
 def _curve(x: Floats, points: Any) -> Floats:
     """Values of a curve, written as Hermite's basis functions; beyond its ends the outer ones."""
-    x = np.clip(x, points.at[0], points.at[-1])
-    k = np.clip(np.searchsorted(points.at, x, side="right") - 1, 0, points.size - 2)
+    x = np.clip(x, points.x[0], points.x[-1])
+    k = np.clip(np.searchsorted(points.x, x, side="right") - 1, 0, points.size - 2)
     before, after = points[k], points[k + 1]
-    step = after.at - before.at
-    t = (x - before.at) / step
+    step = after.x - before.x
+    t = (x - before.x) / step
     values = before.value * (1 + 2 * t) * (1 - t) ** 2 + after.value * t**2 * (3 - 2 * t)
     slopes = before.slope * t * (1 - t) ** 2 - after.slope * t**2 * (1 - t)
     return np.asarray(values + step * slopes, dtype=float)
@@ -278,10 +290,14 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     rest = trains["tractive_force"] - trains["braking_force"]
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
     inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
-    if model.options.driver == AGGRESSIVE:
-        inertia_kg = np.where(state == STATE_COASTING, kind.coasting_inertia_kg, inertia_kg)
+    if model.options.driver == Driver.AGGRESSIVE:
+        inertia_kg = np.where(state == TrainState.COASTING, kind.coasting_inertia_kg, inertia_kg)
     rest = rest - inertia_kg * trains["acceleration"]
-    driven = (state == STATE_MOTORING) | (state == STATE_COASTING) | (state == STATE_BRAKING)
+    driven = (
+        (state == TrainState.MOTORING)
+        | (state == TrainState.COASTING)
+        | (state == TrainState.BRAKING)
+    )
     return _largest((rest / (kind.mass_kg * GRAVITY_M_S2))[driven])
 
 
@@ -298,11 +314,11 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
     before, after = trains[:-1], trains[1:]
     # Present at both instants; positions that are not numbers stay, and fail.
     both = (outcome.recording.train_state[:-1] >= 0) & (
-        outcome.recording.train_state[:-1] != STATE_ARRIVED
+        outcome.recording.train_state[:-1] != TrainState.ARRIVED
     )
     way = after["position"] - before["position"]
     way = way - step_s * (before["speed"] + after["speed"]) / 2.0
-    if model.options.braking == WITHIN_STEP:
+    if model.options.braking == Braking.WITHIN_STEP:
         way = braking_motion_error_m(before, after, _kinds(outcome, model), step_s)
     speed = after["speed"] - before["speed"] - step_s * before["acceleration"]
     return max(_largest(way[both]), _largest(speed[both]) * step_s, key=_nan_is_largest)
@@ -316,9 +332,9 @@ def braking_work(before: Any, after: Any, kind: Any, step_s: float) -> Floats:
 
     Parameters
     ----------
-    before, after : records of `TRAIN_ROW`, shape (steps, trains)
+    before, after : records of `TrainRow`, shape (steps, trains)
         At the instants before and after each step.
-    kind : records of `TRAIN_TYPE`, shape (trains,)
+    kind : records of `TrainType`, shape (trains,)
     step_s : float
         Time step. [s]
     """

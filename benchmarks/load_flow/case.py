@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 import tpss
 from tpss.model import build_model
-from tpss.physics.constants import BASE_POWER_VA, BASE_VOLTAGE_V
 from tpss.powerflow.network import Network
 
 Floats = npt.NDArray[np.float64]
@@ -37,6 +36,7 @@ SWING = 0.4
 FASTEST_TURN = 0.5
 """Of its to and fro in a step. [rad]"""
 
+BASE_VOLTAGE_V, BASE_POWER_VA = 16.5e3, 10e6
 BASE_IMPEDANCE_OHM = BASE_VOLTAGE_V**2 / BASE_POWER_VA
 TOLERANCE = 1e-8
 """Power mismatch of a solution, in per unit of `BASE_POWER_VA`; a simulation with TPSS takes 1e-10."""
@@ -111,6 +111,8 @@ def build_network() -> Network:
     """The network with its converter stations."""
     changes = {"supply.high_voltage_line.transformers_km": TRANSFORMERS_KM}
     model, _ = build_model(tpss.load_scenario(EXAMPLE, changes))
+    system = model.network.system
+    assert (system.base_voltage_v, system.base_power_va) == (BASE_VOLTAGE_V, BASE_POWER_VA)
     return model.network
 
 
@@ -118,7 +120,7 @@ def ideal(network: Network) -> Network:
     """The same network with ideal sources in the converters' place."""
     sources = network.sources.copy()
     for name in ("droop_v_per_var", "generator_reactance_ohm", "motor_reactance_ohm"):
-        sources[name] = 0.0
+        sources["converter"][name] = 0.0
     return network._replace(sources=sources)
 
 

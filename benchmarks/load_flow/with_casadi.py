@@ -9,9 +9,8 @@ from typing import Any
 import casadi
 import numpy as np
 
-from tpss.physics.constants import BASE_POWER_VA
-
 from load_flow.case import (
+    BASE_POWER_VA,
     MOST_ITERATIONS,
     TOLERANCE,
     Branches,

@@ -8,18 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from tpss.kernel import blank_records, kernel
-from tpss.model.trains import build_machine
-from tpss.physics.constants import BASE_VOLTAGE_V
-from tpss.physics.locomotive import TRAIN_TYPE
-from tpss.physics.reactive_power import POWER_FACTOR
-from tpss.powerflow.chain import WARM, place_trains
+from tpss.kernel import kernel
+from tpss.numerics.series import SCRATCH_SHAPE
+from tpss.physics.reactive_power import ReactiveModel
+from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Flow, Loads, Network, new_flow
-from tpss.powerflow.newton import SOLVED, newton
+from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember, start_flat
-from tpss.simulation.state import TRAIN
+from tpss.vehicle.train import Train
+from tpss.vehicle.train_type import TrainType
 
-from load_flow.case import TOLERANCE, Case, Complexes, Floats, Run, build_network
+from load_flow.case import BASE_VOLTAGE_V, TOLERANCE, Case, Complexes, Floats, Run, build_network
 
 
 @kernel
@@ -27,9 +27,9 @@ def take_step(step: int, position_m: Floats, power_va: Complexes, loads: Loads) 
     """Put all trains to their places in a step, with their loads of that step."""
     for k in range(loads.trains.size):
         train = loads.trains[k]
-        train.position_m = position_m[step, k]
-        train.cap_power_w = power_va[step, k].real
-        train.reactive_ratio = power_va[step, k].imag / power_va[step, k].real
+        train.motion.position_m = position_m[step, k]
+        train.demand.cap_power_w = power_va[step, k].real
+        train.demand.reactive_ratio = power_va[step, k].imag / power_va[step, k].real
 
 
 @kernel
@@ -55,10 +55,11 @@ def solve_steps(
     total = 0
     for step in range(position_m.shape[0]):
         take_step(step, position_m, power_va, loads)
-        place_trains(loads.trains.size, loads.trains, network, flow)
+        locate_trains(loads.trains.size, loads.trains, network, flow)
+        measure_pieces(loads.trains.size, network, flow)
         predict(flow)
         status, passes = newton(1.0, WARM, network, flow, loads)
-        if status != SOLVED:
+        if status != Solution.SOLVED:
             return -1
         total += passes
         remember(False, flow)
@@ -68,16 +69,16 @@ def solve_steps(
 
 def constant_loads(trains: int) -> Loads:
     """Trains that nothing but their driver limits, so that each draws a power of its own."""
-    kind, rows = blank_records(1, TRAIN_TYPE), blank_records(trains, TRAIN)
-    kind.reactive_model, kind.filter_reactance_ohm = POWER_FACTOR, math.inf
-    rows.per_efficiency, rows.force_cap_n, rows.free_band_v = 1.0, 1.0, math.inf
-    return Loads(rows, kind, build_machine())
+    kind, rows = TrainType.blank(1), Train.blank(trains)
+    kind.reactive_model, demand = ReactiveModel.POWER_FACTOR, rows.demand
+    demand.per_efficiency, demand.force_cap_n, demand.free_band_v = 1.0, 1.0, math.inf
+    return Loads(rows, kind, np.zeros(SCRATCH_SHAPE))
 
 
 def start(case: Case) -> tuple[Network, Flow, Loads]:
     """The state without load, which the first run of a loop begins from."""
     flow, loads = new_flow(case.network, case.trains), constant_loads(case.trains)
-    start_flat(flow)
+    start_flat(case.network, flow)
     remember_flat(flow)
     return case.network._replace(tolerance=TOLERANCE), flow, loads
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from markdown_pieces import table
 
-from tpss.simulation.recorded import RECORDED, Recorded
+from tpss.step.recorded import RECORDED, Recorded
 
 PAGE = Path(__file__).parents[1] / "nomenclature.md"
 PART = re.compile(r"(?<=<!-- `python docs/generate` -->\n\n).*?(?=\n\n<!-- end -->)", re.DOTALL)

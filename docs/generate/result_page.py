@@ -8,7 +8,8 @@ import numpy as np
 from markdown_pieces import code, described, prose, table
 
 import tpss
-from tpss.audit.verdict import LIMITS, Audit
+from tpss.audit.verdict import Audit, limits_of
+from tpss.model import build_model
 from tpss.results import tables
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "thesis_160km.toml"
@@ -149,7 +150,7 @@ def page() -> str:
         "`Result.summary` is a dictionary, and the content of `summary.json`.",
         described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
         AUDIT,
-        _audit(),
+        _audit(result.scenario),
     ]
     return "\n\n".join(blocks)
 
@@ -182,13 +183,13 @@ def _coordinates(result: tpss.Result) -> str:
     return table(("coordinate", "dimension", "unit", "meaning"), rows)
 
 
-def _audit() -> str:
-    """Table of the audit's figures from their docstring."""
-    text = inspect.getdoc(Audit) or ""
+def _audit(scenario: tpss.Scenario) -> str:
+    """Table of the audit's figures from their docstring, with their limits in a run of a scenario."""
+    limit_of, text = limits_of(build_model(scenario)[0]), inspect.getdoc(Audit) or ""
     figures = re.findall(r"^(\w[\w, ]*) : .*\n((?:    .*(?:\n|$))+)", text, re.MULTILINE)
     rows = []
     for names, meaning in figures:
-        limits = ", ".join(f"{LIMITS[name]:g}" for name in names.split(", ") if name in LIMITS)
+        limits = ", ".join(f"{limit_of[name]:g}" for name in names.split(", ") if name in limit_of)
         marked = ", ".join(code(name).replace('"', "") for name in names.split(", "))
         rows.append((marked, limits, prose(" ".join(meaning.split()))))
     rows.append(("`passed`", "", "Whether every figure is within its limit."))

@@ -10,14 +10,14 @@ import pytest
 
 from tpss import load_result
 from tpss.files import whole
-from tpss.simulation.run import Run
+from tpss.run.run import Run
 
 from conftest import EXAMPLES
 
 HEADWAY = EXAMPLES / "at_headway_3.toml"
 
 TELLS_OF_ITS_FIRST_STEPS = """
-from tpss.simulation import run
+from tpss.run import run
 advance_to = run.Run.advance_to
 def telling(self, step):
     advance_to(self, step)

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from tpss.physics.locomotive import DEMAND, TRAIN_TYPE
-from tpss.powerflow.network import SOURCE
+from tpss.sources.kinds import Source
+from tpss.vehicle.terms import Demand
+from tpss.vehicle.train_type import TrainType
 
 from scenarios import run
 
@@ -23,11 +24,11 @@ def table_after(words: str) -> list[dict[str, str]]:
 
 @pytest.mark.parametrize(
     ("words", "record"),
-    [("`TRAIN_TYPE`", TRAIN_TYPE), ("`DEMAND`", DEMAND), ("`SOURCE`", SOURCE)],
+    [("`TRAIN_TYPE`", TrainType), ("`DEMAND`", Demand), ("`SOURCE`", Source)],
     ids=["TRAIN_TYPE", "DEMAND", "SOURCE"],
 )
 def test_a_record_s_fields_are_those_of_its_table(words, record):
-    assert [row["name"] for row in table_after(words)] == list(record.names)
+    assert [row["name"] for row in table_after(words)] == list(record.dtype.names)
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from tpss.original.grid import lay_out
-from tpss.powerflow.network import assemble
 
-from networks import BT, STIFF, constant_loads, place, sources
+from networks import BT, STIFF, constant_loads, network_of, place, sources
 
 B = 1e-9  # susceptance. [S/m]
 
@@ -17,7 +16,7 @@ B = 1e-9  # susceptance. [S/m]
 @pytest.fixture
 def grid():
     sections = [(0, 1, 0.0, 10e3, BT, B), (1, 2, 10e3, 20e3, BT, B)]
-    network = assemble(3, sections, [(0, 2, 2 + 1j)], sources((0, STIFF)))
+    network = network_of(3, sections, [(0, 2, 2 + 1j)], sources((0, STIFF)))
     case = place(network, constant_loads([11e3, 4e3], [1e6, 1e6]))
     return lay_out(2, case.network, case.flow)
 

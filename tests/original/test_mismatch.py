@@ -72,7 +72,7 @@ def test_low_voltage_solution_within_the_plausible_band_is_refused():
         lay_out(1, case.network, case.flow),
         1,
         SimpleNamespace(network=case.network, types=loads.types),
-        SimpleNamespace(flow=case.flow, trains=loads.trains, machine=loads.machine),
+        SimpleNamespace(flow=case.flow, trains=loads.trains, scratch=loads.scratch),
     )
 
     def solution(voltage):

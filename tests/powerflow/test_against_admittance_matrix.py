@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
-from tpss.kernel import blank_records
-from tpss.physics.converter import terminal_voltage
-from tpss.powerflow.block_lu import find_pattern, solve_blocks
-from tpss.powerflow.network import BLOCK, NODE_FLOW, assemble
+from tpss.numerics.block_lu import Block, Unknown, find_pattern, solve_blocks
 from tpss.powerflow.solve import solve
+from tpss.sources.converter import terminal_voltage
 
 from continuation import admittance_matrix
-from networks import BT, ROTARY, constant_loads, place, sources
+from networks import BT, ROTARY, constant_loads, network_of, place, sources
 
 
 def random_ladder(rng, n_points, n_trains):
@@ -26,7 +24,7 @@ def random_ladder(rng, n_points, n_trains):
         (n_points + i, n_points + i + 1, (0.8e-6 + 1e-6j) * (points[i + 1] - points[i]))
         for i in range(n_points - 1)
     ]
-    network = assemble(
+    network = network_of(
         2 * n_points, sections, branches, sources((0, ROTARY), (n_points - 1, ROTARY))
     )
     positions = rng.uniform(100.0, 99.9e3, n_trains)
@@ -48,7 +46,9 @@ def solve_slowly(case):
         residual = power / 10e6
         residual[n:] += drawn / 10e6
         for s, node in enumerate(law.node):
-            u, direction, *_ = terminal_voltage(power[node].real, power[node].imag, 1.0, law[s])
+            u, direction, *_ = terminal_voltage(
+                power[node].real, power[node].imag, 1.0, law[s].converter
+            )
             residual[node] = (voltage[node] - u * direction) / 16_500.0
         return np.concatenate([residual.real, residual.imag])
 
@@ -76,7 +76,7 @@ def test_a_solution_takes_few_passes(seed):
     case = random_ladder(rng, 5, 8)
     _, passes = solve(False, case.network, case.flow, case.loads)
     assert passes <= 8
-    case.loads.trains.position_m += 20.0
+    case.loads.trains.motion.position_m += 20.0
     moved = place(case.network, case.loads)
     moved.flow.nodes[:], moved.flow.sections.current_a = (
         case.flow.nodes,
@@ -91,7 +91,7 @@ def test_block_elimination_equals_a_dense_solution():
     n, edges = 12, [(i, (i * 5 + 3) % 12) for i in range(12)] + [(i, i + 1) for i in range(11)]
     edges = [(i, j) for i, j in edges if i != j]
     pattern, place_of = find_pattern(n, edges)
-    blocks, nodes = blank_records(len(place_of), BLOCK), blank_records(n, NODE_FLOW)
+    blocks, nodes = Block.blank(len(place_of)), Unknown.blank(n)
     dense = np.zeros((2 * n, 2 * n))
     for i, j in [(i, i) for i in range(n)] + edges + [(j, i) for i, j in edges]:
         p, q = rng.normal(size=2) @ [1, 1j], rng.normal(size=2) @ [1, 1j]

@@ -76,7 +76,7 @@ def test_what_stations_feed_is_what_trains_draw_and_the_line_loses():
 
 def test_the_station_with_fewer_converters_takes_less():
     case = simple_line(100e3, [50e3], [6e6 + 3e6j], ROTARY, ROTARY)
-    case.flow.sources.converters = [2.0, 4.0]
+    case.flow.sources.running = [2.0, 4.0]
     solve(COLD, case.network, case.flow, case.loads)
     west, east = case.fed
     assert west.real < east.real

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.network import assemble
-from tpss.powerflow.newton import SOLVED, WRONG_BRANCH, newton
+from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.solve import solve
 
-from networks import BT, ROTARY, STIFF, constant_loads, place, simple_line, sources
+from networks import BT, ROTARY, STIFF, constant_loads, network_of, place, simple_line, sources
 from stress import COLLAPSED, run
 from stress import SOLVED as CARRIED
 
@@ -63,7 +62,7 @@ def test_the_root_beyond_the_turning_point_is_no_solution():
     case.flow.sections.current_a = (load / turned).conjugate()
     case.flow.nodes.voltage_v = [16_500.0, turned]
     status, _ = newton(1.0, WARM, case.network, case.flow, case.loads)
-    assert status == WRONG_BRANCH
+    assert status == Solution.WRONG_BRANCH
     share, _ = solve(True, case.network, case.flow, case.loads)
     assert share == 1.0
     assert abs(case.train_voltage[0]) == pytest.approx(high, rel=1e-9)
@@ -77,7 +76,7 @@ def test_stations_in_antiphase_are_no_solution():
     west, east = case.flow.nodes.voltage_v
     case.flow.sections.current_a = (west - east) / (BT * 2e3)
     status, _ = newton(1.0, WARM, case.network, case.flow, case.loads)
-    assert status != SOLVED
+    assert status != Solution.SOLVED
     share, _ = solve(True, case.network, case.flow, case.loads)
     assert share == 1.0
     assert np.abs(np.angle(case.flow.nodes.voltage_v)).max() < 0.1
@@ -89,7 +88,7 @@ def test_feeding_points_eight_metres_apart_are_solved():
     sections = [(0, 1, 0.0, 50e3, BT, 0.0), (1, 2, 50e3, 50_008.0, BT, 0.0)]
     branches = [(0, 3, 0.037 + 0.54j), (1, 4, 0.065 + 0.85j), (2, 5, 0.065 + 0.85j)]
     branches += [(3, 4, per_m * 50e3), (4, 5, per_m * 8.0)]
-    network = assemble(6, sections, branches, sources((0, ROTARY)))
+    network = network_of(6, sections, branches, sources((0, ROTARY)))
     for km in range(26, 46):
         case = place(network, constant_loads([1e3 * km], [2e6 + 1e6j]))
         share, passes = solve(False, case.network, case.flow, case.loads)

@@ -9,18 +9,16 @@ import numpy.typing as npt
 from tpss import Scenario
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.physics.constants import BASE_VOLTAGE_V
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Loads
-from tpss.powerflow.newton import HIGHEST_VOLTAGE, SOLVED, newton
+from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.solve import start_flat
-from tpss.simulation.advance import begin_step
-from tpss.simulation.coupling import settle
-from tpss.simulation.driver import decide
-from tpss.simulation.run import Run, trains_on_line
-from tpss.simulation.state import Model, State, sight_of
-from tpss.simulation.timetable import departing_trains
-from tpss.simulation.traffic import begin_plan, must_plan
+from tpss.run.run import Run, trains_on_line
+from tpss.run.services import departing_trains
+from tpss.step.advance import begin_step
+from tpss.step.coupling import decide, settle_all
+from tpss.step.model import Model, driving_data
+from tpss.step.state import State
 
 from benchmarks.continuation import Equations, carry
 
@@ -61,20 +59,13 @@ class Replay:
 def solve_step_slowly(count: int, model: Model, state: State) -> float:
     """As the clock does it, but every load flow begins without load; return the share carried."""
     while True:
-        decide(count, state.flow.standing, state.trains, sight_of(model))
+        decide(count, state.flow.standing, state.trains, driving_data(model))
         share = raise_loads(model, state)
         if share < 1.0:
             return share
-        planned = False
         for place in state.flow.standing[:count]:
-            train = state.trains[place.train]
-            train.voltage_v = abs(place.voltage_v)
-            settle(train, model)
-            if must_plan(train, model):
-                begin_plan(train, model)
-                train.decided = False
-                planned = True
-        if not planned:
+            state.trains[place.train].demand.voltage_v = abs(place.voltage_v)
+        if settle_all(count, model, state):
             return share
 
 
@@ -84,7 +75,7 @@ def raise_loads(model: Model, state: State) -> float:
     flow = state.flow
     standing = flow.standing[: flow.sections.end[-1]]
     voltage_v = np.concatenate([flow.nodes.voltage_v, standing.voltage_v])
-    if share < 1.0 and np.abs(voltage_v).max() > ALMOST * HIGHEST_VOLTAGE * BASE_VOLTAGE_V:
+    if share < 1.0 and np.abs(voltage_v).max() > ALMOST * model.network.system.highest_voltage_v:
         return raise_loads_beyond_the_band(share, standing, model, state)
     return share
 
@@ -95,26 +86,27 @@ def raise_loads_beyond_the_band(share: float, standing: Any, model: Model, state
     What filters feed into a weak line lifts the voltages most at some part of the load, and the whole of
     it may bring them back into the plausible band.
     """
-    loads = Loads(state.trains, model.types, model.machine)
+    loads = Loads(state.trains, model.types, state.scratch)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
     whole, voltage = carry(equations, highest=np.inf)
-    if whole < 1.0 or np.abs(voltage).max() > HIGHEST_VOLTAGE:
+    system = model.network.system
+    if whole < 1.0 or system.base_voltage_v * np.abs(voltage).max() > system.highest_voltage_v:
         return share
-    standing.voltage_v = BASE_VOLTAGE_V * voltage[equations.nodes :]
+    standing.voltage_v = system.base_voltage_v * voltage[equations.nodes :]
     return whole
 
 
 def raise_loads_within_the_band(model: Model, state: State) -> float:
     """Raise all loads little by little, while all voltages are plausible."""
     flow = state.flow
-    loads = Loads(state.trains, model.types, model.machine)
-    start_flat(flow)
+    loads = Loads(state.trains, model.types, state.scratch)
+    start_flat(model.network, flow)
     share, rise, start = 0.0, RISE, FLAT
     while share < 1.0 and rise > FINEST:
         before: list[Any] = [flow.nodes.voltage_v.copy(), flow.sections.current_a.copy()]
         target = min(1.0, share + rise)
         status, _ = newton(target, start, model.network, flow, loads)
-        if status == SOLVED:
+        if status == Solution.SOLVED:
             share, start = target, WARM
         else:
             flow.nodes.voltage_v, flow.sections.current_a = before

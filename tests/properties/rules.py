@@ -7,7 +7,7 @@ import pytest
 
 from tpss import Result, library
 from tpss.model.build import steps_of
-from tpss.simulation.state import STATE_ARRIVED, STATE_DWELLING
+from tpss.step.state import TrainState
 
 ROUNDING_M_S = 2e-9
 ROUNDING_M = 1e-6
@@ -29,7 +29,7 @@ def judge_values(result: Result) -> None:
     data = result.dataset
     steps = data.sizes["time"] - 1
     state = data.train_state.to_numpy()[:steps]
-    present, driven = state >= 0, (state >= 0) & (state != STATE_ARRIVED)
+    present, driven = state >= 0, (state >= 0) & (state != TrainState.ARRIVED)
     for name in set(data.data_vars) - {"train_state", "load_flow_passes"}:
         values = data[name].to_numpy()[:steps]
         if data[name].dims == ("time", "train"):
@@ -172,7 +172,7 @@ class Journey:
         That is what adhesion allows at its speed, and the machine at its voltage.
         """
         ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
-        for k in np.flatnonzero((self.state[:-1] >= 0) & (self.state[:-1] != STATE_DWELLING)):
+        for k in np.flatnonzero((self.state[:-1] >= 0) & (self.state[:-1] != TrainState.DWELLING)):
             limit = self.limit[np.searchsorted(self.limit_m, self.x[k], side="right") - 1]
             if abs(self.v[k + 1] - limit) < ROUNDING_M_S:
                 continue
@@ -211,5 +211,5 @@ class Journey:
                 continue
             assert stood.any(), f"{self.name} runs through its stop at {place} m"
             if left:
-                dwelled = int((self.state[stood] == STATE_DWELLING).sum())
+                dwelled = int((self.state[stood] == TrainState.DWELLING).sum())
                 assert dwelled == dwell, f"{self.name} dwells {dwelled} steps at {place} m"

@@ -184,7 +184,6 @@ MISSING = [
         "supply",
         "simulation.time_step_min",
         "line.length_km",
-        "supply.frequency_hz",
         "supply.catenary",
         f"{WEST}.position_km",
         f"{ENTRY}.from",

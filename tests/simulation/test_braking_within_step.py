@@ -25,7 +25,7 @@ import numpy as np
 import pytest
 
 import tpss
-from tpss.simulation.state import STATE_ARRIVED, STATE_BRAKING, STATE_DWELLING, STATE_MOTORING
+from tpss.step.state import TrainState
 
 from scenarios import gradients, journey, limits, phases, run, short_line, stops
 
@@ -107,9 +107,9 @@ def test_stops_are_met_to_a_nanometre_whatever_the_step(step_min):
 def test_a_dwell_begins_with_the_instant_after_the_stop():
     result = run({**step(0.3), **stops((10.0, 0.9))})
     way = journey(result)
-    assert (way.state[way.x == 10_000.0] == STATE_DWELLING).sum() == 3
+    assert (way.state[way.x == 10_000.0] == TrainState.DWELLING).sum() == 3
     train = result.dataset.sel(train="eastbound 1")
-    dwelling = (train.train_state == STATE_DWELLING).to_numpy()
+    dwelling = (train.train_state == TrainState.DWELLING).to_numpy()
     assert set(train.active_power.to_numpy()[dwelling]) == {151_500.0}
 
 
@@ -119,7 +119,7 @@ def test_the_time_of_arrival_is_that_within_the_step():
     trip = result.trips.set_index("train").loc[PLACED]
     assert trip.arrival_min * 60.0 == pytest.approx(39.804, abs=1e-3)
     assert trip.mean_speed_kmh == pytest.approx(500.0 / 39.804 * 3.6, rel=1e-4)
-    assert journey(result, PLACED).state[1] == STATE_ARRIVED
+    assert journey(result, PLACED).state[1] == TrainState.ARRIVED
 
 
 def test_trip_times_hardly_depend_on_the_step():
@@ -132,7 +132,7 @@ def test_a_train_brakes_fully_over_whole_steps_once_it_has_begun():
     """At steps of 3 s: 19.6 s with the brakes are a part, five or six whole steps, and a part."""
     result = run({**step(0.05), **stops((10.0, 1.0))})
     way = journey(result)
-    braking = np.flatnonzero((way.state == STATE_BRAKING) & (way.x < 10_000.0))
+    braking = np.flatnonzero((way.state == TrainState.BRAKING) & (way.x < 10_000.0))
     assert way.a[braking[1:-1]] == pytest.approx(-0.85, rel=1e-9)
     assert len(braking) in (7, 8)
     assert braking[-1] - braking[0] == len(braking) - 1
@@ -151,7 +151,7 @@ def test_a_train_on_its_braking_course_at_the_start_goes_on_with_it():
 def test_trains_already_running_are_taken_over_in_the_midst_of_their_course():
     """A headway after its departure the first of them brakes, with four steps of 3 s behind it."""
     way = journey(run({**step(0.05), **stops((10.0, 0.5))}))
-    begun = int(np.argmax(way.state == STATE_BRAKING))
+    begun = int(np.argmax(way.state == TrainState.BRAKING))
     headway = {"traffic.0.already_running": True, "traffic.0.headway_min": (begun + 4) * 0.05}
     result = run({**step(0.05), **headway, **stops((10.0, 0.5)), "simulation.duration_min": 2.0})
     taken_over = journey(result, PLACED)
@@ -200,7 +200,7 @@ def test_on_a_hill_steeper_than_the_brakes_the_train_is_driven_to_its_stop():
     result = run({**step(0.5), **weak, **stops((10.0, 1.0)), **gradients((0, 25))})
     way = journey(result)
     before = np.flatnonzero(way.x == 10_000.0)[0] - 1
-    assert way.state[before] == STATE_MOTORING
+    assert way.state[before] == TrainState.MOTORING
     assert way.braking[before] == 0.0
     assert way.a[before] >= -0.1
 
@@ -242,7 +242,7 @@ def test_a_train_holds_its_speed_before_it_brakes_to_a_lower_limit():
     assert float(found.tractive_force) == pytest.approx(28_207, abs=1.0)
     assert float(found.braking_force) == pytest.approx(198_658, abs=1.0)
     assert float(found.active_power) == pytest.approx(739_154, abs=2.0)
-    assert way.state[0] == STATE_BRAKING
+    assert way.state[0] == TrainState.BRAKING
 
 
 @pytest.mark.parametrize("step_min", STEPS_MIN)

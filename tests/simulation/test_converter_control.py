@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tpss.simulation.converter_control import converters_needed, station_loading
+from tpss.step.converter_control import converters_needed
 
 from scenarios import run
 
@@ -22,11 +22,6 @@ def test_as_many_converters_run_as_carry_the_mean_at_85_percent(
     as_run, mean, running, installed, expected
 ):
     assert as_run(converters_needed)(mean, float(running), installed) == expected
-
-
-def test_loading_is_apparent_power_over_the_rating_of_running_converters(as_run):
-    """|12 + j9| MVA = 15 MVA over 2 · 10 MVA = 0.75."""
-    assert as_run(station_loading)(12e6 + 9e6j, 2.0, 10e6) == pytest.approx(0.75)
 
 
 def test_control_acts_at_the_first_instant_at_or_past_each_third_minute():

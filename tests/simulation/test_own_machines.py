@@ -13,10 +13,9 @@ import math
 import numpy as np
 import pytest
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine
-from tpss.physics.series import ROOM, SERIES
-from tpss.physics.tractive_effort import motor_force_series
+from tpss.numerics.series import SCRATCH_SHAPE, Series
+from tpss.vehicle.effort.network import motor_force_series
+from vehicles import NETWORKS
 
 from conftest import plain
 from scenarios import run
@@ -147,7 +146,7 @@ def test_use_beyond_a_table_or_a_curve_is_counted():
 
 def sampled_network():
     """The Rc4's network around 1250 A as a dense table; below zero counts as 0."""
-    network, series = build_machine()[0].tractive_effort, blank_records(1, SERIES)[0]
+    network, series = NETWORKS.tractive_effort, Series.blank(1)[0]
     speeds, voltages = np.arange(0.0, 161.0, 2.5), np.arange(10.5, 16.6, 0.5)
     currents = np.arange(1050.0, 1301.0, 50.0)
     force_kn = np.zeros((currents.size, voltages.size, speeds.size))
@@ -155,7 +154,7 @@ def sampled_network():
         for k, speed in enumerate(speeds):
             for u, voltage in enumerate(voltages):
                 plain(motor_force_series)(
-                    speed / 3.6, voltage * 1e3, current, network, np.zeros(ROOM), series
+                    speed / 3.6, voltage * 1e3, current, network, np.zeros(SCRATCH_SHAPE), series
                 )
                 force_kn[c, u, k] = max(0.0, series.coefficient[0]) / 1e3
     return {"speed_kmh": speeds.tolist(), "voltage_kv": voltages.tolist(),

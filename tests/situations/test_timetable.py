@@ -13,9 +13,10 @@ import pytest
 
 from tpss.model import build_model
 from tpss.model.traffic import build_services
-from tpss.simulation.run import Run
-from tpss.simulation.state import JOURNEY
-from tpss.simulation.timetable import Train, departing_trains
+from tpss.run.run import Run
+from tpss.run.services import ScheduledTrain, departing_trains
+from tpss.step.model import RunControl
+from tpss.vehicle.train import Motion, Phase, Plan
 
 from scenarios import journey, limits, phases, run, short_line, stops
 
@@ -37,7 +38,8 @@ def entry(name: str, train: str, begin: str, end: str, *departures_min: float) -
 
 def test_the_last_fields_of_a_train_are_those_of_a_journey():
     """So a train that already runs takes them over one after the other."""
-    assert Train._fields[-len(JOURNEY.names) :] == JOURNEY.names
+    fields = [*Motion.dtype.names, *(f"plan_{name}" for name in Plan.dtype.names)]
+    assert list(ScheduledTrain._fields[-len(fields) :]) == fields
 
 
 @pytest.mark.parametrize("step_min", [0.01, 0.3, 0.4, 1.0, 5.0])
@@ -153,9 +155,9 @@ def lone_train(changes: dict[str, Any]) -> Run:
     """A train alone at 15 kV, which trains that run already are copied from."""
     model, _ = build_model(short_line(changes))
     service = build_services(short_line(changes), model)[0]
-    options = model.options._replace(fixed_voltage_v=15_000.0, studied_train=0)
+    control = RunControl(fixed_voltage_v=15_000.0, studied_train=0)
     trains = departing_trains([service], model.options.step_s, 0, 1)
-    return Run(model._replace(options=options), trains, 10_000)
+    return Run(model._replace(control=control), trains, 10_000)
 
 
 RUNNING = {
@@ -177,8 +179,8 @@ def test_trains_run_already_where_a_lone_train_would_be(step_min):
     for n in range(1, 20):
         alone.advance_to(round(n * 174.0 / (60.0 * step_min)))
         train = alone.state.trains[0]
-        if train.arrival_step < 0:
-            expected.append((train.position_m, train.speed_m_s))
+        if train.timetable.arrival_step < 0:
+            expected.append((train.motion.position_m, train.motion.speed_m_s))
     assert len(expected) > 5
     assert [(float(x.sel(train=t)), float(v.sel(train=t))) for t in named] == expected
 
@@ -190,7 +192,7 @@ def test_a_train_that_runs_already_dwells_for_the_rest_of_its_time():
     changes = {**step(step_min), **RUNNING}
     alone, result = lone_train(changes), run(changes)
     begun = 0
-    while alone.state.trains[0].phase != 3:
+    while alone.state.trains[0].motion.phase != Phase.DWELLING:
         begun += 1
         alone.advance_to(begun)
     n = math.ceil(begun * step_min / 2.9)
@@ -208,12 +210,15 @@ def test_a_train_that_runs_already_goes_on_with_its_braking_plan():
     step_min = 0.05
     changes = {**step(step_min), **RUNNING}
     alone, way_of_lone = lone_train(changes), []
-    while alone.state.trains[0].phase != 3:
+    while alone.state.trains[0].motion.phase != Phase.DWELLING:
         way_of_lone.append(
-            (float(alone.state.trains[0].position_m), int(alone.state.trains[0].phase))
+            (
+                float(alone.state.trains[0].motion.position_m),
+                int(alone.state.trains[0].motion.phase),
+            )
         )
         alone.advance_to(len(way_of_lone))
-    planned = [k for k, (_, phase) in enumerate(way_of_lone) if phase == 2]
+    planned = [k for k, (_, phase) in enumerate(way_of_lone) if phase == Phase.PLANNED]
     middle = planned[len(planned) // 2]
     result = run({**changes, "traffic.0.headway_min": middle * step_min})
     way = journey(result, "eastbound initial 1")
@@ -228,7 +233,7 @@ def test_trains_run_already_between_departures_that_begin_later():
     alone, result = lone_train({**changes, "traffic.0.first_departure_min": 0.0}), run(changes)
     alone.advance_to(19)
     first = float(result.dataset.position.isel(time=0).sel(train="eastbound initial 1"))
-    assert first == alone.state.trains[0].position_m
+    assert first == alone.state.trains[0].motion.position_m
 
 
 def test_placed_trains_stand_or_run_anywhere_on_their_way():

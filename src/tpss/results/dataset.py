@@ -14,7 +14,7 @@ from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.run.run import Outcome
 from tpss.step.model import Model
 from tpss.step.recorded import RECORDED, Recorded
-from tpss.step.state import Floats
+from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
 
 NODE_KIND = {"units": "", "long_name": "what the node is"}

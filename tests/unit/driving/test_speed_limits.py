@@ -25,12 +25,12 @@ from tpss.driving.speed_limits import (
     OUT_OF_REACH,
     UNIFORM,
     can_meet_limit,
-    heed_limits_ahead,
     highest_speed_before_limit,
     latest_slowing_distance,
+    respect_limits_ahead,
     slowing_distance,
 )
-from tpss.physics.gradient import step_index
+from tpss.numerics.staircase import index_at
 
 from alternatives import full_braking, positions, way_of_full_braking
 
@@ -188,7 +188,7 @@ def drive(heed, from_m, limit, b, step_s, manner):
     """Speeds and positions of a train that accelerates at 0.3 m/s² where the limits let it."""
     speeds, places = [0.0], [0.0]
     while places[-1] < from_m[-1] + 2000.0:
-        here = limit[step_index(places[-1], from_m)]
+        here = limit[index_at(places[-1], from_m)]
         wanted = min(here, speeds[-1] + 0.3 * step_s)
         speeds.append(heed(places[-1], speeds[-1], wanted, from_m, limit, b, step_s, manner))
         way_m = positions(speeds[-2:], step_s)[-1]
@@ -202,7 +202,7 @@ def drive(heed, from_m, limit, b, step_s, manner):
 @pytest.mark.parametrize("manner", [UNIFORM, HOLD_FIRST])
 def test_train_that_heeds_its_limits_never_passes_one_too_fast_nor_brakes_too_hard(as_run, manner):
     for from_m, limit, b, step_s in random_lines(100):
-        speeds, places = drive(as_run(heed_limits_ahead), from_m, limit, b, step_s, manner)
+        speeds, places = drive(as_run(respect_limits_ahead), from_m, limit, b, step_s, manner)
         assert (-np.diff(speeds)).max() <= b * step_s * (1.0 + 1e-8)
         for steps_speeds, (begin_m, end_m) in zip(pairwise(speeds), pairwise(places), strict=True):
             passed = limit[(from_m > begin_m + 1e-6) & (from_m < end_m - 1e-6)]
@@ -211,13 +211,13 @@ def test_train_that_heeds_its_limits_never_passes_one_too_fast_nor_brakes_too_ha
 
 def test_line_without_a_lower_limit_leaves_the_wish_alone(as_run):
     rising = np.array([0.0, 1000.0]), np.array([20.0, 30.0])
-    assert as_run(heed_limits_ahead)(900.0, 20.0, 20.0, *rising, 1.0, 10.0, UNIFORM) == 20.0
+    assert as_run(respect_limits_ahead)(900.0, 20.0, 20.0, *rising, 1.0, 10.0, UNIFORM) == 20.0
 
 
 def test_the_more_demanding_of_two_limits_rules(as_run):
     """15 m/s in 500 m alone would allow 25 m/s; 1 m/s in 520 m allows less."""
     from_m, limit = np.array([0.0, 500.0, 520.0]), np.array([50.0, 15.0, 1.0])
-    given = as_run(heed_limits_ahead)(0.0, 30.0, 40.0, from_m, limit, 1.0, 10.0, UNIFORM)
+    given = as_run(respect_limits_ahead)(0.0, 30.0, 40.0, from_m, limit, 1.0, 10.0, UNIFORM)
     alone = as_run(highest_speed_before_limit)(30.0, 40.0, 520.0, 1.0, 1.0, 10.0, UNIFORM)
     assert given == pytest.approx(alone, abs=1e-9)
     assert given < 25.0

@@ -6,7 +6,8 @@ from 500 m over 3000 m: 500 · 0.010 - 2000 · 0.005 + 500 · 0.002 = 5 - 10 + 1
 import numpy as np
 import pytest
 
-from tpss.physics.gradient import mean_gradient, stair_ahead, step_index
+from tpss.numerics.staircase import index_at
+from tpss.physics.gradient import mean_gradient
 
 from alternatives import climb
 
@@ -15,20 +16,8 @@ GRADIENT = np.array([0.010, -0.005, 0.002])
 
 
 def mean_over(as_run, position_m, way_m, from_m, gradient):
-    stair = as_run(step_index)(position_m, from_m)
+    stair = as_run(index_at)(position_m, from_m)
     return as_run(mean_gradient)(stair, position_m, way_m, from_m, gradient)
-
-
-@pytest.mark.parametrize(
-    ("position_m", "stair"),
-    [(-50.0, 0), (0.0, 0), (999.9, 0), (1000.0, 1), (2999.9, 1), (3000.0, 2), (1e6, 2)],
-)
-def test_a_stair_holds_from_its_position_and_the_outer_ones_beyond_the_ends(
-    as_run, position_m, stair
-):
-    assert as_run(step_index)(position_m, FROM_M) == stair
-    for before in range(FROM_M.size):
-        assert as_run(stair_ahead)(before, position_m, FROM_M) == stair
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,7 @@ F_motor, 100 kN at 0.05 m/s²   100 000 + 10 750 · 0.05  = 100 537.5 N
 import pytest
 
 from tpss.physics.motor import (
-    FORMER,
-    NEW,
+    MotorModel,
     armature_current,
     line_voltage_factor,
     motor_current,
@@ -34,14 +33,14 @@ def test_decelerating_rotors_relieve_the_motors_but_never_turn_them_into_brakes(
 @pytest.mark.parametrize(
     ("speed_kmh", "line_v", "model", "motor_v"),
     [
-        (0.0, 15e3, NEW, 0.0),
-        (39.0, 15e3, NEW, 385.0),
-        (39.0, 10.5e3, NEW, 385.0),
-        (78.0, 15e3, NEW, 770.0),
-        (135.0, 15e3, NEW, 770.0),
-        (39.0, 15e3, FORMER, 385.0),
-        (39.0, 10.5e3, FORMER, 288.75),
-        (135.0, 7e3, FORMER, 385.0),
+        (0.0, 15e3, MotorModel.NEW, 0.0),
+        (39.0, 15e3, MotorModel.NEW, 385.0),
+        (39.0, 10.5e3, MotorModel.NEW, 385.0),
+        (78.0, 15e3, MotorModel.NEW, 770.0),
+        (135.0, 15e3, MotorModel.NEW, 770.0),
+        (39.0, 15e3, MotorModel.FORMER, 385.0),
+        (39.0, 10.5e3, MotorModel.FORMER, 288.75),
+        (135.0, 7e3, MotorModel.FORMER, 385.0),
     ],
 )
 def test_motor_voltage_follows_speed_and_formerly_the_line(
@@ -53,7 +52,12 @@ def test_motor_voltage_follows_speed_and_formerly_the_line(
 
 @pytest.mark.parametrize(
     ("line_v", "model", "factor"),
-    [(10.5e3, FORMER, 0.75), (14e3, FORMER, 1.0), (15e3, FORMER, 1.0), (10.5e3, NEW, 1.0)],
+    [
+        (10.5e3, MotorModel.FORMER, 0.75),
+        (14e3, MotorModel.FORMER, 1.0),
+        (15e3, MotorModel.FORMER, 1.0),
+        (10.5e3, MotorModel.NEW, 1.0),
+    ],
 )
 def test_only_the_former_model_heeds_the_line_and_only_below_14_kilovolt(
     as_run, line_v, model, factor
@@ -68,7 +72,7 @@ def test_current_is_power_over_motor_voltage(as_run, force_n, speed_kmh, current
     speed = speed_kmh / 3.6
     below = speed < V_BASE
     current = as_run(armature_current)(force_n, 1.0, speed, V_BASE, 770.0, below)
-    motor_v = as_run(motor_voltage)(speed, 15e3, V_BASE, 770.0, NEW)
+    motor_v = as_run(motor_voltage)(speed, 15e3, V_BASE, 770.0, MotorModel.NEW)
     assert current == pytest.approx(current_a, abs=0.01)
     assert current == pytest.approx(force_n * speed / motor_v)
 
@@ -85,5 +89,5 @@ def test_slip_adds_to_the_current(as_run):
 
 
 def test_four_motors_share_the_current_which_the_former_model_ascribes_to_one(as_run):
-    assert as_run(motor_current)(5000.0, NEW) == 1250.0
-    assert as_run(motor_current)(5000.0, FORMER) == 5000.0
+    assert as_run(motor_current)(5000.0, MotorModel.NEW) == 1250.0
+    assert as_run(motor_current)(5000.0, MotorModel.FORMER) == 5000.0

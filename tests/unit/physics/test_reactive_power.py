@@ -8,9 +8,8 @@ X_f = -0.45 Ω at 16 kV:     U_locoRc = 487 · 16/15 = 519.47 V; Q_f = -599 657 
 import numpy as np
 import pytest
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine
-from tpss.physics.neural_network import NEURONS
+from tpss.numerics.neural_network import NEURONS
+from tpss.numerics.series import SCRATCH_SHAPE, Series, series_at
 from tpss.physics.reactive_power import (
     bridge_outside_training,
     bridge_reactive_power,
@@ -20,11 +19,10 @@ from tpss.physics.reactive_power import (
     reactive_ratio,
     sine_over_motor_voltage,
 )
-from tpss.physics.series import ROOM, SERIES, series_at
+from vehicles import NETWORKS
 
 from alternatives import central_difference, exact_bridge_sine
 
-MACHINE = build_machine()[0]
 SCRATCH = np.zeros(NEURONS)
 
 # U_di [V], U_locoRc [V], the network's β, eq. (3.1)
@@ -60,10 +58,10 @@ FACTORS = [
 
 def bridge(as_run, motor_v, locomotive_v):
     """β and its slopes over both voltages."""
-    network, room, series = MACHINE.bridge_sine, np.zeros(ROOM), blank_records(1, SERIES)[0]
-    as_run(bridge_sine_series)(motor_v, locomotive_v, network, room, series)
+    network, scratch, series = NETWORKS.bridge_sine, np.zeros(SCRATCH_SHAPE), Series.blank(1)[0]
+    as_run(bridge_sine_series)(motor_v, locomotive_v, network, scratch, series)
     sine, by_locomotive = as_run(series_at)(locomotive_v, series)
-    return sine, as_run(sine_over_motor_voltage)(network, room), by_locomotive
+    return sine, as_run(sine_over_motor_voltage)(network, scratch), by_locomotive
 
 
 @pytest.mark.parametrize(("motor_v", "locomotive_v", "sine", "exact"), SINES)
@@ -99,13 +97,13 @@ def test_bridge_network_is_within_two_hundredths_of_the_exact_sine():
     [(100.0, 487.0, False), (771.0, 487.0, True), (400.0, 214.0, True), (400.0, 643.0, True)],
 )
 def test_extrapolation_is_noticed(as_run, motor_v, locomotive_v, extrapolates):
-    noticed = as_run(bridge_outside_training)(motor_v, locomotive_v, MACHINE.bridge_sine)
+    noticed = as_run(bridge_outside_training)(motor_v, locomotive_v, NETWORKS.bridge_sine)
     assert noticed == extrapolates
 
 
 @pytest.mark.parametrize(("speed_kmh", "factor"), FACTORS)
 def test_power_factor_reproduces_the_printed_tables(as_run, speed_kmh, factor):
-    given = as_run(power_factor)(speed_kmh / 3.6, MACHINE.power_factor, SCRATCH)
+    given = as_run(power_factor)(speed_kmh / 3.6, NETWORKS.power_factor, SCRATCH)
     assert given == pytest.approx(factor, rel=1e-9)
 
 
@@ -125,10 +123,10 @@ def test_auxiliaries_draw_113_6_kilovar(as_run):
 
 def test_filter_feeds_600_kilovar_at_16_kilovolt(as_run):
     """(16 kV · 487/15000)² / 0.45 Ω, and twice that over 16 kV for each volt."""
-    reactive, slope = as_run(filter_reactive_power)(16e3, -0.45)
+    reactive, slope = as_run(filter_reactive_power)(16e3, (487 / 15e3) ** 2 / -0.45)
     assert reactive == pytest.approx(-599_657, abs=1.0)
     assert slope == pytest.approx(2 * reactive / 16e3)
 
 
 def test_an_infinite_reactance_is_no_filter(as_run):
-    assert as_run(filter_reactive_power)(15e3, np.inf) == (0.0, 0.0)
+    assert as_run(filter_reactive_power)(15e3, (487 / 15e3) ** 2 / np.inf) == (0.0, 0.0)

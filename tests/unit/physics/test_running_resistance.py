@@ -14,7 +14,7 @@ from tpss.physics.running_resistance import (
     running_resistance,
 )
 
-FREIGHT = DavisCoefficients(15_400.0, 279.0, 49.2)
+FREIGHT = DavisCoefficients.array([(15_400.0, 279.0, 49.2)])[0]
 
 
 def test_freight_train_meets_33_717_newton_at_60_km_h(as_run):

@@ -1,20 +1,27 @@
-"""The two parts in which the kernels are compiled are those that the clock calls."""
+"""The parts in which the kernels are compiled are what the clock and the audit call."""
 
 import pytest
 
-from tpss.compiling import adopt
 from tpss.model import build_model
-from tpss.simulation.parts import compile_calls, driving, load_flow
-from tpss.simulation.run import compile_kernels
+from tpss.run.kernels import (
+    adopt,
+    are_ready,
+    compile_calls,
+    figures_calls,
+    load_flow_calls,
+    make_ready,
+    step_calls,
+)
 
 from scenarios import short_line
 
 
-@pytest.mark.parametrize("part", [driving, load_flow])
+@pytest.mark.parametrize("part", [load_flow_calls, step_calls, figures_calls])
 def test_a_part_asks_for_nothing_that_the_clock_has_not_compiled(part):
     """With other types of arguments a kernel would be compiled twice, once for nothing."""
     model, _ = build_model(short_line())
-    compile_kernels(model)
+    make_ready(model)
+    assert are_ready()
     calls = part(model)
     before = [sum(kernel.stats.cache_misses.values()) for kernel, _ in calls]
     compile_calls(calls)

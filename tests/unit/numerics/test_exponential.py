@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tpss.physics.exponential import exponential
+from tpss.numerics.exponential import exponential
 
 
 def test_it_is_exact_to_two_units_in_the_last_place(as_run):

@@ -15,22 +15,17 @@ import math
 import numpy as np
 import pytest
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine, build_train_types
-from tpss.physics.current_limit import highest_line_current, within_line_current
-from tpss.physics.locomotive import (
-    DEMAND,
+from tpss.vehicle.demand import (
+    certify_free_band,
     electrical_demand,
-    note_cap,
-    prove_free_band,
-    take_speed,
+    update_cap_terms,
     wheel_force,
 )
+from tpss.vehicle.line_current import highest_line_current, within_line_current
+from vehicles import SCRATCH, demand_at
+from vehicles import kind_of as kind_with
 
 from alternatives import central_difference
-from scenarios import short_line
-
-MACHINE = build_machine()[0]
 
 LIMIT = {"max_current_a": 400.0}
 PURE = {
@@ -56,21 +51,16 @@ EFFORTS = {
 
 def kind_of(**changes):
     """A train of the short line with a current limitation: its record, and the curves' points."""
-    changes = {"current_limitation": LIMIT, **changes}
-    scenario = short_line({f"trains.freight.{name}": value for name, value in changes.items()})
-    kinds, points = build_train_types([scenario.trains["freight"]])
-    return kinds[0], points
+    return kind_with(**{"current_limitation": LIMIT, **changes})
 
 
 def train_at(speed_kmh, kind, points, cap_n=1e6, resistance_n=0.0, mean_over_s=0.0, grip_n=1e6):
-    train = blank_records(1, DEMAND)[0]
-    train.speed_m_s, train.force_cap_n, train.resistance_n = speed_kmh / 3.6, cap_n, resistance_n
-    train.adhesion_n, train.mean_speed_weight_s = grip_n, mean_over_s / 2.0
-    train.driven_share = 1.0
-    train.taken_speed_m_s = train.free_band_v = -1.0
-    take_speed(15e3, kind, train, MACHINE, points)
-    prove_free_band(kind, train)
-    note_cap(kind, train)
+    train = demand_at(
+        speed_kmh, kind, points, force_cap_n=cap_n, resistance_n=resistance_n, adhesion_n=grip_n,
+        mean_speed_weight_s=mean_over_s / 2.0,
+    )  # fmt: skip
+    certify_free_band(kind, train)
+    update_cap_terms(kind, train)
     return train
 
 
@@ -90,14 +80,14 @@ def test_current_falls_from_the_knee_to_that_of_the_auxiliaries(
     as_run, voltage_v, current_a, slope_a_per_v
 ):
     kind, _ = kind_of(**PURE)
-    found = as_run(highest_line_current)(voltage_v, kind)
+    found = as_run(highest_line_current)(voltage_v, kind.line_current)
     assert found == pytest.approx((current_a, slope_a_per_v), rel=1e-5)
 
 
 def test_force_is_what_the_current_leaves_for_the_motors(as_run):
     kind, points = kind_of(**PURE)
     train = train_at(72.0, kind, points)
-    force, _ = as_run(wheel_force)(13e3, kind, train, MACHINE)
+    force, _ = as_run(wheel_force)(13e3, kind, train, SCRATCH)
     assert force == pytest.approx(124_400.0, rel=1e-9)
 
 
@@ -106,8 +96,8 @@ def test_at_the_lowest_voltage_and_below_there_is_no_traction(as_run):
     for speed_kmh in (0.0, 72.0):
         train = train_at(speed_kmh, kind, points)
         for voltage_v in (9e3, 11e3):
-            assert as_run(wheel_force)(voltage_v, kind, train, MACHINE) == (0.0, 0.0)
-            assert as_run(electrical_demand)(voltage_v, kind, train, MACHINE)[0] == 165e3
+            assert as_run(wheel_force)(voltage_v, kind, train, SCRATCH) == (0.0, 0.0)
+            assert as_run(electrical_demand)(voltage_v, kind, train, SCRATCH)[0] == 165e3
 
 
 def test_where_the_current_allows_more_machine_and_driver_have_their_way(as_run):
@@ -115,24 +105,24 @@ def test_where_the_current_allows_more_machine_and_driver_have_their_way(as_run)
     kind, points = kind_of(**PURE)
     free, points_too = kind_of(**{**PURE, "current_limitation": None})
     calm = train_at(72.0, kind, points, cap_n=120e3)
-    assert as_run(wheel_force)(13e3, kind, calm, MACHINE) == (120e3, 0.0)
+    assert as_run(wheel_force)(13e3, kind, calm, SCRATCH) == (120e3, 0.0)
     for speed_kmh, voltage_v in ((20.0, 15e3), (10.0, 12e3)):
         limited = train_at(speed_kmh, kind, points)
         unlimited = train_at(speed_kmh, free, points_too)
-        assert as_run(wheel_force)(voltage_v, kind, limited, MACHINE) == as_run(wheel_force)(
-            voltage_v, free, unlimited, MACHINE
+        assert as_run(wheel_force)(voltage_v, kind, limited, SCRATCH) == as_run(wheel_force)(
+            voltage_v, free, unlimited, SCRATCH
         )
 
 
 def test_a_standing_train_that_draws_no_power_for_its_force_is_not_limited_by_current(as_run):
     kind, points = kind_of(**PURE)
-    assert as_run(wheel_force)(11.001e3, kind, train_at(0.0, kind, points), MACHINE)[0] == 300e3
+    assert as_run(wheel_force)(11.001e3, kind, train_at(0.0, kind, points), SCRATCH)[0] == 300e3
 
 
 def test_a_machine_without_force_stays_without(as_run):
     kind, points = kind_of(**PURE)
     found = as_run(within_line_current)(
-        13e3, -2e3, 0.1, kind, train_at(72.0, kind, points), MACHINE
+        13e3, -2e3, 0.1, kind, train_at(72.0, kind, points), SCRATCH
     )
     assert found == (-2e3, 0.1)
 
@@ -147,20 +137,19 @@ def test_motors_and_auxiliaries_draw_the_allowed_current_or_the_machine_limits(
     """The filter's share taken out: |P + jQ| = U I to rounding, or the force without a limit."""
     kind, points = kind_of(**effort)
     free, free_points = kind_of(**{**effort, "current_limitation": None})
-    filter_ohm, kind.filter_reactance_ohm = kind.filter_reactance_ohm, math.inf
+    kind.filter_susceptance_s = 0.0
     limited = 0
     for voltage_v in np.arange(11.05e3, 16e3, 0.45e3):
         train = train_at(speed_kmh, kind, points, 1e9, 30e3, mean_over_s, grip_n)
-        p, q, _, _ = as_run(electrical_demand)(voltage_v, kind, train, MACHINE)
-        allowed_a, _ = as_run(highest_line_current)(voltage_v, kind)
+        p, q, _, _ = as_run(electrical_demand)(voltage_v, kind, train, SCRATCH)
+        allowed_a, _ = as_run(highest_line_current)(voltage_v, kind.line_current)
         unlimited = train_at(speed_kmh, free, free_points, 1e9, 30e3, mean_over_s, grip_n)
-        force, _ = as_run(wheel_force)(voltage_v, free, unlimited, MACHINE)
-        if as_run(wheel_force)(voltage_v, kind, train, MACHINE)[0] < force:
+        force, _ = as_run(wheel_force)(voltage_v, free, unlimited, SCRATCH)
+        if as_run(wheel_force)(voltage_v, kind, train, SCRATCH)[0] < force:
             assert math.hypot(p, q) / voltage_v == pytest.approx(allowed_a, rel=1e-11)
             limited += 1
         else:
             assert math.hypot(p, q) / voltage_v <= allowed_a
-    kind.filter_reactance_ohm = filter_ohm
     assert limited > 0
 
 
@@ -176,7 +165,7 @@ def test_slopes_of_the_demand_are_those_over_voltage(
     train = train_at(speed_kmh, kind, points, 1e9, 30e3, mean_over_s, grip_n)
 
     def drawn(at_v):
-        return as_run(electrical_demand)(at_v, kind, train, MACHINE)
+        return as_run(electrical_demand)(at_v, kind, train, SCRATCH)
 
     _, _, active_slope, reactive_slope = drawn(voltage_v)
     active = central_difference(lambda v: drawn(v)[0], voltage_v, 0.5)

@@ -18,15 +18,21 @@ import cmath
 
 import pytest
 
-from tpss.kernel import records
-from tpss.physics.converter import CONVERTER_LAW, converter_voltage, grid_angle, terminal_voltage
+from tpss.sources.converter import (
+    ConverterLaw,
+    converter_is_plausible,
+    converter_residual,
+    converter_voltage,
+    grid_angle,
+    terminal_voltage,
+)
 
-from alternatives import central_difference
+from alternatives import central_difference, pair_by_differences
 
 
 def station(grid_ohm=0.0, grid_var=0.0, grid_angle_rad=0.0):
     law = (16_500.0, 50e-6, 14.42925, 12.467523, 16_500.0, grid_ohm, grid_var, grid_angle_rad)
-    return records([law], CONVERTER_LAW)[0]
+    return ConverterLaw.array([law])[0]
 
 
 STRONG, WEAK = station(), station(grid_ohm=1.0, grid_var=6e6)
@@ -95,3 +101,37 @@ def test_slope_behind_the_machines_is_that_of_their_angle(as_run, law):
     _, slope = as_run(grid_angle)(10e6, 2.0, law)
     expected = central_difference(lambda p: as_run(grid_angle)(p, 2.0, law)[0], 10e6, 1e4)
     assert slope == pytest.approx(expected, rel=1e-5)
+
+
+POINTS = [(16.3e3 - 2.1e3j, 520.0 - 310.0j), (15.9e3 + 0.4e3j, -200.0 + 90.0j)]
+
+
+@pytest.mark.parametrize("law", [STRONG, WEAK], ids=["strong", "weak"])
+@pytest.mark.parametrize(("voltage", "current"), POINTS)
+def test_residual_is_what_voltage_and_angle_of_the_powers_leave(as_run, law, voltage, current):
+    power = voltage * current.conjugate()
+    size, direction, *_ = as_run(terminal_voltage)(power.real, power.imag, 2.0, law)
+    off, _, _ = as_run(converter_residual)(voltage, current, 2.0, law)
+    assert off == pytest.approx(voltage - size * direction, abs=1e-9)
+
+
+@pytest.mark.parametrize("law", [STRONG, WEAK], ids=["strong", "weak"])
+@pytest.mark.parametrize("converters", [1.0, 4.0])
+@pytest.mark.parametrize(("voltage", "current"), POINTS)
+def test_pairs_are_the_derivatives_of_the_residual(as_run, law, converters, voltage, current):
+    def off(v, j):
+        return as_run(converter_residual)(v, j, converters, law)[0]
+
+    _, by_voltage, by_current = as_run(converter_residual)(voltage, current, converters, law)
+    assert by_voltage == pytest.approx(
+        pair_by_differences(lambda v: off(v, current), voltage, 1.0), rel=1e-6, abs=1e-9
+    )
+    assert by_current == pytest.approx(
+        pair_by_differences(lambda j: off(voltage, j), current, 0.1), rel=1e-6, abs=1e-7
+    )
+
+
+def test_a_droop_beyond_zero_is_not_plausible(as_run):
+    """16.5 kV over 50 V/Mvar: 330 Mvar from one converter leave nothing."""
+    for current_a, plausible in ((-32_900j, True), (-33_100j, False)):
+        assert as_run(converter_is_plausible)(1e4 + 0j, current_a, 1.0, STRONG) == plausible

@@ -14,14 +14,14 @@ import math
 import numpy as np
 import pytest
 
-from tpss.driving.within_step import (
+from tpss.driving.course import (
     braking_distance,
+    distance_of_part,
     even_braking,
     highest_speed_that_stops_within,
     latest_braking,
     mean_braking_force,
     part_of_step,
-    way_of_part,
 )
 
 
@@ -73,7 +73,7 @@ def test_a_step_sees_its_part_of_the_course(as_run, step_s, part, way_m):
     found = as_run(part_of_step)(20.0, 5.0, 20.0, step_s)
     assert found == pytest.approx(part)
     hold_s, brake_s, next_speed = found
-    assert as_run(way_of_part)(20.0, next_speed, hold_s, brake_s) == pytest.approx(way_m)
+    assert as_run(distance_of_part)(20.0, next_speed, hold_s, brake_s) == pytest.approx(way_m)
 
 
 def test_a_course_that_is_longer_than_the_step_by_a_rounding_ends_with_it(as_run):
@@ -87,7 +87,7 @@ def test_the_course_found_anew_after_every_step_ends_at_the_stop(as_run):
         while v > 0.0:
             course = as_run(latest_braking)(v, d, b)
             hold_s, brake_s, next_speed = as_run(part_of_step)(v, *course, step_s)
-            d -= as_run(way_of_part)(v, next_speed, hold_s, brake_s)
+            d -= as_run(distance_of_part)(v, next_speed, hold_s, brake_s)
             assert v - next_speed <= b * brake_s * (1.0 + 1e-9) + 1e-12
             v, time_s = next_speed, time_s + hold_s + brake_s
         assert abs(d) < 1e-9

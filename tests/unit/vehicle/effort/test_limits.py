@@ -8,9 +8,25 @@ import math
 
 import pytest
 
-from tpss.physics.effort_limits import limited_force, voltage_share
+from tpss.vehicle.effort.limits import (
+    EffortLimits,
+    limited_force,
+    steepest_slope,
+    voltage_share,
+)
 
 from alternatives import central_difference
+
+
+def limits(**values):
+    return EffortLimits.array([EffortLimits.row(**values)])[0]
+
+
+def unit(limit_speed_m_s=math.inf):
+    return limits(highest_force_n=200e3, highest_power_w=2.6e6, limit_speed_m_s=limit_speed_m_s)
+
+
+SAGGING = limits(zero_voltage_v=10e3, full_voltage_v=14e3)
 
 
 @pytest.mark.parametrize(
@@ -18,18 +34,18 @@ from alternatives import central_difference
     [(0.0, 200.0), (12.9, 200.0), (13.0, 200.0), (20.0, 130.0), (30.0, 86.6667), (40.0, 48.75)],
 )
 def test_force_is_constant_then_power_then_the_pull_out_limit(as_run, speed_m_s, force_kn):
-    force = as_run(limited_force)(speed_m_s, 200e3, 2.6e6, 30.0)
+    force = as_run(limited_force)(speed_m_s, unit(30.0))
     assert force == pytest.approx(force_kn * 1e3, rel=1e-6)
 
 
 def test_without_a_pull_out_limit_power_stays_constant(as_run):
-    assert as_run(limited_force)(40.0, 200e3, 2.6e6, math.inf) == pytest.approx(65e3)
+    assert as_run(limited_force)(40.0, unit()) == pytest.approx(65e3)
 
 
 def test_a_pull_out_limit_below_the_knee_takes_force_where_it_falls_below_the_highest(as_run):
     """With 5 m/s: 2600 · 5/v² = 200 kN at v = √65 = 8.062 m/s; at 10 m/s 130 kN."""
     for speed_m_s, force_kn in ((5.0, 200.0), (8.06, 200.0), (10.0, 130.0)):
-        force = as_run(limited_force)(speed_m_s, 200e3, 2.6e6, 5.0)
+        force = as_run(limited_force)(speed_m_s, unit(5.0))
         assert force == pytest.approx(force_kn * 1e3)
 
 
@@ -45,15 +61,21 @@ def test_a_pull_out_limit_below_the_knee_takes_force_where_it_falls_below_the_hi
     ],
 )
 def test_force_falls_linearly_from_14_to_10_kilovolt(as_run, voltage_v, share, slope):
-    assert as_run(voltage_share)(voltage_v, 10e3, 14e3) == pytest.approx((share, slope))
+    assert as_run(voltage_share)(voltage_v, SAGGING) == pytest.approx((share, slope))
 
 
 def test_without_voltages_there_is_no_dependence(as_run):
     for voltage_v in (1e3, 8e3, 16e3):
-        assert as_run(voltage_share)(voltage_v, 0.0, 0.0) == (1.0, 0.0)
+        assert as_run(voltage_share)(voltage_v, limits()) == (1.0, 0.0)
 
 
 def test_the_slope_is_that_of_the_share(as_run):
-    _, slope = as_run(voltage_share)(12.3e3, 10e3, 14e3)
-    around = central_difference(lambda v: as_run(voltage_share)(v, 10e3, 14e3)[0], 12.3e3, 1.0)
+    _, slope = as_run(voltage_share)(12.3e3, SAGGING)
+    around = central_difference(lambda v: as_run(voltage_share)(v, SAGGING)[0], 12.3e3, 1.0)
     assert slope == pytest.approx(around, rel=1e-9)
+
+
+def test_the_steepest_slope_is_that_of_the_fall(as_run):
+    """130 kN over 4 kV."""
+    assert as_run(steepest_slope)(130e3, SAGGING) == pytest.approx(32.5)
+    assert as_run(steepest_slope)(130e3, limits()) == 0.0

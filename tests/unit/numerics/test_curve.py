@@ -14,7 +14,14 @@ from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
 from tpss.model.curves import CurveBook, interpolate
-from tpss.physics.curve import curve_at, hermite, outside_curve, slope_at, steepest_between
+from tpss.numerics.curve import (
+    Curve,
+    curve_at,
+    hermite,
+    outside_curve,
+    slope_at,
+    steepest_between,
+)
 
 from alternatives import central_difference
 from conftest import plain
@@ -91,10 +98,7 @@ def test_no_slope_passes_the_bound(as_run, shape):
 
 def test_outer_values_hold_beyond_the_ends_and_that_is_noticed(as_run):
     place, points = curve(AT, VALUE)
-    types = np.array(
-        [(place,)], dtype=[("curve", np.dtype((np.record, [("first", int), ("points", int)])))]
-    )
-    record = types.view(np.recarray)[0].curve
+    record = Curve.array([place])[0]
     for x, value, beyond in (
         (-1.0, 0.0, True),
         (0.0, 0.0, False),

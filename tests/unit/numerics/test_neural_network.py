@@ -12,7 +12,7 @@ import math
 import numpy as np
 import pytest
 
-from tpss.physics.neural_network import (
+from tpss.numerics.neural_network import (
     NEURONS,
     build_network,
     fold_scaling,

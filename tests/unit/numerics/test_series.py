@@ -6,17 +6,15 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine
-from tpss.physics.neural_network import (
+from tpss.numerics.neural_network import (
     EIGHTH_OVER_FIRST,
-    LONGEST_WAY,
+    LONGEST_MOVE,
     SERIES_INPUT,
     TAYLOR_TERMS,
 )
-from tpss.physics.series import ROOM, SERIES, make_series, reaches, series_at
+from tpss.numerics.series import SCRATCH_SHAPE, Series, make_series, reaches, series_at
+from vehicles import NETWORKS
 
-MACHINE = build_machine()[0]
 EPS = np.finfo(float).eps
 
 # Network, its two or three inputs, and the scale of a voltage.
@@ -33,9 +31,9 @@ def neuron_inputs(network, inputs):
 
 
 def series_of(as_run, name, inputs):
-    network, room, series = MACHINE[name], np.zeros(ROOM), blank_records(1, SERIES)[0]
-    room[0] = neuron_inputs(network, inputs)
-    as_run(make_series)(inputs[SERIES_INPUT], network, room, series)
+    network, scratch, series = NETWORKS[name], np.zeros(SCRATCH_SHAPE), Series.blank(1)[0]
+    scratch[0] = neuron_inputs(network, inputs)
+    as_run(make_series)(inputs[SERIES_INPUT], network, scratch, series)
     return network, series
 
 
@@ -111,10 +109,10 @@ def test_bound_of_the_eighth_derivative_holds():
 def test_no_neuron_moves_further_than_the_proof_allows(as_run, name, inputs):
     network, series = series_of(as_run, name, inputs)
     reach = series.reach_8**0.125
-    assert reach * np.abs(network.weight[SERIES_INPUT]).max() <= LONGEST_WAY * (1.0 + 1e-12)
+    assert reach * np.abs(network.weight[SERIES_INPUT]).max() <= LONGEST_MOVE * (1.0 + 1e-12)
 
 
 def test_a_series_that_has_not_been_made_reaches_nowhere(as_run):
-    series = blank_records(1, SERIES)[0]
+    series = Series.blank(1)[0]
     assert not as_run(reaches)(0.0, series)
     assert not as_run(reaches)(math.nan, series)

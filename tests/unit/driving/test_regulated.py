@@ -6,7 +6,7 @@ F = 0.0462963 · 1 470 000 + 33 717 = 68 055.6 + 33 717 = 101 772.6 N
 
 import pytest
 
-from tpss.driving.speed_regulation import ideal_force, wanted_acceleration
+from tpss.driving.regulated import ideal_force, wanted_acceleration
 
 
 def test_ten_kilometres_an_hour_more_in_a_minute(as_run):

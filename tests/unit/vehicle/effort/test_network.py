@@ -5,18 +5,17 @@ import itertools
 import numpy as np
 import pytest
 
-from tpss.kernel import blank_records
-from tpss.model.trains import build_machine
-from tpss.physics.series import ROOM, SERIES, series_at
-from tpss.physics.tractive_effort import (
+from tpss.numerics.series import SCRATCH_SHAPE, Series, series_at
+from tpss.vehicle.effort.network import (
     VOLTAGE,
     effort_outside_training,
     motor_force_series,
 )
+from vehicles import NETWORKS
 
 from alternatives import central_difference
 
-NETWORK = build_machine()[0].tractive_effort
+NETWORK = NETWORKS.tractive_effort
 
 # speed [km/h], line voltage [kV], highest current [A], force [N]
 TABLE = [
@@ -37,9 +36,14 @@ CURVES = list(itertools.product([0, 40, 85, 120, 160], [10.5, 13.5, 16.5], [350,
 
 
 def effort(as_run, speed_kmh, voltage_kv, current_a):
-    series = blank_records(1, SERIES)[0]
+    series = Series.blank(1)[0]
     as_run(motor_force_series)(
-        speed_kmh / 3.6, voltage_kv * 1e3, float(current_a), NETWORK, np.zeros(ROOM), series
+        speed_kmh / 3.6,
+        voltage_kv * 1e3,
+        float(current_a),
+        NETWORK,
+        np.zeros(SCRATCH_SHAPE),
+        series,
     )
     return as_run(series_at)(voltage_kv * 1e3, series)
 
