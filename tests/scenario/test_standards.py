@@ -27,8 +27,14 @@ def test_any_figure_may_be_changed_alone():
 
 @pytest.mark.parametrize("system", library.entries("voltage_limits"))
 def test_every_system_of_the_library_can_be_chosen_and_says_where_it_is_from(system):
-    limits = short_line({f"{LIMITS}.system": system}).standards.voltage_limits
-    assert limits == VoltageLimits(system=system)
+    limits = VoltageLimits(system=system)
+    if system in library.entries("systems"):
+        supply = {"supply.system": system, "supply.frequency_hz": None}
+        assert short_line(supply).standards.voltage_limits == limits
+        assert short_line({**supply, f"{LIMITS}.system": system}).standards.voltage_limits == limits
+    else:  # nobody computes such a supply
+        with pytest.raises(ScenarioError, match="another system than that of the supply"):
+            short_line({f"{LIMITS}.system": system})
     source = library.entries("voltage_limits")[system]["source"]
     assert "[EN50163]_" in source
     assert "check your edition" in source
