@@ -10,28 +10,32 @@ Names are imported when they are first used, so that ``import tpss`` and the com
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from tpss.api import Prepared, prepare, simulate
-    from tpss.approximator.approximator import Approximator, load_approximator
-    from tpss.approximator.train import train_approximator
-    from tpss.errors import (
-        ApproximatorError,
-        Finding,
-        ResultError,
-        ScenarioError,
-        StudyError,
-        TpssError,
-    )
-    from tpss.many import simulate_many
-    from tpss.report.html import write_report
-    from tpss.results.key_figures import KeyFigures
-    from tpss.results.result import Result, load_result
-    from tpss.results.standards.evidence import Evidence
-    from tpss.run.run import Progress
-    from tpss.scenario import Scenario, load_scenario
-    from tpss.sweep.campaign import run_study
-    from tpss.sweep.folder import load_table
-    from tpss.sweep.study import Study, load_study
+if TYPE_CHECKING:  # named as themselves, they are exported for type checkers too
+    from tpss.api import Prepared as Prepared
+    from tpss.api import prepare as prepare
+    from tpss.api import simulate as simulate
+    from tpss.approximator.approximator import Approximator as Approximator
+    from tpss.approximator.approximator import load_approximator as load_approximator
+    from tpss.approximator.train import train_approximator as train_approximator
+    from tpss.errors import ApproximatorError as ApproximatorError
+    from tpss.errors import Finding as Finding
+    from tpss.errors import ResultError as ResultError
+    from tpss.errors import ScenarioError as ScenarioError
+    from tpss.errors import StudyError as StudyError
+    from tpss.errors import TpssError as TpssError
+    from tpss.many import simulate_many as simulate_many
+    from tpss.report.html import write_report as write_report
+    from tpss.results.key_figures import KeyFigures as KeyFigures
+    from tpss.results.result import Result as Result
+    from tpss.results.result import load_result as load_result
+    from tpss.results.standards.evidence import Evidence as Evidence
+    from tpss.run.run import Progress as Progress
+    from tpss.scenario import Scenario as Scenario
+    from tpss.scenario import load_scenario as load_scenario
+    from tpss.sweep.campaign import run_study as run_study
+    from tpss.sweep.folder import load_table as load_table
+    from tpss.sweep.study import Study as Study
+    from tpss.sweep.study import load_study as load_study
 
 _HOME = {
     "Approximator": "tpss.approximator.approximator",
@@ -61,33 +65,7 @@ _HOME = {
     "write_report": "tpss.report.html",
 }
 
-__all__ = [
-    "Approximator",
-    "ApproximatorError",
-    "Evidence",
-    "Finding",
-    "KeyFigures",
-    "Prepared",
-    "Progress",
-    "Result",
-    "ResultError",
-    "Scenario",
-    "ScenarioError",
-    "Study",
-    "StudyError",
-    "TpssError",
-    "load_approximator",
-    "load_result",
-    "load_scenario",
-    "load_study",
-    "load_table",
-    "prepare",
-    "run_study",
-    "simulate",
-    "simulate_many",
-    "train_approximator",
-    "write_report",
-]
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:
@@ -97,4 +75,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return __all__

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tpss import load_result
-from tpss.results import store
+from tpss.files import whole
 from tpss.run.run import Run
 
 from conftest import EXAMPLES
@@ -43,14 +43,14 @@ def press_ctrl_c(towards: int, monkeypatch: pytest.MonkeyPatch, times: int = 1) 
 
 def press_ctrl_c_while_saving(monkeypatch: pytest.MonkeyPatch, times: int) -> None:
     """Press Ctrl-C when the first file of a result has been written."""
-    write, left = store._write, [signal.SIGINT] * times
+    write, left = whole.write_new, [signal.SIGINT] * times
 
     def interrupted(path, content):
         write(path, content)
         while left:
             signal.raise_signal(left.pop())
 
-    monkeypatch.setattr(store, "_write", interrupted)
+    monkeypatch.setattr(whole, "write_new", interrupted)
 
 
 @pytest.fixture(autouse=True)

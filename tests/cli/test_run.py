@@ -18,7 +18,7 @@ import tpss.api
 from tpss import load_result
 from tpss.audit import verdict
 from tpss.cli.main import main
-from tpss.results import store
+from tpss.files import whole
 
 from conftest import EXAMPLES
 
@@ -205,7 +205,7 @@ def test_a_link_to_a_folder_leads_the_result_there(tpss_command, tmp_path):
 
 def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkeypatch):
     """The disk of ``results`` fills up; the hours of computing are not lost."""
-    write = store._write
+    write = whole.write_new
 
     def to_a_full_disk(path, content):
         if "results" in path.parts:
@@ -214,7 +214,7 @@ def test_a_result_that_cannot_be_saved_is_rescued(tpss_command, tmp_path, monkey
 
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    monkeypatch.setattr(store, "_write", to_a_full_disk)
+    monkeypatch.setattr(whole, "write_new", to_a_full_disk)
     said = tpss_command("run", HEADWAY, *SHORT)
     assert said.code == 2
     assert "results cannot be written: No space left on device" in said.err
@@ -253,7 +253,7 @@ def test_a_result_that_no_disk_can_hold_is_printed_at_least(
 ):
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    with file_size_limit(store.TRIAL_BYTES):
+    with file_size_limit(whole.TRIAL_BYTES):
         said = tpss_command("run", HEADWAY, *SHORT, *options)
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out

@@ -1,18 +1,36 @@
 """What TPSS writes into a result folder goes with the result that is replaced; all else stays."""
 
+from functools import cached_property
+from typing import get_type_hints
+
+from pandas import DataFrame
+
 from tpss.report.figures import FIGURES as DRAWN
 from tpss.report.html import write_report
 from tpss.results import contents
-from tpss.results.export import TABLES as EXPORTED
 from tpss.results.export import export
 from tpss.results.file_kinds import Kind
+from tpss.results.result import Result
+from tpss.results.standards.evidence import Evidence
 
 from scenarios import run
 
 
-def test_the_names_are_those_of_what_is_exported_and_drawn():
-    assert tuple(EXPORTED) == contents.TABLE_NAMES
+def tables_of(kind):
+    """Names of what gives a table."""
+    functions = {
+        name: value.func for name, value in vars(kind).items() if isinstance(value, cached_property)
+    }
+    return {name for name, each in functions.items() if get_type_hints(each)["return"] is DataFrame}
+
+
+def test_the_names_are_those_of_what_is_drawn():
     assert tuple(DRAWN) == contents.FIGURE_NAMES
+
+
+def test_every_table_of_a_result_is_exported():
+    of_standards = {f"standards.{name}" for name in tables_of(Evidence)}
+    assert set(contents.TABLE_PLACES.values()) == tables_of(Result) | of_standards
 
 
 def everything(folder):

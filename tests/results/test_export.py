@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 from tpss import ResultError
-from tpss.results import export, store
+from tpss.files import several
+from tpss.results import export
 from tpss.results.export import TABLES, with_units
 from tpss.results.file_kinds import Kind
 
@@ -117,7 +118,7 @@ def test_a_file_is_no_folder(result, tmp_path):
 
 @pytest.mark.parametrize("made", [True, False], ids=["old folder", "new folder"])
 def test_a_full_disk_leaves_nothing_behind(result, tmp_path, monkeypatch, made):
-    write, folder = store._write, tmp_path / "tables"
+    write, folder = several.write_new, tmp_path / "tables"
     if made:
         folder.mkdir()
 
@@ -126,7 +127,7 @@ def test_a_full_disk_leaves_nothing_behind(result, tmp_path, monkeypatch, made):
             raise OSError(28, "No space left on device")
         write(path, content)
 
-    monkeypatch.setattr(store, "_write", until_full)
+    monkeypatch.setattr(several, "write_new", until_full)
     with pytest.raises(ResultError, match=r"tables cannot be written: No space left.*--out"):
         export.export(result, Kind.CSV, folder)
     assert list(tmp_path.rglob("*")) == ([folder] if made else [])

@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 
 from tpss import ResultError, load_result, simulate, write_report
+from tpss.files import whole
 from tpss.report.contact_line import line_voltage
 from tpss.results import store
 
@@ -64,6 +65,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import tpss
+from tpss.files import whole
 from tpss.results import store
 
 def kill(*_, **__):
@@ -79,7 +81,7 @@ new = tpss.load_result("new")
 if sys.argv[1] == "writing":
     store.json.dumps = kill
 elif sys.argv[1] == "moving":
-    store._move = kill
+    whole.move_folder = kill
 else:
     Path.rename = kill_at_second()
 new.save("result", force=True)
@@ -130,14 +132,14 @@ def test_a_folder_that_another_run_has_written_meanwhile_is_not_replaced(
     old, new, tmp_path, monkeypatch
 ):
     folder = tmp_path / "result"
-    write = store._write
+    write = whole.write_new
 
     def meanwhile(path, content):
-        monkeypatch.setattr(store, "_write", write)
+        monkeypatch.setattr(whole, "write_new", write)
         old.save(folder)
         write(path, content)
 
-    monkeypatch.setattr(store, "_write", meanwhile)
+    monkeypatch.setattr(whole, "write_new", meanwhile)
     with pytest.raises(ResultError, match="exists already"):
         new.save(folder)
     assert load_result(folder).scenario.name == "old"

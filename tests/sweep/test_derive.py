@@ -10,7 +10,7 @@ from tpss import Scenario, simulate
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
 from tpss.sweep.inputs import inputs_of
-from tpss.sweep.settings import places_of
+from tpss.sweep.settings import PLACES, places_of
 
 from scenarios import SHORT_LINE, short_line
 
@@ -184,3 +184,15 @@ def test_derived_scenarios_run(tmp_path):
     """A quarter of the line in ten minutes at 60 km/h: the train has arrived by then."""
     changes = {"vary": {"line.length_km": [5.0]}, "gradients": DRAWN | {"mean_permille": [0.0]}}
     assert simulate(first(tmp_path, changes)).trips.arrival_min.notna().any()
+
+
+def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
+    assert set(PLACES) == {
+        "line.stations.*.position_km",
+        "line.speed_limits.*.from_km",
+        "supply.converter_stations.*.position_km",
+        "supply.high_voltage_line.transformers_km.*",
+        "traffic.*.initial_trains.*.position_km",
+        "standards.zones.*.from_km",
+        "standards.zones.*.to_km",
+    }

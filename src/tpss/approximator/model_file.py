@@ -2,6 +2,7 @@
 
 import json
 import tempfile
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -12,8 +13,9 @@ from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.files.refusals import ANOTHER, explained, reason
+from tpss.files.whole import write_file
 from tpss.scenario.fields import Name, Part, Real, Whole, fault
-from tpss.whole_file import write_whole
 
 FORMAT, VERSION = "tpss-approximator", 2
 
@@ -199,7 +201,7 @@ def _document(path: Path) -> Any:
             raise ApproximatorError(f"{path} is too long to be the file of an approximator")
         return json.loads(path.read_text("utf-8"))
     except OSError as error:
-        raise ApproximatorError(f"{path} cannot be read: {error.strerror or error}") from error
+        raise ApproximatorError(f"{path} cannot be read: {reason(error)}") from error
     except (ValueError, RecursionError) as error:
         raise ApproximatorError(
             f"{path} is not the file of an approximator, or damaged ({error}); {REMEDY}"
@@ -225,13 +227,11 @@ def check_target(path: Path, force: bool) -> None:
     if path.is_dir():
         raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
     if path.exists() and not force:
-        raise ApproximatorError(f"{path} exists; give another --out, or --force to replace it")
-    try:
+        raise ApproximatorError(f"{path} exists; {ANOTHER}, or --force to replace it")
+    with _unwritable(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
-    except OSError as error:
-        raise _unwritable(path, error) from error
 
 
 def write_bytes(path: Path, content: bytes) -> None:
@@ -241,16 +241,13 @@ def write_bytes(path: Path, content: bytes) -> None:
     ------
     ApproximatorError
     """
-    try:
-        write_whole(path, content)
-    except OSError as error:
-        raise _unwritable(path, error) from error
+    with _unwritable(path):
+        write_file(path, content)
 
 
-def _unwritable(path: Path, error: OSError) -> ApproximatorError:
-    return ApproximatorError(
-        f"{path} cannot be written: {error.strerror or error}; make room, or give another --out"
-    )
+def _unwritable(path: Path) -> AbstractContextManager[None]:
+    """Raise an error of the system as one of an approximator's file."""
+    return explained(path, f"make room, or {ANOTHER}", ApproximatorError)
 
 
 def text_of_model(model: ModelFile) -> str:

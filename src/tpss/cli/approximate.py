@@ -16,6 +16,7 @@ from rich.table import Table
 from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
 from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.files.refusals import reason
 
 if TYPE_CHECKING:
     from tpss.approximator.approximator import Approximator
@@ -165,8 +166,7 @@ def _read_table(path: Path) -> pd.DataFrame:
             return pd.read_parquet(path)
         return pd.read_csv(path, comment="#", skipinitialspace=True)
     except (OSError, ValueError, ImportError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ApproximatorError(f"{path} cannot be read as a table: {reason}") from error
+        raise ApproximatorError(f"{path} cannot be read as a table: {reason(error)}") from error
 
 
 def _write(table: pd.DataFrame, out: Path) -> None:

@@ -107,7 +107,7 @@ def print_library(kind: str | None, name: str | None) -> None:
     """
     console = Console()
     if kind is None:
-        for each in library.KINDS:
+        for each in KINDS:
             _print_entries(each, console)
         _print_plain(console, "All values of an entry: tpss library KIND NAME")
         return
@@ -131,10 +131,10 @@ def usage(kind: str, name: str) -> str:
 
 def _known_kind(kind: str) -> str:
     plain = kind.replace("-", "_")
-    if plain in library.KINDS:
+    if plain in KINDS:
         return plain
-    remedy = suggest(plain, library.KINDS)
-    for each in library.KINDS:
+    remedy = suggest(plain, KINDS)
+    for each in KINDS:
         if kind in library.entries(each):
             remedy = f"{kind} is one of the {each}: tpss library {each} {kind}"
     raise LibraryError(f"the library has no kind {kind!r}\n    -> {remedy}")

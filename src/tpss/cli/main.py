@@ -16,6 +16,7 @@ import typer
 
 from tpss.cli import approximate_app, complete, import_app
 from tpss.cli.arguments import Assignments, Quiet, ResultFolder, ScenarioFile
+from tpss.results.contents import FIGURE_NAMES
 from tpss.results.file_kinds import Kind
 
 
@@ -135,8 +136,7 @@ def plot(
         str,
         typer.Option(
             metavar="NAME",
-            help="time-distance, journey, voltage, train-voltage, stations, converters, energy, "
-            "effort, or all.",
+            help=f"{', '.join(FIGURE_NAMES)}, or all.",
             autocompletion=complete.figures,
         ),
     ] = "all",

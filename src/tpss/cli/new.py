@@ -5,6 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from tpss.errors import ResultError
+from tpss.files.refusals import reason
 
 TEMPLATE = ("scenario.toml", "gradients.csv")
 
@@ -32,7 +33,7 @@ def new_scenario(folder: Path) -> None:
         if isinstance(error, FileExistsError):
             message = f"{error.filename} exists already and is left as it is; name another folder"
         else:
-            message = f"{folder} cannot be written: {error.strerror}; name another folder"
+            message = f"{folder} cannot be written: {reason(error)}; name another folder"
         raise ResultError(message) from error
     scenario = shlex.quote(str(folder / TEMPLATE[0]))
     print(f"Wrote {' and '.join(str(file) for file in texts)}.  Now look into them, and:\n")

@@ -35,9 +35,9 @@ def plot_result(
         The folder holds no result, there is no such figure or train, or nothing to draw, or the file
         cannot be written.
     """
+    from tpss.files.several import check_files, save_files
     from tpss.report.figures import catalogue
     from tpss.report.trains import NothingToDrawError
-    from tpss.results import store
     from tpss.results.result import load_result
 
     if figure != ALL:
@@ -45,7 +45,7 @@ def plot_result(
         _demand_use(figure, train, against, catalogue.OF_A_TRAIN)
     place, names = _target(folder, figure, out)
     result = load_result(folder)
-    store.check_files(place, names.values(), force)
+    check_files(place, names.values(), force)
     contents: dict[str, bytes] = {}
     left_out: list[tuple[str, str]] = []
     for name, file in names.items():
@@ -58,7 +58,7 @@ def plot_result(
     if not contents:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in left_out))
         raise ResultError(f"{folder} ({result.status}) holds nothing to draw: {reasons}")
-    files = store.save_files(place, contents, force)
+    files = save_files(place, contents, force)
     print(_said(place, files, figure))
     for name, reason in left_out:
         print(f"Left out {name}: {reason}")

@@ -5,8 +5,9 @@ import os
 from pathlib import Path
 
 from tpss.errors import ResultError
+from tpss.files.refusals import explained
+from tpss.files.whole import write_file
 from tpss.scenario.schema import TITLE, scenario_schema
-from tpss.whole_file import write_whole
 
 
 def write_schema(out: Path | None) -> None:
@@ -23,11 +24,8 @@ def write_schema(out: Path | None) -> None:
         return
     if os.path.lexists(out) and not _is_our_schema(out):
         raise ResultError(f"{out} is there and is not a schema of TPSS; name another file")
-    try:
-        write_whole(out, text.encode())
-    except OSError as error:
-        message = f"{out} cannot be written: {error.strerror}; name another file"
-        raise ResultError(message) from error
+    with explained(out, "name another file"):
+        write_file(out, text.encode())
     print(f"Wrote {out}.  In a scenario, the first line  #:schema {out.name}  leads editors to it.")
 
 

@@ -6,6 +6,7 @@ from textwrap import wrap
 import tomli_w
 
 from tpss.errors import Finding, ScenarioError
+from tpss.files.refusals import reason
 from tpss.importers.ttobench import Imported
 from tpss.scenario.files import PROFILE_COLUMNS
 
@@ -161,7 +162,7 @@ def write(texts: dict[str, str], folder: Path, force: bool) -> list[Path]:
         for target, text in zip(targets, texts.values(), strict=True):
             target.write_text(text, encoding="utf-8")
     except OSError as error:
-        problem = f"it cannot be written: {error.strerror}"
+        problem = f"it cannot be written: {reason(error)}"
         raise ScenarioError(
             [Finding(str(folder), "", "", problem, "give another --out")]
         ) from error

@@ -9,13 +9,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-KINDS = (
-    "locomotives",
-    "catenaries",
-    "converters",
-    "transformers",
-    "high_voltage_lines",
-    "voltage_limits",
+KINDS = tuple(
+    sorted(file.name[:-5] for file in files(__package__).iterdir() if file.name.endswith(".toml"))
 )
 
 

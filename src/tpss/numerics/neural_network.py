@@ -28,7 +28,7 @@ from typing import Annotated, Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import fused, inlined
+from tpss.kernel import fused, kernel
 from tpss.numerics.exponential import exponential
 from tpss.record import Record
 
@@ -189,7 +189,7 @@ def weigh(weight: Array, neurons: Array) -> float:
     return (a + b) + (c + d)
 
 
-@inlined
+@kernel
 def outside(value: float, network: FeedForwardNetwork, k: int) -> bool:
     """Whether input `k` lies outside the range on which the network was trained."""
     return value < network.trained[k, 0] or value > network.trained[k, 1]

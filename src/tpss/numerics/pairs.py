@@ -11,7 +11,7 @@ composition (p₁p₂ + q₁q̄₂, p₁q₂ + q₁p̄₂), determinant |p|² - 
 
 import math
 
-from tpss.kernel import fused, fused_like_numpy, inlined
+from tpss.kernel import fused, fused_like_numpy
 
 Pair = tuple[complex, complex]
 """A real-linear map (p, q)."""
@@ -32,7 +32,7 @@ def magnitude(z: complex) -> float:
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
-@inlined
+@fused
 def scaled(z: complex, factor: float) -> complex:
     """A complex number times a real one, without the detour over a complex factor.
 

@@ -5,7 +5,6 @@ program is part of the file.  The page forbids itself all access to the network.
 """
 
 import json
-import os
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
@@ -18,7 +17,8 @@ from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
 from tpss.audit.verdict import LIMITS
-from tpss.errors import ResultError
+from tpss.files.refusals import explained, refuse_to_replace
+from tpss.files.whole import write_file
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.drawings.journey import journey
@@ -33,7 +33,6 @@ from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result
-from tpss.whole_file import write_whole
 
 STATUS_IN_WORDS = {
     "finished": "The run finished.",
@@ -80,22 +79,14 @@ def write_report(
     place = Path(file)
     check_target(place, force)
     text = report(results) if isinstance(results, Result) else comparison(results)
-    try:
-        write_whole(place, text.encode())
-    except OSError as error:
-        message = f"{place} cannot be written: {error.strerror}; give another --out"
-        raise ResultError(message) from error
+    with explained(place):
+        write_file(place, text.encode())
     return place
 
 
 def check_target(file: Path, force: bool) -> None:
     """Raise a `ResultError` if a report may not be written there."""
-    if not os.path.lexists(file):
-        return
-    if not force:
-        raise ResultError(f"{file} exists already; give another --out, or --force to replace it")
-    if not is_report(file):
-        raise ResultError(f"{file} is not a report, so it is not replaced; give another --out")
+    refuse_to_replace(file, force, "a report", is_report)
 
 
 def report(result: Result) -> str:

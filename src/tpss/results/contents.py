@@ -19,11 +19,18 @@ REPORT_MARK, HEAD_BYTES = "TPSS report", 2_000
 TABLES = "tables"
 """Folder of exported tables, within that of the result."""
 
-TABLE_NAMES = (
-    "trips", "stations", "violations", "voltage", "excursions", "useful_voltage_zones",
-    "useful_voltage_trains", "energy", "energy_blocks", "station_power", "load_duration", "converters",
-    "losses", "branch_current", "trains",
+_OF_STANDARDS = (
+    "violations", "voltage", "excursions", "useful_voltage_zones", "useful_voltage_trains", "energy",
+    "energy_blocks", "station_power", "load_duration", "converters", "losses", "branch_current",
 )  # fmt: skip
+TABLE_PLACES = {
+    "trips": "trips",
+    "stations": "stations",
+    **{name: f"standards.{name}" for name in _OF_STANDARDS},
+    "trains": "train_steps",
+}
+"""Tables by the names of their files, or of their sheets, and where a `Result` has them."""
+
 WORKBOOK = "result.xlsx"
 
 FIGURES = "figures"
@@ -52,7 +59,7 @@ def is_ours(path: Path, folder: str = "") -> bool:
     if not path.is_file() or path.is_symlink():
         return False
     if folder == TABLES:
-        written = {WORKBOOK} | {f"{n}.{kind}" for n in TABLE_NAMES for kind in Kind}
+        written = {WORKBOOK} | {f"{n}.{kind}" for n in TABLE_PLACES for kind in Kind}
         return path.name in written
     if folder == FIGURES:
         return path.name in {f"{name}.png" for name in FIGURE_NAMES}

@@ -51,7 +51,7 @@ def _indexed(coordinates: dict[str, Any]) -> xr.Coordinates:
 
 @lru_cache(maxsize=64)
 def _index(dimension: str, names: tuple[str, ...]) -> PandasIndex:
-    """Index of names: it takes as long as a hundred steps, and runs of the same line share it."""
+    """Index of names, shared by runs of the same line: to make one takes as long as twenty steps."""
     return _new_index(dimension, xr.Variable(dimension, list(names)))
 
 
@@ -76,18 +76,19 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
         "node": np.asarray(recording.nodes),
         "station": np.asarray(recording.stations),
     }
+    there = {"train": recording.train_state != TrainState.ABSENT}
+    polar = {
+        phasor: _polar(rows[of], phasor, there.get(of, ...))
+        for phasor, of in dict.fromkeys((each.phasor, each.of) for each in RECORDED if each.phasor)
+    }
     arrays: dict[str, npt.NDArray[Any]] = {}
     for each in RECORDED:
         if each.array:
             arrays[each.name] = getattr(recording, each.array)
-        elif not each.phasor:
+        elif each.phasor:
+            arrays[each.name] = polar[each.phasor][each.unit == "rad"]
+        else:
             arrays[each.name] = rows[each.of][each.name]
-    for place, of, there in (
-        ("pantograph", "train", recording.train_state != TrainState.ABSENT),
-        ("node", "node", ...),
-    ):
-        magnitude, angle = _polar(rows[of], place, there)
-        arrays[f"{place}_voltage"], arrays[f"{place}_angle"] = magnitude, angle
     arrays["node_voltage"] *= np.array(plan.node_level)
     arrays["branch_current"] = arrays["branch_current"] / np.array(plan.branch_levels())
     return arrays

@@ -6,6 +6,7 @@ Headings carry the units, as in ``energy [MWh]``.
 import io
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -13,27 +14,13 @@ import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
-from tpss.results import store
-from tpss.results.contents import WORKBOOK
+from tpss.files.several import check_files, save_files
+from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.file_kinds import Kind
 from tpss.results.result import Result
 
 TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
-    "trips": lambda result: result.trips,
-    "stations": lambda result: result.stations,
-    "violations": lambda result: result.standards.violations,
-    "voltage": lambda result: result.standards.voltage,
-    "excursions": lambda result: result.standards.excursions,
-    "useful_voltage_zones": lambda result: result.standards.useful_voltage_zones,
-    "useful_voltage_trains": lambda result: result.standards.useful_voltage_trains,
-    "energy": lambda result: result.standards.energy,
-    "energy_blocks": lambda result: result.standards.energy_blocks,
-    "station_power": lambda result: result.standards.station_power,
-    "load_duration": lambda result: result.standards.load_duration,
-    "converters": lambda result: result.standards.converters,
-    "losses": lambda result: result.standards.losses,
-    "branch_current": lambda result: result.standards.branch_current,
-    "trains": lambda result: result.train_steps,
+    name: attrgetter(place) for name, place in TABLE_PLACES.items()
 }
 """Tables by the names of their files, or of their sheets."""
 
@@ -73,12 +60,12 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
     """
     _demand_package(kind)
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
-    store.check_files(folder, names, force)
+    check_files(folder, names, force)
     tables = {name: with_units(table(result)) for name, table in TABLES.items()}
     contents = (
         [_workbook(tables)] if kind is Kind.XLSX else [_bytes(t, kind) for t in tables.values()]
     )
-    return store.save_files(folder, dict(zip(names, contents, strict=True)), force)
+    return save_files(folder, dict(zip(names, contents, strict=True)), force)
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:

@@ -2,11 +2,7 @@
 
 import json
 import os
-import shutil
-import tempfile
 import threading
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +12,12 @@ import tomli_w
 import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
+from tpss.files import whole
+from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
 from tpss.results.dataset import NODE_KIND
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
-
-TRIAL_BYTES = 2**16
-"""A disk without room for so much is full."""
 
 FIRST_BYTES = 2**16
 """Room for a dataset at first; it grows."""
@@ -45,10 +40,9 @@ def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
     ResultError
         It exists and may not be replaced, or it cannot be made, or the disk is full.
     """
-    with _told(folder):
-        if folder is not None:
-            _refuse_to_replace(folder, force)
-        _try_out(_real(folder or next_folder(scenario.name)))
+    with explained(folder or PARENT):
+        _refuse(folder, force)
+        whole.try_out(whole.real(folder or next_folder(scenario.name)))
 
 
 def save(
@@ -59,97 +53,31 @@ def save(
     force: bool,
 ) -> Path:
     """Write a result folder.  See `Result.save`."""
-    with _told(folder):
-        if folder is not None:
-            _refuse_to_replace(folder, force)
-        target = _real(folder or next_folder(scenario.name))
+    with explained(folder or PARENT):
+        _refuse(folder, force)
+        target = whole.real(folder or next_folder(scenario.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        with _folder_beside(target) as work:
+        with whole.folder_beside(target) as work:
             new = work / "new"
             new.mkdir()
             # In memory first: on a full disk HDF5 cannot close its file, and brings the process down.
             # The simulation has needed more memory than this.
-            _write(new / DATASET, _as_netcdf(dataset))
-            _write(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
+            whole.write_new(new / DATASET, _as_netcdf(dataset))
+            whole.write_new(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
             text = json.dumps(summary, indent=2, ensure_ascii=False)
-            _write(new / SUMMARY, f"{text}\n".encode())
+            whole.write_new(new / SUMMARY, f"{text}\n".encode())
             if folder is None:
                 return _move_to_next(new, scenario.name)
-            _refuse_to_replace(folder, force)
-            _move(new, target, old=work.with_name(f"{work.name}-replaced"))
+            _refuse(folder, force)
+            old = work.with_name(f"{work.name}-replaced")
+            whole.move_folder(new, target, old, carry_over)
             return folder
 
 
-def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
-    """Find out whether files can be written into a folder, as `save_files` does.
-
-    Raises
-    ------
-    ResultError
-        The folder is none, or files exist and may not be replaced.
-    """
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise ResultError(f"{folder} is not a folder; give another --out")
-    there = [folder / name for name in names if os.path.lexists(folder / name)]
-    if there and not force:
-        more = f" (and {len(there) - 1} more)" if len(there) > 1 else ""
-        raise ResultError(
-            f"{there[0]}{more} exists already; give another --out, or --force to replace it"
-        )
-    for path in there:
-        if not path.is_file():
-            raise ResultError(f"{path} is not a file, so it is not replaced; give another --out")
-
-
-def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list[Path]:
-    """Write files into a folder, all of them or none; the folder is made if it is not there.
-
-    Raises
-    ------
-    ResultError
-        As `check_files`, or the folder cannot be written.
-    """
-    target = _real(folder)
-    with _told(folder), _folder_beside(target / "export") as work:
-        new, old = work / "new", work / "old"
-        new.mkdir()
-        old.mkdir()
-        for name, content in contents.items():
-            _write(new / name, content)
-        check_files(folder, contents, force)
-        if target.exists():
-            _move_files(new, target, old)
-        else:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            new.rename(target)
-    return [folder / name for name in contents]
-
-
-@contextmanager
-def _told(folder: Path | None) -> Iterator[None]:
-    """Say of what the system reports where it was, and what to do."""
-    try:
-        yield
-    except OSError as error:
-        place, reason = folder or PARENT, error.strerror or error
-        message = f"{place} cannot be written: {reason}; give another --out"
-        raise ResultError(message) from error
-
-
-def _real(folder: Path) -> Path:
-    """A folder's place on the disk, links followed."""
-    return Path(os.path.realpath(folder))
-
-
-def _refuse_to_replace(folder: Path, force: bool) -> None:
-    if not os.path.lexists(_real(folder)):
-        return
-    if not force:
-        raise ResultError(f"{folder} exists already; give another --out, or --force to replace it")
-    if not _is_replaceable(folder):
-        raise ResultError(
-            f"{folder} is not a result folder, so it is not replaced; give another --out"
-        )
+def _refuse(folder: Path | None, force: bool) -> None:
+    """Refuse to replace a folder that somebody has named."""
+    if folder is not None and os.path.lexists(whole.real(folder)):
+        refuse_to_replace(folder, force, "a result folder", _is_replaceable)
 
 
 def _is_replaceable(folder: Path) -> bool:
@@ -157,62 +85,6 @@ def _is_replaceable(folder: Path) -> bool:
     if not folder.is_dir() or folder.is_mount():
         return False
     return not any(folder.iterdir()) or (folder / SUMMARY).exists()
-
-
-@contextmanager
-def _folder_beside(target: Path) -> Iterator[Path]:
-    """A hidden folder to work in, on the disk of the nearest folder above `target` that exists."""
-    parent = next(folder for folder in target.parents if os.path.lexists(folder))
-    with tempfile.TemporaryDirectory(
-        prefix=f".{target.name}-", dir=parent, ignore_cleanup_errors=True
-    ) as work:
-        yield Path(work)
-
-
-def _try_out(target: Path) -> None:
-    """Write a little beside a folder to be made, as nothing else proves that it can be."""
-    with _folder_beside(target) as work:
-        (work / "trial").write_bytes(bytes(TRIAL_BYTES))
-
-
-def _write(path: Path, content: bytes | memoryview) -> None:
-    """Write a new file, and see to it that it is on the disk."""
-    with path.open("xb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _move(new: Path, target: Path, old: Path) -> None:
-    """Put a written folder into its place; one that it replaces goes only when that is done."""
-    try:
-        if target.exists():
-            target.rename(old)
-        new.rename(target)
-    finally:
-        if old.exists() and not target.exists():
-            old.rename(target)
-    if old.exists():
-        carry_over(old, target)
-        shutil.rmtree(old, ignore_errors=True)
-
-
-def _move_files(new: Path, target: Path, old: Path) -> None:
-    """Put written files into a folder; if one cannot be moved, all is as it was before."""
-    moved: list[str] = []
-    try:
-        for file in sorted(new.iterdir()):
-            place = target / file.name
-            if os.path.lexists(place):
-                place.rename(old / file.name)
-            file.rename(place)
-            moved.append(file.name)
-    except BaseException:
-        for name in moved:
-            (target / name).unlink()
-        for file in old.iterdir():
-            file.rename(target / file.name)
-        raise
 
 
 def _move_to_next(new: Path, name: str) -> Path:

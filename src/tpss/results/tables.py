@@ -18,7 +18,7 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     """
     h = step_s(dataset)
     time_min = dataset.time.to_numpy() / 60.0
-    position_km, way_km = dataset.position.to_numpy() / 1e3, distance_km(dataset)
+    position_km, travelled_km = dataset.position.to_numpy() / 1e3, distance_km(dataset)
     voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
     lowest = np.argmin(np.where(np.isfinite(voltage_kv), voltage_kv, np.inf), axis=0)
     each = np.arange(dataset.sizes["train"])
@@ -36,8 +36,8 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
             "departure_min": departure_min,
             "arrival_min": arrival_min,
             "trip_min": arrival_min - departure_min,
-            "distance_km": way_km,
-            "mean_speed_kmh": way_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
+            "distance_km": travelled_km,
+            "mean_speed_kmh": travelled_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
             "energy_mwh": np.nansum(dataset.active_power.to_numpy(), axis=0) * h / J_PER_MWH,
             "lowest_voltage_kv": np.where(drawn, voltage_kv[lowest, each], np.nan),
             "lowest_voltage_km": np.where(drawn, position_km[lowest, each], np.nan),
@@ -100,10 +100,10 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
 
 
 def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
-    """Way of each train within the run. [km]"""
+    """Distance that each train goes within the run. [km]"""
     position_m = dataset.position.to_numpy()
-    way_m = np.nanmax(position_m, axis=0) - np.nanmin(position_m, axis=0)
-    return np.asarray(np.nan_to_num(way_m) / 1e3)
+    distance_m = np.nanmax(position_m, axis=0) - np.nanmin(position_m, axis=0)
+    return np.asarray(np.nan_to_num(distance_m) / 1e3)
 
 
 def step_s(dataset: xr.Dataset) -> float:

@@ -1,9 +1,9 @@
 """Building blocks of all parts of a scenario: strict numbers, library names, ordered profiles."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import lt
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -44,10 +44,36 @@ def _is_whole(value: Any) -> Any:
     return value
 
 
+def marked(part: Any, marker: type, path: str = "") -> Iterator[str]:
+    """Key paths below a part of a scenario, ``*`` for any item or key, of what bears a marker."""
+    if get_origin(part) is Annotated:
+        kind, *metadata = get_args(part)
+        if any(isinstance(each, marker) for each in metadata):
+            yield path
+        yield from marked(kind, marker, path)
+    elif get_origin(part) in (tuple, dict):
+        items = get_args(part)[0 if get_origin(part) is tuple else 1]
+        yield from marked(items, marker, f"{path}.*")
+    elif get_args(part):  # one of several types
+        yield from (place for kind in get_args(part) for place in marked(kind, marker, path))
+    for name, field in fields_of(part).items():
+        key = f"{path}.{field.alias or name}".lstrip(".")
+        if any(isinstance(each, marker) for each in field.metadata):
+            yield key
+        yield from marked(field.annotation, marker, key)
+
+
 Version = Annotated[Literal[1], BeforeValidator(_is_whole)]
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
+
+
+class AlongLine:
+    """Marks a position that moves in proportion where a study gives the line another length."""
+
+
+Position = Annotated[Real, AlongLine()]
 
 
 def _is_one_line(name: str) -> str:

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from tpss.scenario.fields import Name, Part, Real, ascending, one_of, unique
+from tpss.scenario.fields import Name, Part, Position, Real, ascending, one_of, unique
 
 
 @dataclass(frozen=True, slots=True, config=ConfigDict(extra="forbid", allow_inf_nan=False))
@@ -23,7 +23,7 @@ class Gradient:
 class SpeedLimit(Part):
     """A speed limit that holds from its position to the next one's."""
 
-    from_km: Real = Field(ge=0, le=100_000, description="Position from which the limit holds.")
+    from_km: Position = Field(ge=0, le=100_000, description="Position from which the limit holds.")
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
 
@@ -31,7 +31,7 @@ class Station(Part):
     """A place where trains may begin, stop or end."""
 
     name: Name = Field(description="Name that traffic entries refer to.")
-    position_km: Real = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(ge=0, description="Position on the line.")
 
 
 class Line(Part):

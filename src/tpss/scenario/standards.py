@@ -6,7 +6,7 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Real, unique
+from tpss.scenario.fields import Name, Part, Position, Real, unique
 
 KIND = "voltage_limits"
 
@@ -79,8 +79,8 @@ class Zone(Part):
     """A stretch of line whose mean useful voltage is asked for."""
 
     name: Name = Field(description="Name, shown in the results.")
-    from_km: Real = Field(ge=0, description="Where it begins.")
-    to_km: Real = Field(gt=0, description="Where it ends.")
+    from_km: Position = Field(ge=0, description="Where it begins.")
+    to_km: Position = Field(gt=0, description="Where it ends.")
 
     @model_validator(mode="after")
     def _ends_beyond_its_beginning(self) -> Self:

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import Flag, Name, Part, Real, ascending_numbers, one_of
+from tpss.scenario.fields import Flag, Name, Part, Position, Real, ascending_numbers, one_of
 
 Times = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=100_000)], ...],
@@ -24,7 +24,7 @@ class Stop(Part):
 class InitialTrain(Part):
     """A train that is on the line when the simulation begins, heading for its next stop."""
 
-    position_km: Real = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(ge=0, description="Position on the line.")
     speed_kmh: Real = Field(ge=0, le=500, description="Speed.")
 
 

@@ -10,7 +10,7 @@ from tpss.physics.locomotive import machine_force
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current, motor_voltage
 from tpss.physics.reactive_power import ReactiveModel, bridge_outside_training
 from tpss.record import Records
-from tpss.sources.kinds import loading
+from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
 from tpss.step.model import Model
 from tpss.step.recording import Indices, Recording
@@ -141,27 +141,29 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
         recording.nodes[at(step), at(n)].node_imag = flow.nodes[at(n)].voltage_v.imag
     for s in range(network.sources.size):
         row = recording.stations[at(step), at(s)]
-        power = station_power(flow.nodes[at(network.sources[at(s)].node)])
+        source = network.sources[at(s)]
+        node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
+        power = station_power(node)
         row.station_active_power = power.real
         row.station_reactive_power = power.imag
-        running, rating_va = flow.sources[at(s)].running, network.sources[at(s)].rating_va
         row.active_converters = running
-        row.converter_loading = loading(power, running, rating_va)
-    losses = 0.0
+        row.converter_loading = loading(power, running, source.rating_va)
+        row.station_losses = losses(node.leaving_current_a, running, source)
+    lost_w = 0.0
     for b in range(network.branches.size):
         branch = network.branches[at(b)]
         start, end = flow.nodes[at(branch.start_node)], flow.nodes[at(branch.end_node)]
         drop = start.voltage_v - end.voltage_v
         square = squared(drop) * squared(branch.admittance_s)
         recording.branch_current[at(step), at(b)] = math.sqrt(square)
-        losses += square * branch.impedance_ohm.real
+        lost_w += square * branch.impedance_ohm.real
     lumped = network.branches.size
     for s in range(network.sections.size):
         found = flow.sections[at(s)]
         recording.branch_current[at(step), at(lumped + 2 * s)] = magnitude(found.current_a)
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(found.end_current_a)
-        losses += section_losses(s, model, state)
-    recording.network_losses[at(step)] = losses
+        lost_w += section_losses(s, model, state)
+    recording.network_losses[at(step)] = lost_w
 
 
 @inlined

@@ -10,7 +10,10 @@ from typing import Any
 import pandas as pd
 
 from tpss.errors import StudyError
-from tpss.whole_file import write_whole
+from tpss.files.refusals import ANOTHER, explained, reason
+from tpss.files.whole import write_file
+
+REMEDY = f"make room, or {ANOTHER}. What is there is kept, and the same command goes on from it"
 
 MANIFEST, CASES = "study.json", "cases"
 
@@ -42,7 +45,7 @@ class Folder:
             It belongs to another study or version, another process works in it, or it cannot be
             written.
         """
-        with told(self.path):
+        with explained(self.path, REMEDY, StudyError, within=True):
             self._refuse_others()
             (self.path / CASES).mkdir(parents=True, exist_ok=True)
             with _lock(self.path):
@@ -66,7 +69,7 @@ class Folder:
     def _begin(self, manifest: dict[str, Any]) -> dict[str, Any]:
         place = self.path / MANIFEST
         if not place.exists():
-            write_whole(place, json.dumps(manifest, indent=1).encode())
+            write_file(place, json.dumps(manifest, indent=1).encode())
             return manifest
         begun = read_manifest(self.path)
         for key, problem, remedy in (
@@ -89,7 +92,7 @@ class Folder:
 
     def add(self, first: int, end: int, content: bytes) -> None:
         """Add the rows of a batch."""
-        write_whole(self.path / CASES / f"cases-{first:08d}-{end:08d}.parquet", content)
+        write_file(self.path / CASES / f"cases-{first:08d}-{end:08d}.parquet", content)
 
 
 LOCK = ".lock"
@@ -111,19 +114,6 @@ def _lock(path: Path) -> Iterator[None]:
                 f"{path} is being worked on by another process; wait for it, or give another --out"
             ) from None
         yield
-
-
-@contextmanager
-def told(path: Path) -> Iterator[None]:
-    """Say where the system's words about a folder belong, and what to do."""
-    try:
-        yield
-    except OSError as error:
-        place = error.filename or path
-        raise StudyError(
-            f"{place} cannot be written: {error.strerror or error}; make room, or give another --out. "
-            "What is there is kept, and the same command goes on from it"
-        ) from error
 
 
 def missing(done: Ranges, cases: int) -> Ranges:
@@ -156,10 +146,9 @@ def read_manifest(path: Path) -> dict[str, Any]:
     try:
         manifest = json.loads((path / MANIFEST).read_text("utf-8"))
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
         raise StudyError(
-            f"{path} is not the folder of a study ({MANIFEST}: {reason}); name one that tpss sweep has "
-            "written"
+            f"{path} is not the folder of a study ({MANIFEST}: {reason(error)}); name one that tpss "
+            "sweep has written"
         ) from error
     if not isinstance(manifest, dict):
         raise StudyError(f"{path / MANIFEST} is damaged; give the study another folder")

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError
+from tpss.scenario import Scenario
+from tpss.scenario.fields import AlongLine, marked
 from tpss.scenario.override import copy_of, put_in
 
 Settings = dict[str, Any]
@@ -15,15 +17,7 @@ LEFT_OUT = "none"
 
 LENGTH = "line.length_km"
 
-PLACES = (
-    "line.stations.*.position_km",
-    "line.speed_limits.*.from_km",
-    "supply.converter_stations.*.position_km",
-    "supply.high_voltage_line.transformers_km.*",
-    "traffic.*.initial_trains.*.position_km",
-    "standards.zones.*.from_km",
-    "standards.zones.*.to_km",
-)
+PLACES = tuple(marked(Scenario, AlongLine))
 """What moves with the end of the line, in proportion.  The ground, that is the gradients, stays."""
 
 INSTEAD_OF = {

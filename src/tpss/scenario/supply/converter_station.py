@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from tpss.scenario.fields import FromLibrary, Name, Part, Real, Whole
+from tpss.scenario.fields import FromLibrary, Name, Part, Position, Real, Whole
 
 
 class ConverterType(Part):
@@ -28,7 +28,7 @@ class ConverterStation(Part):
     """A converter station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Real = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(ge=0, description="Position on the line.")
     type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import FromLibrary, Part, Real, Whole, ascending_numbers, one_of
+from tpss.scenario.fields import FromLibrary, Part, Position, Real, Whole, ascending_numbers, one_of
 from tpss.scenario.supply.catenary import SMALLEST_OHM
 
 
@@ -35,9 +35,9 @@ class HighVoltageLine(Part):
     type: Annotated[LineType, FromLibrary("high_voltage_lines")] = Field(
         description="Library name, or a table of your own."
     )
-    transformers_km: Annotated[tuple[Real, ...], ascending_numbers("transformers_km")] | None = (
-        Field(default=None, description="Positions of the transformers between stations.")
-    )
+    transformers_km: (
+        Annotated[tuple[Position, ...], ascending_numbers("transformers_km")] | None
+    ) = Field(default=None, description="Positions of the transformers between stations.")
     transformers: Whole | None = Field(
         default=None,
         ge=0,
