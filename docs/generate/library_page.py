@@ -16,6 +16,7 @@ KINDS = {
     ),
     "converters": ("Converters", "`type` of `supply.converter_stations`"),
     "locomotives": ("Trains", "`model` of a train"),
+    "systems": ("Electrification systems", "`system` of `supply`"),
     "voltage_limits": ("Voltage limits", "`system` of `standards.voltage_limits`"),
 }
 """Title of each kind, and the keys of a scenario that take its names."""
