@@ -122,7 +122,7 @@ MEANINGS = {
     "TrainType.resistance.a_n": "running resistance $A + B v + C v^2$",
     "TrainType.resistance.b_n_s_per_m": "...",
     "TrainType.resistance.c_n_s2_per_m2": "...",
-    "Demand.per_efficiency": "reciprocal of the efficiency from pantograph to motor shaft, at this speed",
+    "Demand.per_efficiency": "reciprocal of the efficiency from pantograph to motor shaft",
     "Demand.bridge_sine": "sine of the bridges' firing angle, before it is limited to 0 to 1",
     "TrainType.networks.tractive_effort": "largest force of all motors",
     "TrainType.networks.bridge_sine": "sine of the bridges' firing angle",
