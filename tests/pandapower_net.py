@@ -4,12 +4,14 @@ The net is laid out from the scenario's own tables in their own units (km, ohm p
 without `tpss.model` and `tpss.powerflow`, after [Boullanger2009]_, figure 2-4 and appendix A.2.  The
 high-voltage line keeps its own voltage, with real transformers; a transformer between the stations of
 an AT system has a bus between it and its connection impedance.  From the result come the trains
-(position, P and Q) and, in place of each converter station's law, voltage and angle at its node.
+(position, P and Q) and, in place of each converter station's law, voltage and angle at its node.  A
+transformer station is laid out whole: an ideal source behind its impedances.
 
 A single-phase network (U, P) equals a balanced three-phase one with U between its phases, P in all
 three together, and the same ohms.
 """
 
+import cmath
 import math
 from itertools import pairwise
 
@@ -19,11 +21,13 @@ import pandas as pd
 import xarray as xr
 
 import tpss
-from tpss.scenario.supply import Catenary, Supply
+from tpss.scenario.supply import Catenary, Supply, TransformerStation
 
-LINE_KV = 16.5
 BASE_MVA = 10.0
 SHORTEST_KM = 1e-3  # trains closer than a metre to each other or to a node count as a metre away
+
+LINE_KV = {"15kV-16.7Hz": 16.5, "25kV-50Hz": 27.5}
+"""Base voltages of the systems, to which our per-unit values refer."""
 
 Net = pp.auxiliary.pandapowerNet
 Buses = dict[float, int]  # by position in km
@@ -32,12 +36,13 @@ Buses = dict[float, int]  # by position in km
 def solve_with_pandapower(scenario: tpss.Scenario, moment: xr.Dataset) -> Net:
     """Net of one instant of a result's dataset, solved from a flat start."""
     net = pp.create_empty_network(f_hz=scenario.supply.frequency_hz, sn_mva=BASE_MVA)
-    stations_km = [station.position_km for station in scenario.supply.converter_stations]
+    stations_km = [station.position_km for station in scenario.supply.stations]
     transformers_km = positions_of_transformers(scenario.supply)
     # A node at every feeding point and at the line's ends; a feeder's bus may lie behind it.
     points_km = sorted({0.0, scenario.line.length_km, *stations_km, *transformers_km})
-    contact = {km: add_bus(net, "contact line", km) for km in points_km}
-    lay_contact_line(net, scenario.supply.catenary, contact, add_trains(net, moment))
+    line_kv = LINE_KV[scenario.supply.system]
+    contact = {km: add_bus(net, "contact line", km, line_kv) for km in points_km}
+    lay_contact_line(net, scenario.supply.catenary, contact, add_trains(net, moment, line_kv))
     feeding = {km: behind_connection(net, scenario.supply, contact, km) for km in stations_km}
     if scenario.supply.high_voltage_line is not None:
         lay_high_voltage_line(net, scenario.supply, contact, feeding, transformers_km)
@@ -57,14 +62,14 @@ def positions_of_transformers(supply: Supply) -> list[float]:
     return list(np.concatenate(inner))
 
 
-def add_bus(net: Net, name: str, km: float, kv: float = LINE_KV) -> int:
+def add_bus(net: Net, name: str, km: float, kv: float) -> int:
     return int(pp.create_bus(net, vn_kv=kv, name=f"{name} at {km:g} km"))
 
 
-def add_trains(net: Net, moment: xr.Dataset) -> list[tuple[float, int]]:
+def add_trains(net: Net, moment: xr.Dataset, line_kv: float) -> list[tuple[float, int]]:
     """A bus with a load for each train on the line; gives their positions [km] and buses."""
     trains = moment.where(np.isfinite(moment.active_power), drop=True)
-    buses = pp.create_buses(net, trains.train.size, vn_kv=LINE_KV, name=trains.train.values)
+    buses = pp.create_buses(net, trains.train.size, vn_kv=line_kv, name=trains.train.values)
     megawatt, megavar = trains.active_power.values / 1e6, trains.reactive_power.values / 1e6
     pp.create_loads(net, buses, p_mw=megawatt, q_mvar=megavar)
     return list(zip(trains.position.values / 1e3, buses, strict=True))
@@ -100,7 +105,7 @@ def behind_connection(net: Net, supply: Supply, contact: Buses, km: float) -> in
     connection = complex(supply.catenary.connection_r_ohm, supply.catenary.connection_x_ohm)
     if not connection:
         return contact[km]
-    bus = add_bus(net, "AT feeder", km)
+    bus = add_bus(net, "AT feeder", km, LINE_KV[supply.system])
     add_impedance(net, bus, contact[km], connection)
     return bus
 
@@ -120,24 +125,43 @@ def lay_high_voltage_line(
         unit = line.station_transformer if at_station else line.line_transformer
         low = feeding[km] if at_station else behind_connection(net, supply, contact, km)
         # Short-circuit voltages in percent of a unit of BASE_MVA, whose ohms are the same.
-        percent = 100.0 * BASE_MVA / LINE_KV**2
+        line_kv = LINE_KV[supply.system]
+        percent = 100.0 * BASE_MVA / line_kv**2
         pp.create_transformer_from_parameters(
-            net, high[km], low, sn_mva=BASE_MVA, vn_hv_kv=line.base_kv, vn_lv_kv=LINE_KV,
+            net, high[km], low, sn_mva=BASE_MVA, vn_hv_kv=line.base_kv, vn_lv_kv=line_kv,
             vkr_percent=percent * unit.r_ohm, vk_percent=percent * math.hypot(unit.r_ohm, unit.x_ohm),
             pfe_kw=0.0, i0_percent=0.0,
         )  # fmt: skip
 
 
 def add_sources(net: Net, supply: Supply, feeding: Buses, moment: xr.Dataset) -> None:
-    """An ideal source in place of each converter station."""
+    """An ideal source in place of each converter station, or behind a transformer station."""
+    line_kv = LINE_KV[supply.system]
+    for station in supply.transformer_stations:
+        behind = add_bus(net, f"grid of {station.name}", station.position_km, line_kv)
+        add_impedance(net, behind, feeding[station.position_km], station_ohm(station))
+        net.line.loc[net.line.index[-1], "name"] = station.name
+        pp.create_ext_grid(net, behind, vm_pu=station.no_load_voltage_kv / line_kv, va_degree=0.0)
     for station in supply.converter_stations:
         bus = feeding[station.position_km]
         node = moment.sel(node=net.bus.name[bus])
         pp.create_ext_grid(
             net, bus, name=station.name,
-            vm_pu=float(node.node_voltage) / (1e3 * LINE_KV),
+            vm_pu=float(node.node_voltage) / (1e3 * line_kv),
             va_degree=math.degrees(node.node_angle),
         )  # fmt: skip
+
+
+def station_ohm(station: TransformerStation) -> complex:
+    """Both phases of the grid, 2 E²/S_k, and the transformers in parallel. [Ω]"""
+    unit, kv = station.transformer, station.no_load_voltage_kv
+    z_ohm = unit.short_circuit_percent / 100.0 * kv**2 / unit.rated_mva
+    r_ohm = unit.load_loss_kw / 1e3 * kv**2 / unit.rated_mva**2
+    ohm = complex(r_ohm, math.sqrt(z_ohm**2 - r_ohm**2)) / station.transformers
+    if station.grid_short_circuit_mva is not None:
+        angle = math.atan2(1.0, station.grid_r_over_x)
+        ohm += 2.0 * kv**2 / station.grid_short_circuit_mva * cmath.exp(1j * angle)
+    return ohm
 
 
 def worst_differences(net: Net, moment: xr.Dataset) -> dict[str, float]:
@@ -150,7 +174,12 @@ def worst_differences(net: Net, moment: xr.Dataset) -> dict[str, float]:
         and of the stations' active and reactive powers [p.u. of `BASE_MVA`].
     """
     found = net.bus[["name", "vn_kv"]].join(net.res_bus).set_index("name")
-    feeding = net.ext_grid[["name"]].join(net.res_ext_grid).set_index("name")
+    feeding = net.ext_grid[["name"]].join(net.res_ext_grid).dropna(subset="name").set_index("name")
+    stations = (
+        net.line[["name"]].join(-net.res_line[["p_to_mw", "q_to_mvar"]]).dropna(subset="name")
+    )
+    stations = stations.set_axis(["name", "p_mw", "q_mvar"], axis=1).set_index("name")
+    feeding = pd.concat([feeding, stations])
     volts, angles = (
         pd.concat([moment[f"{at}_{what}"].to_series().dropna() for at in ("pantograph", "node")])
         for what in ("voltage", "angle")

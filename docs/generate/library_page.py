@@ -16,8 +16,8 @@ KINDS = {
     ),
     "converters": ("Converters", "`type` of `supply.converter_stations`"),
     "locomotives": ("Trains", "`model` of a train"),
-    "systems": ("Electrification systems", "`system` of `supply`"),
-    "voltage_limits": ("Voltage limits", "`system` of `standards.voltage_limits`"),
+    "systems": ("Electrification systems", "`supply.system`"),
+    "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),
 }
 """Title of each kind, and the keys of a scenario that take its names."""
 

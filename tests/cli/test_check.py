@@ -26,7 +26,7 @@ def test_a_scenario_is_told_in_a_few_lines(tpss_command, tmp_path):
         "West 0 km, Middle 80 km, East 160 km",
         "gradients -3.4658 to 5.7058 ‰; from beginning to end +179 m",
         "speed limits 100 km/h from 0 km",
-        "frequency 16.7 Hz",
+        "system 15kV-16.7Hz, 16.7 Hz",
         "catenary BT: 0.21 + j0.2 Ω/km",
         "132kV, 132 kV; transformers: 16MVA at 40 km, 80 km, 120 km, 25MVA at the stations",
         "West 0 km: 6 x Q48/Q49 of 10 MVA, control all-on",
@@ -118,12 +118,11 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
         (["line.length_km=160.1", "line.speed_limits=[{from_km = 0, speed_kmh = 100}, "
           "{from_km = 161, speed_kmh = 60}]"],
          "line.speed_limits.1 begins at 161 km, where the line has ended (160.1 km)"),
-        (["standards.voltage_limits.system=25kV-50Hz",
-          "supply.converter_stations.1.type={rating_mva = 10, no_load_voltage_kv = 19.5, "
+        (["supply.converter_stations.1.type={rating_mva = 10, no_load_voltage_kv = 19.5, "
           "droop_kv_per_mvar = 0.05, generator_reactance_pu = 0.5, generator_base_mva = 10, "
           "motor_reactance_pu = 0.5, motor_base_mva = 10, base_voltage_kv = 16.5}"],
-         "supply.converter_stations.0: it feeds 16.5 kV without load, outside of the 19 to 27.5 kV of "
-         "standards.voltage_limits (25kV-50Hz)"),
+         "supply: East feeds 19.5 kV without load, outside of the 12 to 17.25 kV of "
+         "standards.voltage_limits (15kV-16.7Hz)"),
     ],
 )  # fmt: skip
 def test_what_may_not_be_meant_is_noted(tpss_command, changes, note):

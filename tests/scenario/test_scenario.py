@@ -94,6 +94,15 @@ def test_a_catenary_is_a_library_name_or_a_table_of_one_s_own():
     assert short_line({"supply.catenary": table}) == short_line({"supply.catenary": "BT"})
 
 
+@pytest.mark.parametrize(("system", "frequency_hz"), [("15kV-16.7Hz", 16.7), ("25kV-50Hz", 50.0)])
+def test_the_frequency_is_that_of_the_system_unless_it_is_given(system, frequency_hz):
+    of_the_system = short_line({"supply.system": system, "supply.frequency_hz": None})
+    assert of_the_system.supply.frequency_hz == frequency_hz
+    own = short_line({"supply.system": system, "supply.frequency_hz": 25.0})
+    assert own.supply.frequency_hz == 25.0
+    assert short_line({"supply.frequency_hz": None}).supply.frequency_hz == 16.7
+
+
 def test_a_converter_type_is_a_library_name_or_a_table_of_one_s_own():
     table = short_line().as_document()["supply"]["converter_stations"][0]["type"]
     own = short_line({"supply.converter_stations.0.type": {**table, "rating_mva": 15.0}})

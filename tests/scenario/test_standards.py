@@ -25,10 +25,34 @@ def test_any_figure_may_be_changed_alone():
     assert (limits.umin1_kv, limits.umin2_kv) == (12.5, 11.0)
 
 
+@pytest.mark.parametrize("system", library.entries("systems"))
+def test_the_result_is_judged_by_the_limits_of_the_supply_s_system(system):
+    """The stations of the short line feed 16.5 kV, which both systems' bands hold."""
+    assert short_line({"supply.system": system}).standards.voltage_limits.system == system
+    named = short_line({"supply.system": system, f"{LIMITS}.system": system})
+    assert named.standards.voltage_limits == VoltageLimits(system=system)
+
+
+@pytest.mark.parametrize("system", sorted({*library.entries("voltage_limits")} - {"15kV-16.7Hz"}))
+def test_limits_of_another_system_are_a_fault(system):
+    with pytest.raises(ScenarioError) as caught:
+        short_line({f"{LIMITS}.system": system})
+    (finding,) = caught.value.findings
+    assert finding.key == f"{LIMITS}.system"
+    assert "the limits of another system than that of the supply, 15kV-16.7Hz" in finding.problem
+
+
+def test_a_current_limitation_of_another_system_is_a_fault():
+    limitation = {"max_current_a": 300.0, "un_kv": 15.0}
+    with pytest.raises(ScenarioError) as caught:
+        short_line({"supply.system": "25kV-50Hz", "trains.freight.current_limitation": limitation})
+    (finding,) = caught.value.findings
+    assert finding.key == "trains.freight.current_limitation.un_kv"
+    assert "write un_kv = 25" in finding.remedy
+
+
 @pytest.mark.parametrize("system", library.entries("voltage_limits"))
-def test_every_system_of_the_library_can_be_chosen_and_says_where_it_is_from(system):
-    limits = short_line({f"{LIMITS}.system": system}).standards.voltage_limits
-    assert limits == VoltageLimits(system=system)
+def test_every_entry_says_where_it_is_from(system):
     source = library.entries("voltage_limits")[system]["source"]
     assert "[EN50163]_" in source
     assert "check your edition" in source

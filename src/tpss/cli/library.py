@@ -90,9 +90,18 @@ KINDS = {
         "tpss.scenario.standards",
         "VoltageLimits",
         ("umin2_kv", "umin1_kv", "un_kv", "umax1_kv", "umax2_kv", "mean_useful_kv"),
-        "[standards.voltage_limits]",
+        "[supply]",
         "system",
-        "and below the name any of its values, to change it",
+        "by which the result is judged; [standards.voltage_limits] may change any of these values",
+    ),
+    "systems": Kind(
+        "Electrification systems",
+        "tpss.scenario.supply",
+        "System",
+        ("nominal_kv", "frequency_hz", "base_kv", "base_mva"),
+        "[supply]",
+        "system",
+        "and as frequency_hz beside it another frequency",
     ),
 }  # fmt: skip
 
@@ -124,8 +133,10 @@ def print_library(kind: str | None, name: str | None) -> None:
 
 
 def usage(kind: str, name: str) -> str:
-    """Lines of a scenario that use an entry."""
+    """Lines of a scenario that use an entry; none for limits of a system that no supply can have."""
     how = KINDS[kind]
+    if how.key == "system" and name not in library.entries("systems"):
+        return ""
     return f"{how.place}\n{tomli_w.dumps({how.key: name})}"
 
 
@@ -156,7 +167,12 @@ def _print_entry(kind: str, name: str, console: Console) -> None:
     how, entry = KINDS[kind], library.entries(kind)[name]
     console.print(f"\n[bold]{escape(name)}[/bold]  {how.title}", highlight=False)
     console.print(_entry_table(kind, entry))
-    _print_plain(console, f"Source: {_source(entry)}\n\nIn a scenario:\n\n{usage(kind, name)}")
+    _print_plain(console, f"Source: {_source(entry)}\n")
+    used = usage(kind, name)
+    if not used:
+        _print_plain(console, "Supplies of this system cannot be described yet.")
+        return
+    _print_plain(console, f"In a scenario:\n\n{used}")
     values = ", ".join(tomli_w.dumps(library.values(kind, name)).splitlines())
     console.print(
         how.remark.format(key=how.key, values=values), highlight=False, markup=False, soft_wrap=True

@@ -13,7 +13,7 @@ the part τ' = min(τ, h) at constant speed and σ' = min(v/b, h - τ') with the
     v' = v - b σ',      s = v τ' + (v + v') σ' / 2,
 
 and if it has come to an end, the train stands for what is left of the step.  A step later the course is
-found anew from v' and d - s; that it is the same one, d - s = v'²/2b once the brakes act, is what
+computed again from v' and d - s; that it is the same one, d - s = v'²/2b once the brakes act, is what
 the formulas say.
 
 A train must begin if this step, driven as usual, would leave d' < v'²/2b.  Then τ < h, or the usual
@@ -128,7 +128,7 @@ def mean_braking_force(
 
 
 @inlined
-def highest_speed_that_stops_within(
+def highest_speed_that_stops(
     speed_m_s: float, distance_m: float, retardation_m_s2: float, step_s: float
 ) -> float:
     r"""Highest speed after a uniform step from which the train can still stop at its stop. [m/s]

@@ -15,6 +15,7 @@ from tpss.model.sources import build_sources
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
 from tpss.scenario.supply import Catenary, HighVoltageLine, Supply
+from tpss.scenario.supply.system import system_named
 from tpss.units import si
 
 CONTACT_LINE = "contact line"
@@ -97,14 +98,14 @@ def build_supply(supply: Supply, length_km: float) -> tuple[Network, SupplyPlan]
 
 def system_of(supply: Supply) -> System:
     """Electrification system of a supply, at the supply's frequency."""
-    values = supply.system_values
+    values = system_named(supply.system)
     return system(
-        nominal_voltage_v=values["nominal_kv"] * 1e3,
-        base_voltage_v=values["base_kv"] * 1e3,
-        base_power_va=values["base_mva"] * 1e6,
+        nominal_voltage_v=si(values, "nominal_kv"),
+        base_voltage_v=si(values, "base_kv"),
+        base_power_va=si(values, "base_mva"),
         frequency_hz=supply.frequency_hz,
-        lowest_pu=values["lowest_pu"],
-        highest_pu=values["highest_pu"],
+        lowest_pu=values.lowest_pu,
+        highest_pu=values.highest_pu,
     )
 
 

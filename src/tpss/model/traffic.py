@@ -61,7 +61,7 @@ def _departures(entry: Traffic) -> dict[str, Any]:
 
 
 def _stopping_distance(speed_m_s: float, retardation_m_s2: float, model: Model) -> float:
-    """Shortest way in which a train stops. [m]"""
+    """Shortest distance in which a train stops. [m]"""
     if model.options.braking == Braking.WHOLE_STEPS:
         return plain(shortest_stop)(speed_m_s, retardation_m_s2, model.options.step_s)
     return plain(braking_distance)(speed_m_s, retardation_m_s2)

@@ -13,7 +13,8 @@ from typing import Any
 from tpss import library
 from tpss.errors import Finding
 from tpss.scenario.machine import CurrentLimitation
-from tpss.scenario.supply.supply import DEFAULT_SYSTEM, STATIONS, SYSTEMS
+from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 
 
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
@@ -111,7 +112,7 @@ def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[_Fau
         problem = f"the limits of another system than that of the supply, {system}"
         remedy = "leave it out, or choose supply.system; single limits can be overridden beside it"
         yield "standards.voltage_limits.system", repr(named), problem, remedy
-    nominal_kv = library.values(SYSTEMS, system)["nominal_kv"]
+    nominal_kv = system_named(system).nominal_kv
     for name, train in _table(document, "trains").items():
         limitation = _table(train, "current_limitation") if isinstance(train, Mapping) else {}
         un_kv = _number(limitation, "un_kv") or CurrentLimitation.model_fields["un_kv"].default

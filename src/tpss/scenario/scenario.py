@@ -16,7 +16,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import Supply
-from tpss.scenario.supply.supply import DEFAULT_SYSTEM, SYSTEMS
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS
 from tpss.scenario.traffic import Traffic
 from tpss.scenario.validate import validate
 

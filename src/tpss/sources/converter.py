@@ -69,7 +69,7 @@ def grid_angle(power_w: float, converters: float, law: ConverterLaw) -> tuple[fl
     x_motor = law.motor_reactance_ohm / converters
     motor = x_motor / (square + x_motor * q50_var)
     by_grid, by_motor = grid * power_w, motor * power_w
-    # arctan a + arctan b = arctan (a + b)/(1 - ab), of the quadrant that the signs tell.
+    # arctan a + arctan b = arctan (a + b)/(1 - ab), in the quadrant that the signs give.
     lag = math.atan2(by_grid + by_motor, 1.0 - by_grid * by_motor)
     slope = grid / (1.0 + by_grid * by_grid) + motor / (1.0 + by_motor * by_motor)
     return law.grid_angle_rad - lag / 3.0, -slope / 3.0

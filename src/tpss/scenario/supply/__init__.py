@@ -2,8 +2,9 @@
 
 from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
-from tpss.scenario.supply.high_voltage import HighVoltageLine, Transformer
+from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
 from tpss.scenario.supply.supply import Station, Supply
+from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import TransformerStation
 
 __all__ = [
@@ -11,8 +12,10 @@ __all__ = [
     "ConverterStation",
     "ConverterType",
     "HighVoltageLine",
+    "LineType",
     "Station",
     "Supply",
+    "System",
     "Transformer",
     "TransformerStation",
 ]

@@ -2,18 +2,15 @@
 
 from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, Field, ValidationInfo, field_validator, model_validator
-from pydantic_core import PydanticCustomError, PydanticKnownError
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticKnownError
 
-from tpss import library
 from tpss.scenario.fields import FromLibrary, Part, Real, demand_unique, fault, unique
 from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.high_voltage import HighVoltageLine
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
-
-SYSTEMS = "systems"
-DEFAULT_SYSTEM = "15kV-16.7Hz"
 
 Station = ConverterStation | TransformerStation
 """A feeding station of any kind."""
@@ -22,26 +19,15 @@ STATIONS = ("converter_stations", "transformer_stations")
 """Keys of the supply under which feeding stations stand, in the order of the results."""
 
 
-def _is_a_system(name: str) -> str:
-    known = library.entries(SYSTEMS)
-    if name not in known:
-        raise PydanticCustomError(
-            "unknown_name",
-            "the library has no such entry in {kind}",
-            {"kind": SYSTEMS, "known": sorted(known)},
-        )
-    return name
-
-
 def _frequency_of_the_system(data: dict[str, Any]) -> float:
     system = data.get("system", DEFAULT_SYSTEM)  # an unknown one has a fault of its own
-    return float(library.values(SYSTEMS, system)["frequency_hz"])
+    return system_named(system).frequency_hz
 
 
 class Supply(Part):
     """Everything that feeds the trains."""
 
-    system: Annotated[str, AfterValidator(_is_a_system)] = Field(
+    system: SystemName = Field(
         default=DEFAULT_SYSTEM,
         description="Electrification system, a library entry; the result is judged by its limits.",
     )
@@ -87,15 +73,10 @@ class Supply(Part):
         """All feeding stations, in the order of the results."""
         return (*self.converter_stations, *self.transformer_stations)
 
-    @property
-    def system_values(self) -> dict[str, Any]:
-        """What the library says of the system."""
-        return library.values(SYSTEMS, self.system)
-
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:
-        low, high = (self.system_values[key] for key in ("lowest_pu", "highest_pu"))
-        low, high = (pu * self.system_values["base_kv"] for pu in (low, high))
+        values = system_named(self.system)
+        low, high = values.lowest_pu * values.base_kv, values.highest_pu * values.base_kv
         for station in self.stations:
             if not low <= station.no_load_voltage_kv <= high:
                 raise fault(
