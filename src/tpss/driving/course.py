@@ -48,7 +48,7 @@ from tpss.kernel import inlined, kernel
 
 
 @kernel
-def braking_distance(speed_m_s: float, retardation_m_s2: float) -> float:
+def stopping_distance(speed_m_s: float, retardation_m_s2: float) -> float:
     """Distance in which a train stops with its highest retardation, v²/2b. [m]"""
     return speed_m_s**2 / (2.0 * retardation_m_s2)
 
@@ -75,12 +75,12 @@ def latest_braking(
     speed_m_s : float
         Speed now, positive. [m/s]
     distance_m : float
-        Distance to the stop, at least `braking_distance`; the brakes make up for a shortage by
+        Distance to the stop, at least `stopping_distance`; the brakes make up for a shortage by
         rounding. [m]
     retardation_m_s2 : float
         Highest retardation, positive. [m/s²]
     """
-    needed_m = braking_distance(speed_m_s, retardation_m_s2)
+    needed_m = stopping_distance(speed_m_s, retardation_m_s2)
     hold_s = max(0.0, distance_m - needed_m) / speed_m_s
     return hold_s, even_braking(speed_m_s, min(distance_m, needed_m), retardation_m_s2)
 

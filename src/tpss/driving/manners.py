@@ -9,8 +9,10 @@ A manner is a file beside this one with these functions; here it has a branch in
 - ``must_replan``, ``replan``: whether a train has to brake otherwise than decided, and how,
 - ``move``: the train's motion to the next instant;
 
-and the file of its formulas ``highest_speed_that_stops``: highest speed after a step from which a train
-can still stop.
+and in the file of its formulas
+
+- ``stopping_distance``: shortest distance in which a train stops,
+- ``highest_speed_that_stops``: highest speed after a step from which a train can still stop.
 """
 
 from tpss.driving import braking, course, whole_steps, within_step
@@ -18,6 +20,14 @@ from tpss.driving.data import Braking, DrivingData, Options
 from tpss.kernel import inlined
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
+
+
+@inlined
+def stopping_distance(speed_m_s: float, retardation_m_s2: float, options: Options) -> float:
+    """Shortest distance in which a train stops. [m]"""
+    if options.braking == Braking.WITHIN_STEP:
+        return course.stopping_distance(speed_m_s, retardation_m_s2)
+    return braking.shortest_stop(speed_m_s, retardation_m_s2, options.step_s)
 
 
 @inlined

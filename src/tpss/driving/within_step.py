@@ -4,12 +4,12 @@ The interface is stated in `driving.manners`; the formulas are those of `driving
 """
 
 from tpss.driving.course import (
-    braking_distance,
     distance_of_part,
     even_braking,
     latest_braking,
     mean_braking_force,
     part_of_step,
+    stopping_distance,
 )
 from tpss.driving.data import DrivingData
 from tpss.driving.motion import (
@@ -193,7 +193,7 @@ def must_replan(train: Train, kind: TrainType, data: DrivingData) -> bool:
     distance_m = data.options.step_s * (v + forces.next_speed_m_s) / 2.0
     if decision.course == Course.TO_LIMIT:
         distance_m = distance_of_part(v, next_v, decision.hold_s, decision.brake_s)
-    needed_m = braking_distance(next_v, kind.highest_retardation_m_s2)
+    needed_m = stopping_distance(next_v, kind.highest_retardation_m_s2)
     return distance_to_stop(train, data.stops) - distance_m < needed_m
 
 

@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 from tpss.driving.course import (
-    braking_distance,
     distance_of_part,
     even_braking,
     highest_speed_that_stops,
     latest_braking,
     mean_braking_force,
     part_of_step,
+    stopping_distance,
 )
 
 
@@ -34,8 +34,8 @@ def random_stops(count, seed):
         yield speed, room * speed**2 / (2.0 * b), b, float(10.0 ** random.uniform(-0.3, 2.5))
 
 
-def test_the_braking_distance_is_200_m(as_run):
-    assert as_run(braking_distance)(20.0, 1.0) == 200.0
+def test_the_stopping_distance_is_200_m(as_run):
+    assert as_run(stopping_distance)(20.0, 1.0) == 200.0
 
 
 def test_a_train_holds_its_speed_for_as_long_as_it_can(as_run):
