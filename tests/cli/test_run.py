@@ -89,7 +89,7 @@ def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_comm
     said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, umin2_kv=14.5))
     assert said.code == 0
     told = re.findall(
-        r"Limit passed: train eastbound initial \d+: at least 3\.0 min below 14\.5 kV near km "
+        r"Limit violated: train eastbound initial \d+: at least 3\.0 min below 14\.5 kV near km "
         r"\d+\.\d \(lowest 14\.\d\d kV at \d\.\d min\)",
         said.out,
     )
@@ -258,7 +258,7 @@ def test_a_result_that_no_disk_can_hold_is_printed_at_least(
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out
     assert "results cannot be written: File too large" in said.err
-    assert "Nothing of the result is kept but what is printed here." in said.err
+    assert "Only what is printed here is kept of the result." in said.err
     assert files_in(tmp_path) == {}
     assert folders_in(tmp_path) == ["results", "spare"]
 

@@ -1,11 +1,16 @@
 """The line: its length, gradients, speed limits and stations."""
 
+import math
+from collections.abc import Sequence
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
 from tpss.scenario.fields import Name, Part, Position, Real, ascending, one_of, unique
+
+Piece = tuple[float, float, float]
+"""Beginning and end of a piece of constant value [km], and that value."""
 
 
 @dataclass(frozen=True, slots=True, config=ConfigDict(extra="forbid", allow_inf_nan=False))
@@ -58,3 +63,20 @@ class Line(Part):
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
     ] = Field(description="Stations, at least two.")
+
+    def gradients_between(self, start_km: float, end_km: float) -> list[Piece]:
+        """Pieces of the gradient profile between two positions. [‰]"""
+        return _pieces([(g.from_km, g.permille) for g in self.gradients], start_km, end_km)
+
+    def speed_limits_between(self, start_km: float, end_km: float) -> list[Piece]:
+        """Pieces of the speed profile between two positions. [km/h]"""
+        return _pieces([(s.from_km, s.speed_kmh) for s in self.speed_limits], start_km, end_km)
+
+
+def _pieces(profile: Sequence[tuple[float, float]], start_km: float, end_km: float) -> list[Piece]:
+    begins = [-math.inf, *(from_km for from_km, _ in profile[1:])]
+    pieces = [
+        (max(begin, start_km), min(end, end_km), value)
+        for begin, end, (_, value) in zip(begins, [*begins[1:], math.inf], profile, strict=True)
+    ]
+    return [piece for piece in pieces if piece[0] < piece[1]]
