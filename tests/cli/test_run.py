@@ -82,7 +82,7 @@ def judged(**limits):
 def test_a_run_within_its_limits_is_told_so_in_one_line(tpss_command):
     said = tpss_command("run", HEADWAY, *SHORT)
     assert "Voltage: no train below 12.0 kV or above 17.25 kV" in said.out
-    assert "Limit passed" not in said.out
+    assert "Limit violated" not in said.out
 
 
 def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_command, tmp_path):
@@ -101,7 +101,7 @@ def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_comm
 
 def test_a_voltage_that_is_low_for_as_long_as_it_may_be_is_told_as_such(tpss_command):
     said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, longest_low_min=5))
-    assert "Limit passed" not in said.out
+    assert "Limit violated" not in said.out
     pattern = r"Voltage: train .*: at least 3\.0 min below 14\.8 kV near km .*; 5 min are allowed"
     assert re.search(pattern, said.out)
 
