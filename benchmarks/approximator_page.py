@@ -236,7 +236,7 @@ def verdict(model: Approximator, floor: pd.DataFrame) -> str:
             else "the floor lies below the target, but leaves little of it for the approximator"
         )
         lines.append(
-            f"- {words(score.name)}: {score.ninetieth:.3g} {unit} in place of {limit:g} {unit}. "
+            f"- {words(score.name)}: {score.ninetieth:.3g} {unit} instead of {limit:g} {unit}. "
             f"Profiles alone differ by {known['floor']:.3g} {unit}: {judged}. "
             f"From the mean over profiles TPSA lies {known['of_mean']:.3g} {unit} off."
         )
@@ -260,7 +260,7 @@ def score_section(model: Approximator, study: Path, twins: pd.DataFrame) -> str:
     """Scores of a form, and what is said of its collapses and of targets that it misses."""
     floor, collapse = noise_floor(model, study, twins), model.file.collapse_score
     told = (
-        "Whether the line carries its load is told rightly in "
+        "Whether the line carries its load is predicted correctly in "
         f"**{collapse.accuracy:.1%}** of the cases\n"
         f"(target 98 %; Brier score {collapse.brier:.4f}; {collapse.share:.1%} do not). "
         f"Logistic regression:\n{collapse.linear_accuracy:.1%}, "

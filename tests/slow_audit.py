@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 import tpss
-from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
+from tpss.audit.balances import ALLOWED_BALANCE
+from tpss.audit.verdict import JUDGED, Audit, judge, limits_of, usual_limits
 from tpss.driving.data import Braking, Driver
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network
@@ -31,10 +32,11 @@ OF_A_LIMIT = 1e-3
 
 def assert_agree(found: Audit, expected: Audit, limits: dict[str, float]) -> None:
     """Assert that two audits agree, as far as rounding errors can."""
-    for name in LIMITS:
+    usual = usual_limits(10e6)
+    for name in JUDGED:
         own, other = getattr(found, name), getattr(expected, name)
         # What is not judged may be large, and what a forgery has spoilt not a number.
-        gap = OF_A_LIMIT * limits.get(name, LIMITS[name]) + 1e-9 * abs(other)
+        gap = OF_A_LIMIT * limits.get(name, usual[name]) + 1e-9 * abs(other)
         assert abs(own - other) <= gap or (math.isnan(own) and math.isnan(other)), name
     for name in ("lowest_voltage_v", "highest_voltage_v", "passed"):
         assert getattr(found, name) == getattr(expected, name), name
@@ -223,7 +225,7 @@ def network_balance(outcome: Outcome, model: Model) -> float:
     lost = np.nansum(recording.network_losses) * step_s
     # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
     mismatch_w = TOLERANCE * model.network.system.base_power_va
-    least = mismatch_w / LIMITS["network_balance"] * step_s * max(outcome.steps, 1)
+    least = mismatch_w / ALLOWED_BALANCE * step_s * max(outcome.steps, 1)
     return float(abs(fed - drawn - lost) / max(abs(fed), least))
 
 

@@ -21,15 +21,15 @@ supply, and voltages that are constant within a time step. The
 [guide](../how-to/evidence-for-standards.md) shows how to work with them;
 [`tpss export`](command_line.md#tpss-export) writes each table to a file of its name.
 
-The limits are those of the scenario's [`standards`](scenario.md#standards), by default those of 15 kV
-16.7 Hz in the [library](library.md#voltage-limits), which says where each figure is from.
+The limits are those of the scenario's [`standards`](scenario.md#standards), by default those of
+the supply's system in the [library](library.md#voltage-limits), which says where each figure is from.
 `Result.with_standards` judges a run by others, without running it again.
 
 - All values hold from an instant to the next, so all means are over time, and exact.
 - Windows of {", ".join(f"{each:g}" for each in WINDOWS_MIN)} min move over the run and need not begin
   at an instant. The first window of a table is the time step: its mean is the peak. One that is
   longer than the run has no mean, NaN, and `notes` says so.
-- A train that pulls has a positive tractive force at the wheel rim. One that is there for less than
+- A train pulls while its tractive force at the wheel rim is positive. One that is present for less than
   {LEAST_PRESENCE_S:g} s is not a dimensioning train.
 - Energy is billed in blocks of {BLOCK_MIN:g} min from the start of the run. Trains do not brake
   electrically yet, so nothing is regenerated."""
@@ -111,7 +111,7 @@ TABLES: dict[str, dict[str, str]] = {
     },
     "energy": {
         **TRAIN,
-        "distance_km": "way within the run",
+        "distance_km": "distance within the run",
         "mass_t": "mass of the whole train",
         **ENERGIES,
         "energy_kwh_per_km": "active energy consumed less regenerated, a train kilometre",

@@ -58,7 +58,7 @@ TRIPS = {
     "departure_min": "departure; NaN for a train that was on the line at the start",
     "arrival_min": "arrival at its destination",
     "trip_min": "from departure to arrival",
-    "distance_km": "way within the run",
+    "distance_km": "distance within the run",
     "mean_speed_kmh": "distance over the time on the line, stops included",
     "energy_mwh": "active energy drawn at the pantograph",
     "lowest_voltage_kv": "lowest voltage at the pantograph",
@@ -71,9 +71,9 @@ STATIONS = {
     "energy_mwh": "active energy fed into the railway",
     "reactive_energy_mvarh": "reactive energy fed into the railway",
     "peak_power_mw": "highest active power of a step",
-    "mean_loading": "mean of the running converters' apparent power over their rating",
+    "mean_loading": "mean of the running units' apparent power over their rating",
     "peak_loading": "highest of these loadings",
-    "mean_converters": "mean number of converters running",
+    "mean_converters": "mean number of units running",
 }
 TRAIN_STEPS = {
     "train": "name",
@@ -91,9 +91,9 @@ SUMMARY = {
     "duration_min": "simulated time",
     "studied_train": "first departure of the first traffic entry; its arrival ends the run by default",
     "trip_time_min": "its time from departure to arrival, or null",
-    "station_energy_mwh": "active energy of each converter station",
+    "station_energy_mwh": "active energy of each feeding station",
     "total_energy_mwh": "their sum",
-    "losses_mwh": "losses of contact line, transformers and high-voltage line",
+    "losses_mwh": "losses of contact line, transformers and high-voltage line, not those in stations",
     "lowest_voltage": "lowest voltage at a pantograph: `voltage_kv`, `train`, `position_km`, `time_min`",
     "load_flow_passes": "evaluations of the network a step: `mean` and `most`",
     "limited": "train-steps in which a model was limited or left its range",
@@ -118,10 +118,10 @@ ATTRIBUTES = {
 }
 AUDIT = """## Audit
 
-Every run audits itself: from the recorded voltages it forms the currents and powers once more, by
-another way than the solver's, and it checks energy balances, forces and motion. A figure beyond its
+Every run audits itself: from the recorded voltages it forms the currents and powers once more, in a
+different way from the solver, and it checks energy balances, forces and motion. A figure beyond its
 limit makes `tpss run` end with exit code 4. With `power_sampling = "start"` the traction balance
-does not close; it is reported, not judged."""
+does not close; it is reported but not judged."""
 
 
 def page() -> str:
@@ -142,7 +142,7 @@ def page() -> str:
         TABLES,
         "### `trips`, a row a train",
         described(TRIPS, result.trips, "column"),
-        "### `stations`, a row a converter station",
+        "### `stations`, a row a feeding station",
         described(STATIONS, result.stations, "column"),
         "### `train_steps`, a row a train and instant",
         described(TRAIN_STEPS, result.train_steps, "column"),

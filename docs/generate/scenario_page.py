@@ -37,6 +37,10 @@ DEFAULTS = {
     "Simulation.until": "this, unless `duration_min`",
     "Traffic.headway_min": "this or `departures_min`",
     "Traffic.departures_min": "this or `headway_min`",
+    "Supply.frequency_hz": "the system's",
+    "Supply.transformer_stations": "none",
+    "Supply.converter_stations": "none; there is a station of some kind",
+    "VoltageLimits.system": "the supply's",
     "VoltageLimits.mean_useful_kv": "the system's, if any",
     "VoltageLimits.mean_useful_fast_kv": "the system's, if any",
     "HighVoltageLine.transformers_km": "this or `transformers`",
@@ -174,12 +178,14 @@ def _keys_of_every_entry(kind: str) -> set[str]:
 
 
 def _library_kind(field: FieldInfo) -> str | None:
-    """Kind of library entries whose names a key accepts, if any: found by trying one of each kind."""
+    """Kind of library entries all of whose names a key accepts, if any; of several the largest."""
     adapter = TypeAdapter(Annotated[field.annotation, Field(), *field.metadata])
     if _admits(adapter, "no-such-entry"):
         return None
-    kinds = (kind for kind in KINDS if _admits(adapter, next(iter(library.entries(kind)))))
-    return next(kinds, None)
+    admitted = [
+        kind for kind in KINDS if all(_admits(adapter, name) for name in library.entries(kind))
+    ]
+    return max(admitted, key=lambda kind: len(library.entries(kind)), default=None)
 
 
 def _admits(adapter: TypeAdapter[Any], value: str) -> bool:

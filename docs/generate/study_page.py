@@ -28,10 +28,10 @@ Tables are named by their keys, list items by their number from 0 or all of them
 the whole path or of itself. The text `"none"` leaves a key out, as in `"supply.high_voltage_line" =
 "none"`.
 
-A new `line.length_km` moves what stands along the line in proportion: {places}. The ground, that is the
-gradients, stays. Other values are put in after that, so a position is one on the new line.
+A new `line.length_km` moves what stands along the line in proportion: {places}. The gradients
+keep their places. Other values are set after that, so a position is one on the new line.
 
-A key takes the place of the one that must not stand beside it: {instead}."""
+A key replaces the one that it excludes: {instead}."""
 
 GRADIENTS = """A profile has exactly the mean and the standard deviation that are asked for, over the
 line of its case. Before they are shifted and stretched, the gradients of neighbouring pieces are
@@ -49,7 +49,7 @@ train that did not arrive has no trip time. Of a run that ended early, energies 
 |---|---|
 | `finished` | ran to its end |
 | `collapsed` | ended where the line could not carry its load: a result |
-| `stalled` | ended where a train could not go on: a result |
+| `stalled` | ended where a train could not continue: a result |
 | `invalid` | makes no scenario; `problem` says why |
 | `failed` | met a fault of the program; `problem` names it |
 
@@ -58,7 +58,7 @@ Parameters of the study are columns by their key paths behind `set.`, such as
 
 INPUTS = {
     "length_km": "length of the line",
-    "route_km": "way of the studied train",
+    "route_km": "distance that the studied train runs",
     "stops": "stops of the studied train",
     "converter_stations": "number of converter stations",
     "station_distance_km": "mean distance between neighbouring converter stations; null of one",
@@ -75,18 +75,18 @@ INPUTS = {
     "feeding_distance_km": "mean distance between neighbouring stations and transformers",
     "headway_min": "time between departures of the first service; null if they are listed",
     "trains_per_h": "departures of all services with a headway",
-    "speed_limit_kmh": "highest on the studied train's way, of the line and of the train",
-    "mean_speed_limit_kmh": "mean over that way",
+    "speed_limit_kmh": "highest on the studied train's route, of the line and of the train",
+    "mean_speed_limit_kmh": "mean over that route",
     "train_mass_t": "mass of the studied train",
     "max_motor_current_a": "its current limit; null if it has none",
     "gradient_mean_permille": "mean gradient over the line",
     "gradient_std_permille": "standard deviation of the gradient over the line",
     "steepest_permille": "steepest rise",
-    "starting_gradient_permille": "mean over the first 2 km of the studied train's way",
+    "starting_gradient_permille": "mean over the first 2 km of the studied train's route",
     "gradient_trend_permille": "rise of the straight line through the gradients, from the line's "
     "beginning to its end",
     "gradient_middle_permille": "how much steeper it is far from converter stations: mean, weighted by "
-    "$6u(1-u)$ at the share $u$ of the way between two of them, less the plain mean; null of one",
+    "$6u(1-u)$ at the share $u$ of the distance between two of them, less the plain mean; null of one",
     "time_step_min": "time step",
 }
 
@@ -94,7 +94,7 @@ MEANINGS = {
     "status": "how the case ended",
     "problem": "why it could not be run, or why its audit failed",
     "collapsed": "whether the line could not carry its load",
-    "stalled": "whether a train could not go on",
+    "stalled": "whether a train could not continue",
     "duration_min": "simulated time; when it collapsed or stalled",
     "steps": "steps carried out",
     "carried_share": "share of the load that a collapsing line could carry, otherwise 1",

@@ -3,10 +3,15 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from tpss.driving.data import Stop
+from tpss.powerflow.network import Branch, Section
+from tpss.powerflow.system import System
 from tpss.sources.kinds import Source
 from tpss.vehicle.terms import Demand
+from tpss.vehicle.train import Decision, Forces, Motion, Plan, Timetable
 from tpss.vehicle.train_type import TrainType
 
 from scenarios import run
@@ -22,13 +27,33 @@ def table_after(words: str) -> list[dict[str, str]]:
     return [dict(zip(head, row, strict=True)) for row in rows]
 
 
-@pytest.mark.parametrize(
-    ("words", "record"),
-    [("`TRAIN_TYPE`", TrainType), ("`DEMAND`", Demand), ("`SOURCE`", Source)],
-    ids=["TRAIN_TYPE", "DEMAND", "SOURCE"],
-)
-def test_a_record_s_fields_are_those_of_its_table(words, record):
-    assert [row["name"] for row in table_after(words)] == list(record.dtype.names)
+PARTS = (Timetable, Motion, Plan, Decision, Forces)
+RECORDS = (TrainType, Demand, *PARTS, Stop, Section, Branch, Source)
+
+
+def type_of(dtype: np.dtype, name: str) -> np.dtype:
+    """Type of a field, by its name or by the names on the way to it, with dots."""
+    for part in name.split("."):
+        dtype = dtype.fields[part][0]
+    return dtype
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda record: record.__name__)
+def test_a_record_s_fields_are_those_of_its_table(record):
+    """Those of records in it stand there with a dot; what is a number has a unit, but for counts."""
+    rows = table_after(f"\n`{record.__name__}`")
+    fields = [row["name"] for row in rows if "." not in row["name"]]
+    assert fields == list(record.dtype.names)
+    for row in rows:
+        kind = type_of(record.dtype, row["name"]).base.kind
+        assert row["meaning"]
+        assert row["unit"] or kind not in "fc", row
+
+
+def test_a_system_s_fields_are_those_of_its_table():
+    rows = table_after("`System` in")
+    assert [row["name"] for row in rows] == list(System._fields)
+    assert all(row["meaning"] and row["unit"] for row in rows)
 
 
 @pytest.fixture(scope="module")

@@ -1,14 +1,16 @@
 """Every page that shows commands, files or code shows what really happens; see `snippets`."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 
-from snippets import Reader, assert_same_output, blocks, decimals_in_prose, was_seen
+from snippets import Block, Reader, assert_same_output, blocks, decimals_in_prose, was_seen
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = DOCS / "tutorial.md"
-HOW_TO = sorted(DOCS.glob("how-to/*.md"))
+FOR_DEVELOPERS = DOCS / "how-to" / "add-a-kind.md"
+HOW_TO = sorted({*DOCS.glob("how-to/*.md")} - {FOR_DEVELOPERS})
 
 
 def follow(page: Path, reader: Reader) -> None:
@@ -41,6 +43,28 @@ def test_a_guide_can_be_followed_from_the_end_of_the_tutorial(page, tmp_path):
             reader.follow(block)
     follow(page, reader)
     demand_seen_figures(page, reader)
+
+
+class Developer(Reader):
+    """A reader who makes files of the source too: blocks of `py` with a title."""
+
+    def follow(self, block: Block) -> None:
+        if block.language == "py" and block.title:
+            (self.folder / block.title).write_text(block.text, "utf-8")
+            self.seen += block.text
+        else:
+            super().follow(block)
+
+
+def test_every_kind_of_the_developer_s_guide_can_be_added(tmp_path, monkeypatch):
+    """In a copy of the source, which is what runs there: as plain Python, not to be compiled."""
+    source = DOCS.parent / "src"
+    shutil.copytree(source, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "src"))
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    developer = Developer(tmp_path)
+    follow(FOR_DEVELOPERS, developer)
+    demand_seen_figures(FOR_DEVELOPERS, developer)
 
 
 def test_output_is_the_expected_one_up_to_the_last_digit():

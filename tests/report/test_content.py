@@ -50,6 +50,11 @@ def test_it_tells_the_key_figures(page, short):
     assert "✓ The audit passed" in read
 
 
+def test_limits_of_the_audit_stand_beside_its_figures_in_the_same_unit(page):
+    """1e-10 of 10 MVA, and an order above that for what the audit finds by another way."""
+    assert "power mismatch [VA] 0.01 " in Page(page).text
+
+
 def test_a_sound_run_has_no_banner(page):
     assert "banner" not in Page(page).order
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tpss import Scenario, load_scenario
-from tpss.audit.verdict import LIMITS, Audit, limits_of
+from tpss.audit.verdict import JUDGED, Audit, limits_of, usual_limits
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.results.key_figures import frame_of, key_figures_of
@@ -82,7 +82,7 @@ def test_a_sound_run_passes(request, name):
     assert checked.passed
     assert checked.failures == ()
     limits = limits_of(request.getfixturevalue(name).model)
-    assert set(limits) == set(LIMITS)
+    assert set(limits) == set(JUDGED)
     assert limits["power_mismatch_va"] == pytest.approx(0.01)
     for figure, limit in limits.items():
         assert 0.0 <= getattr(checked, figure) <= limit
@@ -311,17 +311,18 @@ def test_limits_follow_the_rounding_over_impedances_of_microohms():
     near = Case(short_line({"supply.high_voltage_line": high_voltage}), 60)
     far = Case(short_line({"supply.high_voltage_line.type": "132kV",
                            "supply.high_voltage_line.transformers_km": [9.0, 11.0]}), 60)  # fmt: skip
-    usual_va = 10.0 * 1e-10 * 10e6
-    assert limits_of(far.model) == {**LIMITS, "power_mismatch_va": usual_va}
+    usual = usual_limits(10e6)
+    assert usual["power_mismatch_va"] == 10.0 * 1e-10 * 10e6
+    assert limits_of(far.model) == usual
     assert near.audit().passed
     wider = limits_of(near.model)
     assert wider["power_mismatch_va"] == pytest.approx(1.93, rel=0.01)
     assert wider["converter_residual"] == pytest.approx(1.93e-7, rel=0.01)
-    assert wider["traction_balance"] == LIMITS["traction_balance"]
+    assert wider["traction_balance"] == usual["traction_balance"]
 
 
 def test_the_figures_are_plain_values_by_name(arrival):
     figures = arrival.audit().as_dict()
-    assert {*LIMITS, "lowest_voltage_v", "highest_voltage_v", "failures", "passed"} == set(figures)
+    assert {*JUDGED, "lowest_voltage_v", "highest_voltage_v", "failures", "passed"} == set(figures)
     assert figures["passed"] is True
     assert figures["failures"] == []

@@ -1,5 +1,9 @@
 """The parts in which the kernels are compiled are what the clock and the audit call."""
 
+import json
+import subprocess
+import sys
+
 import pytest
 
 from tpss.model import build_model
@@ -53,3 +57,28 @@ def test_what_a_cache_has_stays_as_it_is(caches):
     adopt(other, own)
     assert {path.read_text() for path in (own / "a").iterdir()} == {"own"}
     assert len(list((other / "a").iterdir())) == 3
+
+
+TWO_THREADS = """
+import json, sys, threading, tpss
+scenario = tpss.Scenario.from_document(json.load(sys.stdin), "short-line")
+together, done = threading.Barrier(2), []
+def simulate():
+    together.wait()
+    done.append(tpss.simulate(scenario).status)
+threads = [threading.Thread(target=simulate) for _ in range(2)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(done)
+"""
+
+
+def test_two_threads_may_begin_at_the_same_time():
+    """In a process of their own, whose first runs these are."""
+    make_ready(build_model(short_line())[0])
+    document = json.dumps(short_line({"simulation.duration_min": 1.0}).as_document())
+    call = [sys.executable, "-c", TWO_THREADS]
+    done = subprocess.run(call, input=document, capture_output=True, text=True, check=True)
+    assert done.stdout == "['finished', 'finished']\n", done.stderr

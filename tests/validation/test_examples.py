@@ -48,7 +48,20 @@ def test_the_example_of_own_trains_runs_within_what_its_files_say():
     assert 180e3 < float(freight.tractive_force.max()) < 270e3
 
 
+def test_the_example_of_25_kv_is_judged_by_the_limits_of_25_kv():
+    """The load flow itself is held against pandapower; here force, power and limits of the EMUs."""
+    result = tpss.simulate(tpss.load_scenario(EXAMPLES / "emu_25kv.toml"))
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    assert result.scenario.standards.voltage_limits.un_kv == 25.0
+    assert result.standards.violations.empty
+    emu = result.dataset.sel(train="regional 1")
+    assert float(emu.tractive_force.max()) <= 200e3
+    assert float((emu.tractive_force * emu.speed).max()) == pytest.approx(5000e3, rel=1e-6)
+    voltage_kv = emu.pantograph_voltage / 1e3
+    assert 25.0 < float(voltage_kv.min()) < float(voltage_kv.max()) < 27.5
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
-    assert names == {*REFERENCE, "overloaded", "own_trains", "thesis_original"}
+    assert names == {*REFERENCE, "emu_25kv", "overloaded", "own_trains", "thesis_original"}

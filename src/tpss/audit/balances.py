@@ -1,4 +1,4 @@
-"""The audit's figures: balances recomputed from what was recorded, by another way than solved.
+"""The audit's figures: balances recomputed from what was recorded, by other equations than the solver's.
 
 The network's are those of `audit.network`, the trains' those of `audit.motion`.
 """
@@ -50,7 +50,7 @@ class Balances(Record):
 
 
 class Scratch(NamedTuple):
-    """Room to work in, and the result."""
+    """Scratch arrays, and the result."""
 
     balances: Records[Balances]
     """One record."""

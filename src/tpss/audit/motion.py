@@ -25,7 +25,7 @@ def audit_train(
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = model.options.step_s
     figures.drawn_j += before.active_power * h
-    # Not the difference of positions, which would round a short way of a train far along the line.
+    # Not the difference of positions, which would round a short distance far along the line.
     way_m = h * (before.speed + after.speed) / 2.0
     efficiency = curve_at(before.speed, kind.efficiency.first, kind.efficiency.points, model.points)
     power_w = (before.active_power - kind.auxiliary_power_w) * efficiency
@@ -95,10 +95,10 @@ def _audit_motion(
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = model.options.step_s
     if model.options.braking == Braking.WITHIN_STEP:
-        way = _braking_motion_error(before, after, kind, h)
+        off_m = _braking_motion_error(before, after, kind, h)
     else:
-        way = after.position - before.position - h * (before.speed + after.speed) / 2.0
-    figures.motion_error_m = worst(figures.motion_error_m, way)
+        off_m = after.position - before.position - h * (before.speed + after.speed) / 2.0
+    figures.motion_error_m = worst(figures.motion_error_m, off_m)
     change = after.speed - before.speed - h * before.acceleration
     figures.motion_error_m = worst(figures.motion_error_m, change * h)
     state = recording.train_state[step, i]

@@ -11,17 +11,30 @@ from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, resolution_va
 from tpss.powerflow.system import System
 from tpss.step.model import Model
 
-LIMITS = {
-    "power_mismatch_va": 10.0
-    * TOLERANCE,  # of the base power: an order above the solver's tolerance
-    "converter_residual": 1e-9,
-    "network_balance": ALLOWED_BALANCE,
-    "traction_balance": 1e-9,
-    "force_balance": 1e-9,
-    "motion_error_m": 1e-6,
-    "stop_error_m": 1e-3,
-}
-"""Highest value that each figure of a sound run may have; see `limits_of`."""
+JUDGED = (
+    "power_mismatch_va",
+    "converter_residual",
+    "network_balance",
+    "traction_balance",
+    "force_balance",
+    "motion_error_m",
+    "stop_error_m",
+)
+"""Figures that are judged."""
+
+
+def usual_limits(base_power_va: float) -> dict[str, float]:
+    """Highest value that each figure of a sound run may have, where nothing else limits it.
+
+    Parameters
+    ----------
+    base_power_va : float
+        Base power of the system; the mismatch may be an order above the solver's tolerance. [VA]
+    """
+    mismatch_va = 10.0 * TOLERANCE * base_power_va
+    return dict(
+        zip(JUDGED, (mismatch_va, 1e-9, ALLOWED_BALANCE, 1e-9, 1e-9, 1e-6, 1e-3), strict=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -92,8 +105,8 @@ def limits_of(model: Model) -> dict[str, float]:
     both.  A traction balance billed at the start of a step, or with what slip wastes, does not close,
     and is not judged.
     """
-    limits, system = dict(LIMITS), model.network.system
-    limits["power_mismatch_va"] *= system.base_power_va
+    system = model.network.system
+    limits = usual_limits(system.base_power_va)
     blurred = model.network.tolerance / TOLERANCE
     shortest_ohm = np.abs(model.network.sections["impedance_ohm_per_m"]).min() * SHORTEST_PIECE_M
     limits["power_mismatch_va"] *= max(

@@ -5,8 +5,8 @@ inferior to the speed limit.  Moreover when the speed was below 5 km/h over the 
 coasted.  When it was more than 5 km/h the driver braked to reach the speed limit at the next time
 step." [Boullanger2009]_, section 2.3.1.
 
-He decides by the speed at the start of a step alone; there is no hysteresis, and a train runs above
-its limit as a matter of course.
+The driver decides by the speed at the start of a step alone; there is no hysteresis, and a train runs
+above its limit as a matter of course.
 """
 
 from tpss.kernel import inlined

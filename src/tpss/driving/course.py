@@ -13,7 +13,7 @@ the part τ' = min(τ, h) at constant speed and σ' = min(v/b, h - τ') with the
     v' = v - b σ',      s = v τ' + (v + v') σ' / 2,
 
 and if it has come to an end, the train stands for what is left of the step.  A step later the course is
-found anew from v' and d - s; that it is the same one, d - s = v'²/2b once the brakes act, is what
+computed again from v' and d - s; that it is the same one, d - s = v'²/2b once the brakes act, is what
 the formulas say.
 
 A train must begin if this step, driven as usual, would leave d' < v'²/2b.  Then τ < h, or the usual
@@ -48,7 +48,7 @@ from tpss.kernel import inlined, kernel
 
 
 @kernel
-def braking_distance(speed_m_s: float, retardation_m_s2: float) -> float:
+def stopping_distance(speed_m_s: float, retardation_m_s2: float) -> float:
     """Distance in which a train stops with its highest retardation, v²/2b. [m]"""
     return speed_m_s**2 / (2.0 * retardation_m_s2)
 
@@ -75,12 +75,12 @@ def latest_braking(
     speed_m_s : float
         Speed now, positive. [m/s]
     distance_m : float
-        Distance to the stop, at least `braking_distance`; the brakes make up for a shortage by
+        Distance to the stop, at least `stopping_distance`; the brakes make up for a shortage by
         rounding. [m]
     retardation_m_s2 : float
         Highest retardation, positive. [m/s²]
     """
-    needed_m = braking_distance(speed_m_s, retardation_m_s2)
+    needed_m = stopping_distance(speed_m_s, retardation_m_s2)
     hold_s = max(0.0, distance_m - needed_m) / speed_m_s
     return hold_s, even_braking(speed_m_s, min(distance_m, needed_m), retardation_m_s2)
 
@@ -128,7 +128,7 @@ def mean_braking_force(
 
 
 @inlined
-def highest_speed_that_stops_within(
+def highest_speed_that_stops(
     speed_m_s: float, distance_m: float, retardation_m_s2: float, step_s: float
 ) -> float:
     r"""Highest speed after a uniform step from which the train can still stop at its stop. [m/s]

@@ -3,7 +3,7 @@
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.data import Driver, DrivingData, Floats
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
-from tpss.driving.motion import force_to_target, set_wish, update_resistances
+from tpss.driving.motion import force_to_target, set_target, update_resistances
 from tpss.driving.stops import distance_to_stop
 from tpss.driving.within_step import aim_to_limit
 from tpss.kernel import at, inlined
@@ -41,8 +41,8 @@ def target_speed(train: Train, kind: TrainType, data: DrivingData) -> float:
     """Speed that a train is to have after this step, if its machine can, before limits ahead. [m/s]
 
     The lower of line and train limits it, or the original driver's rule, and the highest acceleration
-    that the train may have.  A train that stands, or as good as does, takes no more than leaves room
-    for its next stop: braking only ever lowers the speed, so one that creeps would creep on to the stop.
+    that the train may have.  A train at or near standstill accelerates no further than its next stop
+    allows: braking only ever lowers the speed, so a train that creeps would creep to its stop.
 
     References
     ----------
@@ -78,7 +78,7 @@ def aim_at_speed(train: Train, kind: TrainType, data: DrivingData) -> None:
         fastest, coasting = fastest_and_coasting(train, kind, h)
         wanted = aggressive_force(target, fastest, coasting, wanted, FULL_EFFORT_N)
     cap = wanted if wanted == FULL_EFFORT_N else min(wanted, demand.adhesion_n)
-    set_wish(train, wanted, cap, target)
+    set_target(train, wanted, cap, target)
 
 
 @inlined
@@ -90,7 +90,7 @@ def aim(train: Train, data: DrivingData) -> None:
     [Boullanger2009]_, eq. (2.6), (F.5), (F.20).
     """
     kind, phase = data.types[at(train.train_type)], train.motion.phase
-    set_wish(train, 0.0, 0.0, 0.0)
+    set_target(train, 0.0, 0.0, 0.0)
     if phase != Phase.DWELLING:
         stops = phase == Phase.PLANNED and aim_to_stop(train, kind, data)
         if not stops:

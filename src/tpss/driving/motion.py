@@ -36,7 +36,7 @@ def update_resistances(train: Train, kind: TrainType, gradients: Profile, option
 
 @inlined
 def update_gradient(train: Train, kind: TrainType, distance_m: float, data: DrivingData) -> None:
-    """Find the resistances anew for a step in which the train covers `distance_m`."""
+    """Update the resistances for a step in which the train covers `distance_m`."""
     if data.options.mean_gradient:
         profile, motion, forces = data.gradients, train.motion, train.forces
         slope = mean_gradient(
@@ -69,8 +69,8 @@ def force_to_target(train: Train, kind: TrainType, target_m_s: float, step_s: fl
 
 
 @inlined
-def set_wish(train: Train, force_n: float, cap_n: float, target_m_s: float) -> None:
-    """Note what the driver of a train wants, and the force that he and adhesion allow at most."""
+def set_target(train: Train, force_n: float, cap_n: float, target_m_s: float) -> None:
+    """Set target and force of a train, and the force that driver and adhesion allow at most."""
     train.demand.force_cap_n = max(0.0, cap_n)
     train.decision.target_speed_m_s = target_m_s
     train.decision.force_n = force_n
@@ -90,7 +90,7 @@ def move_uniformly(train: Train, step_s: float) -> None:
 
 
 @inlined
-def settle_uniformly(train: Train, kind: TrainType, step_s: float) -> None:
+def apply_solution_uniformly(train: Train, kind: TrainType, step_s: float) -> None:
     """Brakes and next speed of a train in a step of constant acceleration.
 
     With motors off the train brakes with exactly the wanted acceleration; below its wanted force it

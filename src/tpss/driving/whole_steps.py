@@ -10,7 +10,12 @@ from tpss.driving.braking import (
     shortest_stop,
 )
 from tpss.driving.data import DrivingData
-from tpss.driving.motion import force_to_target, move_uniformly, set_wish, settle_uniformly
+from tpss.driving.motion import (
+    apply_solution_uniformly,
+    force_to_target,
+    move_uniformly,
+    set_target,
+)
 from tpss.driving.speed_limits import SLACK_M, UNIFORM, respect_limits_ahead
 from tpss.driving.stops import distance_to_stop, stand_at_stop
 from tpss.kernel import inlined, kernel
@@ -62,14 +67,14 @@ def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
     if allowed < target:
         train.motion.phase = Phase.DRIVING  # the train plans anew
     wanted = force_to_target(train, kind, allowed, h)
-    set_wish(train, wanted, min(wanted, train.demand.adhesion_n), allowed)
+    set_target(train, wanted, min(wanted, train.demand.adhesion_n), allowed)
     return True
 
 
 @inlined
-def settle(train: Train, kind: TrainType, step_s: float) -> None:
+def apply_solution(train: Train, kind: TrainType, step_s: float) -> None:
     """Brakes and next speed of a train, whose `forces.tractive_n` is what the rails pass on."""
-    settle_uniformly(train, kind, step_s)
+    apply_solution_uniformly(train, kind, step_s)
 
 
 @inlined

@@ -4,19 +4,19 @@ The interface is stated in `driving.manners`; the formulas are those of `driving
 """
 
 from tpss.driving.course import (
-    braking_distance,
     distance_of_part,
     even_braking,
     latest_braking,
     mean_braking_force,
     part_of_step,
+    stopping_distance,
 )
 from tpss.driving.data import DrivingData
 from tpss.driving.motion import (
+    apply_solution_uniformly,
     drive_uniformly,
     move_uniformly,
-    set_wish,
-    settle_uniformly,
+    set_target,
     update_gradient,
 )
 from tpss.driving.speed_limits import (
@@ -105,7 +105,7 @@ def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
         wanted = train.demand.resistance_n - kind.inertia_kg * (v - target) / driven_s
     elif driven_s == 0.0:
         wanted = 0.0
-    _set_wish_for(driven_s, wanted, train, data)
+    _set_target_for(driven_s, wanted, train, data)
     return True
 
 
@@ -129,22 +129,22 @@ def aim_to_limit(train: Train, kind: TrainType, target_m_s: float, data: Driving
         drive_uniformly(train, kind, data)
         return False
     decision.target_speed_m_s = target_m_s
-    _set_wish_for(decision.hold_s, resistance_n, train, data)
+    _set_target_for(decision.hold_s, resistance_n, train, data)
     return True
 
 
 @inlined
-def _set_wish_for(driven_s: float, wanted_n: float, train: Train, data: DrivingData) -> None:
+def _set_target_for(driven_s: float, wanted_n: float, train: Train, data: DrivingData) -> None:
     """Note the force that a train on a course wants, and for how long."""
     demand = train.demand
     demand.driven_share = driven_s / data.options.step_s
     demand.mean_speed_weight_s = driven_s / 2.0 if data.options.mean_power else 0.0
-    set_wish(train, wanted_n, min(wanted_n, demand.adhesion_n), train.decision.target_speed_m_s)
+    set_target(train, wanted_n, min(wanted_n, demand.adhesion_n), train.decision.target_speed_m_s)
 
 
 @kernel
-def _settle_course(train: Train, kind: TrainType, step_s: float) -> None:
-    """`settle` of a train on a course.
+def _apply_solution_on_course(train: Train, kind: TrainType, step_s: float) -> None:
+    """`apply_solution` of a train on a course.
 
     A train that lacks the force for even braking runs on as it can.  Its step is a whole one: where
     even braking ends in the midst of a step, less force would make it roll back.
@@ -164,12 +164,12 @@ def _settle_course(train: Train, kind: TrainType, step_s: float) -> None:
 
 
 @inlined
-def settle(train: Train, kind: TrainType, step_s: float) -> None:
+def apply_solution(train: Train, kind: TrainType, step_s: float) -> None:
     """Brakes and next speed of a train, whose `forces.tractive_n` is what the rails pass on."""
     if brakes_within_step(train.decision.course):
-        _settle_course(train, kind, step_s)
+        _apply_solution_on_course(train, kind, step_s)
     else:
-        settle_uniformly(train, kind, step_s)
+        apply_solution_uniformly(train, kind, step_s)
 
 
 @inlined
@@ -193,7 +193,7 @@ def must_replan(train: Train, kind: TrainType, data: DrivingData) -> bool:
     distance_m = data.options.step_s * (v + forces.next_speed_m_s) / 2.0
     if decision.course == Course.TO_LIMIT:
         distance_m = distance_of_part(v, next_v, decision.hold_s, decision.brake_s)
-    needed_m = braking_distance(next_v, kind.highest_retardation_m_s2)
+    needed_m = stopping_distance(next_v, kind.highest_retardation_m_s2)
     return distance_to_stop(train, data.stops) - distance_m < needed_m
 
 

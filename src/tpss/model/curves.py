@@ -45,11 +45,11 @@ def interpolate(x: float, at: Array, value: Array) -> Array:
         What the curves are there.
     """
     k = int(np.clip(np.searchsorted(at, x, side="right") - 1, 0, len(at) - 2))
-    found = np.empty(value.shape[1:])
-    for place in np.ndindex(found.shape):
+    values_at_x = np.empty(value.shape[1:])
+    for place in np.ndindex(values_at_x.shape):
         curve = np.ascontiguousarray(value[(slice(None), *place)])
         slopes = [slope_at(i, len(at), at, curve) for i in (k, k + 1)]
-        found[place], _ = hermite(
+        values_at_x[place], _ = hermite(
             x - at[k], at[k + 1] - at[k], curve[k], curve[k + 1], slopes[0], slopes[1]
         )
-    return found
+    return values_at_x

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from tpss.driving.braking import shortest_stop
-from tpss.driving.course import braking_distance
 from tpss.driving.data import Braking, Driver
+from tpss.driving.manners import stopping_distance
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
@@ -60,13 +59,6 @@ def _departures(entry: Traffic) -> dict[str, Any]:
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 
-def _stopping_distance(speed_m_s: float, retardation_m_s2: float, model: Model) -> float:
-    """Shortest way in which a train stops. [m]"""
-    if model.options.braking == Braking.WHOLE_STEPS:
-        return plain(shortest_stop)(speed_m_s, retardation_m_s2, model.options.step_s)
-    return plain(braking_distance)(speed_m_s, retardation_m_s2)
-
-
 def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Finding]:
     """Faults of the `i`-th train that a service places on the line."""
     position_m, speed = service.initial[i]
@@ -80,7 +72,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     problem = ""
     if speed > limit and model.options.driver == Driver.REGULATED:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
-    elif _stopping_distance(speed, retardation, model) > stop_m - position_m:
+    elif plain(stopping_distance)(speed, retardation, model.options) > stop_m - position_m:
         problem = f"too fast to stop at {stop_m / 1e3:g} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:

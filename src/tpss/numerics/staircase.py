@@ -1,6 +1,6 @@
 """Staircases over position: each value holds from its position to the next one's.
 
-The outer values go on beyond the ends.
+The outer values continue beyond the ends.
 """
 
 import numpy as np

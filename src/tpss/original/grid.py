@@ -68,10 +68,10 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
     first_piece: list[int] = []
     last_piece: list[int] = []
     for s in range(network.sections.size):
-        section, found = network.sections[s], flow.sections[s]
-        trains = [fixed + k for k in range(found.first, found.end)]
+        section, solution = network.sections[s], flow.sections[s]
+        trains = [fixed + k for k in range(solution.first, solution.end)]
         points = [section.start_node, *trains, section.end_node]
-        pieces_m = [*flow.standing["piece_m"][found.first : found.end], found.closing_m]
+        pieces_m = [*flow.standing["piece_m"][solution.first : solution.end], solution.closing_m]
         first_piece.append(branches.size + len(start))
         start += points[:-1]
         end += points[1:]

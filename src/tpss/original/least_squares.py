@@ -21,7 +21,7 @@ from tpss.original.mismatch import Mismatch
 from tpss.powerflow.network import Loads
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.step.advance import begin_step, end_step
-from tpss.step.coupling import decide, settle_all
+from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
@@ -57,7 +57,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         evaluations += more
-        if share < 1.0 or settle_all(count, model, state):
+        if share < 1.0 or apply_solutions(count, model, state):
             return share, evaluations
         warm = True
 
@@ -76,11 +76,11 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
     search = Search(grid, count, model, state)
     if (warm and search.attempt(1.0, search.last())) or search.attempt(1.0, search.flat):
         return 1.0, search.evaluations
-    share, step, found = 0.0, FIRST_STEP, search.flat
+    share, step, solution = 0.0, FIRST_STEP, search.flat
     while share < 1.0 and step >= SHORTEST_STEP:
         target = min(1.0, share + step)
-        if search.attempt(target, found):
-            share, step, found = target, STEP_GROWTH * step, search.found
+        if search.attempt(target, solution):
+            share, step, solution = target, STEP_GROWTH * step, search.solution
         else:
             step /= 2.0
     return share, search.evaluations
@@ -99,7 +99,7 @@ class Search:
         """Unknowns without load."""
         self.stable_sign = np.linalg.slogdet(self.problem(0.0).jacobian(self.flat))[0]
         """Sign of the determinant there, which the stable branch keeps."""
-        self.found = self.flat
+        self.solution = self.flat
 
     def problem(self, share: float) -> Mismatch:
         """Mismatches at a share of the loads."""
@@ -140,7 +140,7 @@ class Search:
         sign = np.linalg.slogdet(minimum.jac)[0]
         if np.abs(minimum.fun).max() >= self.model.network.tolerance or sign != self.stable_sign:
             return False
-        self.found = minimum.x
+        self.solution = minimum.x
         solution = problem.split(minimum.x)
         problem.demand(solution.voltage)  # leaves the powers in the trains' records
         self._keep(solution.phasor * self.base_v)

@@ -7,8 +7,8 @@ At a node n, with what is generated, consumed and transmitted away,
 Unknowns are the angles θ_n and voltages U_n of all nodes, trains included, and the powers P_G and Q_G of
 the converter stations.  A train's consumption follows from its voltage (F.5)-(F.28).  The converter law
 (2.1)-(2.4), a constraint of the original program, stands beside the mismatches: what it leaves of a
-station's voltage and angle is a residual too, and as good as zero at a solution.  All is in per unit of
-the base voltage and the base power, or rad.
+station's voltage and angle is a residual too, zero at a solution but for rounding.  All is in per unit
+of the base voltage and the base power, or rad.
 
 References
 ----------

@@ -100,7 +100,7 @@ def bridge_reactive_power(
     -----
     With the former motor current (2.18), I_D already is the sum of the four motors.  Taken with the
     printed factor 4 the reactive power would be four times the physical one, so we read the former
-    pair of equations as the same sum of currents.  The text does not settle it.
+    pair of equations as the same sum of currents.  The text leaves it open.
 
     References
     ----------

@@ -105,22 +105,22 @@ def run_chain(
     Writes the trains' voltages and the end current into `flow`, the sensitivities of end voltage
     and end current into `flow.sensitivity`.
     """
-    section, found = network.sections[at(s)], flow.sections[at(s)]
+    section, solution = network.sections[at(s)], flow.sections[at(s)]
     z, half_b = section.impedance_ohm_per_m, 0.5 * section.susceptance_s_per_m
     voltage = flow.nodes[at(section.start_node)].voltage_v
-    current = found.current_a
+    current = solution.current_a
     # Sensitivities: a of the voltage and c of the current to the start voltage, b and d to the
     # start current.
     a_p, a_q, b_p, b_q = 1.0 + 0j, 0j, 0j, 0j
     c_p, c_q, d_p, d_q = 0j, 0j, 1.0 + 0j, 0j
     # 1. The half shunt at the start of the first piece.
-    ahead_m = found.closing_m
-    if found.first < found.end:
-        ahead_m = flow.standing[at(found.first)].piece_m
+    ahead_m = solution.closing_m
+    if solution.first < solution.end:
+        ahead_m = flow.standing[at(solution.first)].piece_m
     shunt = complex(0.0, half_b * ahead_m)
     current -= shunt * voltage
     c_p -= shunt
-    for k in range(found.first, found.end):
+    for k in range(solution.first, solution.end):
         # 2. The piece before the train.
         place = flow.standing[at(k)]
         piece_m = ahead_m
@@ -128,7 +128,7 @@ def run_chain(
         voltage -= impedance * current
         place.voltage_v = voltage
         # 3. The train, and the half shunts of the pieces that meet there.
-        ahead_m = found.closing_m if k + 1 == found.end else flow.standing[at(k + 1)].piece_m
+        ahead_m = solution.closing_m if k + 1 == solution.end else flow.standing[at(k + 1)].piece_m
         shunt = complex(0.0, half_b * (piece_m + ahead_m))
         load, y1, y2 = train_current(
             place.train, voltage, scale, start, network.system.base_voltage_v, loads
@@ -144,7 +144,7 @@ def run_chain(
     impedance = scaled(z, ahead_m)
     shunt = complex(0.0, half_b * ahead_m)
     voltage -= impedance * current
-    found.end_current_a = current - shunt * voltage
+    solution.end_current_a = current - shunt * voltage
     if start != CHECK:
         w = flow.sensitivity
         w[0, 0, 0], w[0, 0, 1] = _push_piece(impedance, a_p, a_q, c_p, c_q)

@@ -25,8 +25,8 @@ A source's row is the linearised f: with δS = J̄ δV + V δJ̄ and the pair (s
 All derivatives are pairs (see `pairs`); the system over the nodes is solved by `block_lu`.
 
 The determinant of the whole Jacobian is, but for a positive factor, the product of the B's and of
-the pivots.  From zero load on it stays positive until the solution branch turns, so its sign tells
-the stable branch from the one beyond the turning point.
+the pivots.  From zero load on it stays positive until the solution branch turns, so its sign
+distinguishes the stable branch from the one beyond the turning point.
 
 References
 ----------
@@ -53,7 +53,7 @@ from tpss.sources.kinds import is_plausible, residual
 
 CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
-its sign on so short a way but at the turning point itself. [p.u.]"""
+its sign over so short a distance except at the turning point itself. [p.u.]"""
 
 MOST_PASSES = 40
 MOST_HALVINGS = 12
@@ -79,7 +79,7 @@ def _add(block: Block, p: complex, q: complex) -> None:
 @inlined
 def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     """Add a section's blocks and gap currents to the node system; return the sign of det B."""
-    section, found, w = network.sections[at(s)], flow.sections[at(s)], flow.sensitivity
+    section, solution, w = network.sections[at(s)], flow.sections[at(s)], flow.sensitivity
     a_p, a_q = w[0, 0, 0], w[0, 0, 1]
     bi_p, bi_q = inverse(w[0, 1, 0], w[0, 1, 1])
     ba_p, ba_q = compose(bi_p, bi_q, a_p, a_q)
@@ -89,10 +89,10 @@ def _stamp_section(s: int, network: Network, flow: Flow) -> float:
     _add(flow.blocks[at(section.block_ab)], bi_p, bi_q)
     _add(flow.blocks[at(section.block_ba)], dba_p - w[1, 0, 0], dba_q - w[1, 0, 1])
     _add(flow.blocks[at(section.block_bb)], -db_p, -db_q)
-    flow.nodes[at(section.start_node)].right_side += apply(bi_p, bi_q, found.gap_v)
-    flow.nodes[at(section.end_node)].right_side -= apply(db_p, db_q, found.gap_v)
-    found.inverse_p, found.inverse_q = bi_p, bi_q
-    found.transfer_p, found.transfer_q = a_p, a_q
+    flow.nodes[at(section.start_node)].right_side += apply(bi_p, bi_q, solution.gap_v)
+    flow.nodes[at(section.end_node)].right_side -= apply(db_p, db_q, solution.gap_v)
+    solution.inverse_p, solution.inverse_q = bi_p, bi_q
+    solution.transfer_p, solution.transfer_q = a_p, a_q
     return math.copysign(1.0, determinant(w[0, 1, 0], w[0, 1, 1]))
 
 
@@ -184,14 +184,14 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        section, found = network.sections[at(s)], flow.sections[at(s)]
+        section, solution = network.sections[at(s)], flow.sections[at(s)]
         gap = run_chain(s, scale, start, network, flow, loads)
-        found.gap_v = gap - flow.nodes[at(section.end_node)].voltage_v
-        flow.nodes[at(section.start_node)].leaving_current_a += found.current_a
-        flow.nodes[at(section.end_node)].leaving_current_a -= found.end_current_a
+        solution.gap_v = gap - flow.nodes[at(section.end_node)].voltage_v
+        flow.nodes[at(section.start_node)].leaving_current_a += solution.current_a
+        flow.nodes[at(section.end_node)].leaving_current_a -= solution.end_current_a
         if start != CHECK:
             sign *= _stamp_section(s, network, flow)
-        square = squared(found.gap_v) * network.system.per_square_volt
+        square = squared(solution.gap_v) * network.system.per_square_volt
         largest = max(largest, square * section.gap_weight)
         merit += square
     # 3. Current balance of the nodes, or the law of the sources.
@@ -211,11 +211,11 @@ def _find_direction(network: Network, flow: Flow) -> float:
     for n in range(flow.nodes.size):
         flow.nodes[at(n)].direction_v = flow.nodes[at(n)].right_side
     for s in range(network.sections.size):
-        section, found = network.sections[at(s)], flow.sections[at(s)]
+        section, solution = network.sections[at(s)], flow.sections[at(s)]
         start_v = flow.nodes[at(section.start_node)].direction_v
         end_v = flow.nodes[at(section.end_node)].direction_v
-        change = end_v - apply(found.transfer_p, found.transfer_q, start_v) - found.gap_v
-        found.direction_a = apply(found.inverse_p, found.inverse_q, change)
+        change = end_v - apply(solution.transfer_p, solution.transfer_q, start_v) - solution.gap_v
+        solution.direction_a = apply(solution.inverse_p, solution.inverse_q, change)
     return sign
 
 

@@ -73,16 +73,16 @@ def measure_pieces(count: int, network: Network, flow: Flow) -> int:
     short = 0
     k = 0
     for s in range(network.sections.size):
-        section, found = network.sections[at(s)], flow.sections[at(s)]
+        section, solution = network.sections[at(s)], flow.sections[at(s)]
         before_m = section.start_m
-        found.first = k
+        solution.first = k
         while k < count and flow.standing[at(k)].section == s:
             standing = flow.standing[at(k)]
             standing.piece_m = max(SHORTEST_PIECE_M, standing.place_m - before_m)
             short += standing.place_m - before_m < SHORTEST_PIECE_M
             before_m = standing.place_m
             k += 1
-        found.end = k
-        found.closing_m = max(SHORTEST_PIECE_M, section.end_m - before_m)
+        solution.end = k
+        solution.closing_m = max(SHORTEST_PIECE_M, section.end_m - before_m)
         short += section.end_m - before_m < SHORTEST_PIECE_M
     return short

@@ -16,9 +16,10 @@ import tomli_w
 from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
-from tpss.audit.verdict import LIMITS
+from tpss.audit.verdict import usual_limits
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
+from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.drawings.journey import journey
@@ -237,12 +238,13 @@ def _page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    first = next(iter(results.values()))
     return environment.get_template("report.html").render(
         generator=REPORT_MARK,
         version=version("tpss"),
         title=title,
         results=results,
-        single=next(iter(results.values())) if len(results) == 1 else None,
+        single=first if len(results) == 1 else None,
         troubles=_troubles(results),
         status_names=STATUS_IN_WORDS,
         figures=figures,
@@ -250,7 +252,7 @@ def _page(
         tables=tables,
         key_figures=key_figures,
         notes=notes,
-        limits=LIMITS,
+        limits=usual_limits(system_of(first.scenario.supply).base_power_va),
         validity=limits_of_validity(results.values()),
         violations=_violations(results),
         scenarios={label: _as_toml(result) for label, result in results.items()},

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tpss.audit.aggregate import Figures, RunFigures, gather, new_figures
 from tpss.audit.balances import Balances
-from tpss.audit.verdict import LIMITS, Audit, judge, limits_of
+from tpss.audit.verdict import JUDGED, Audit, judge, limits_of
 from tpss.model.build import Layout
 from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
@@ -309,7 +309,7 @@ def _dimensioning_train_kv(figures: Figures, step_s: float) -> float:
 def _audit(run: Run, figures: Figures, whole: dict[str, Any], frame: Frame) -> Audit:
     found = dict(zip(Balances.dtype.names or (), figures.audit.balances.tolist()[0], strict=True))
     found["stop_error_m"] = float(run.state.clock[0].stop_error_m)
-    audited = {name: found[name] for name in LIMITS}
+    audited = {name: found[name] for name in JUDGED}
     lowest = min(whole["lowest_voltage_v"], whole["lowest_node_v"])
     if not math.isfinite(lowest):
         return judge(audited, None, None, frame.limits, frame.system)

@@ -12,6 +12,7 @@ import pickle
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,8 @@ Call = tuple[Any, tuple[Any, ...]]
 _ready: set[Clock] = set()
 """Clocks all of whose kernels this process has compiled or loaded."""
 
+_one_at_a_time = threading.Lock()
+
 
 def make_ready(model: Model, clock: Clock = advance) -> None:
     """Compile all kernels of a run, or load them from the cache, once in this process.
@@ -59,16 +62,17 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
     clock : callable
         What runs the steps.
     """
-    if clock in _ready:
-        return
-    with quick_inlining():
-        if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
-            _compile_in_parts(model)
-        Run(model, [], 0).advance_to(0)
-        if clock is not advance:
-            Run(model, [], 1, clock).advance_to(1)
-        compile_calls(figures_calls(model))
-    _ready.add(clock)
+    with _one_at_a_time:
+        if clock in _ready:
+            return
+        with quick_inlining():
+            if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
+                _compile_in_parts(model)
+            Run(model, [], 0).advance_to(0)
+            if clock is not advance:
+                Run(model, [], 1, clock).advance_to(1)
+            compile_calls(figures_calls(model))
+        _ready.add(clock)
 
 
 def are_ready() -> bool:

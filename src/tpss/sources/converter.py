@@ -37,8 +37,10 @@ class ConverterLaw(Record):
 
 
 @inlined
-def converter_voltage(reactive_power_var: float, converters: float, law: ConverterLaw) -> float:
-    r"""Terminal voltage of a station. [V]
+def converter_voltage(
+    reactive_power_var: float, converters: float, law: ConverterLaw
+) -> tuple[float, float]:
+    r"""Terminal voltage of a station, and its slope over the reactive power. [V], [V/var]
 
     .. math:: U_g = 16.5 - \frac{Q_G}{\#conv \cdot 20} \quad [\text{kV}, \text{Mvar}]
 
@@ -46,7 +48,8 @@ def converter_voltage(reactive_power_var: float, converters: float, law: Convert
     ----------
     [Boullanger2009]_, eq. (2.1) and (F.33).
     """
-    return law.no_load_voltage_v - law.droop_v_per_var * reactive_power_var / converters
+    voltage = law.no_load_voltage_v - law.droop_v_per_var * reactive_power_var / converters
+    return voltage, -law.droop_v_per_var / converters
 
 
 @inlined
@@ -69,7 +72,7 @@ def grid_angle(power_w: float, converters: float, law: ConverterLaw) -> tuple[fl
     x_motor = law.motor_reactance_ohm / converters
     motor = x_motor / (square + x_motor * q50_var)
     by_grid, by_motor = grid * power_w, motor * power_w
-    # arctan a + arctan b = arctan (a + b)/(1 - ab), of the quadrant that the signs tell.
+    # arctan a + arctan b = arctan (a + b)/(1 - ab), in the quadrant that the signs give.
     lag = math.atan2(by_grid + by_motor, 1.0 - by_grid * by_motor)
     slope = grid / (1.0 + by_grid * by_grid) + motor / (1.0 + by_motor * by_motor)
     return law.grid_angle_rad - lag / 3.0, -slope / 3.0
@@ -97,8 +100,7 @@ def terminal_voltage(
     ----------
     [Boullanger2009]_, eq. (2.3), (2.4), (F.40) and (F.41).
     """
-    voltage = converter_voltage(reactive_power_var, converters, law)
-    voltage_slope = -law.droop_v_per_var / converters
+    voltage, voltage_slope = converter_voltage(reactive_power_var, converters, law)
     behind, behind_slope = grid_angle(power_w, converters, law)
     x = law.generator_reactance_ohm / converters
     opposite = x * power_w
@@ -151,4 +153,4 @@ def converter_is_plausible(
     some hundred times the reactive power of their machines.
     """
     reactive_var = (voltage * current.conjugate()).imag
-    return converter_voltage(reactive_var, converters, law) > 0.0
+    return converter_voltage(reactive_var, converters, law)[0] > 0.0

@@ -43,11 +43,11 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
     if time_s < clock.next_action_s - TIME_ROUNDING_S:
         return
     for s in range(model.network.sources.size):
-        source, found = model.network.sources[at(s)], state.flow.sources[at(s)]
+        source, units = model.network.sources[at(s)], state.flow.sources[at(s)]
         if source.controlled:
-            mean = found.loading_sum / clock.loading_steps
-            found.running = converters_needed(mean, found.running, source.installed)
-        found.loading_sum = 0.0
+            mean = units.loading_sum / clock.loading_steps
+            units.running = converters_needed(mean, units.running, source.installed)
+        units.loading_sum = 0.0
     clock.loading_steps = 0
     periods = math.floor((time_s + TIME_ROUNDING_S) / CONTROL_PERIOD_S)
     clock.next_action_s = (periods + 1.0) * CONTROL_PERIOD_S
@@ -63,7 +63,7 @@ def station_power(node: NodeFlow) -> complex:
 def note_loading(model: Model, state: State) -> None:
     """Add this step's loading of each station to the mean that decides the next action."""
     for s in range(model.network.sources.size):
-        source, found = model.network.sources[at(s)], state.flow.sources[at(s)]
+        source, units = model.network.sources[at(s)], state.flow.sources[at(s)]
         power = station_power(state.flow.nodes[at(source.node)])
-        found.loading_sum += loading(power, found.running, source.rating_va)
+        units.loading_sum += loading(power, units.running, source.rating_va)
     state.clock[0].loading_steps += 1

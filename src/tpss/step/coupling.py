@@ -7,7 +7,7 @@ plan, and the step is solved again; each round puts at least one more train on i
 
 from tpss.driving.data import DrivingData
 from tpss.driving.driver import aim
-from tpss.driving.manners import must_replan, replan, settle
+from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.network import Loads, Standing
@@ -42,7 +42,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         passes += more
-        if share < 1.0 or settle_all(count, model, state):
+        if share < 1.0 or apply_solutions(count, model, state):
             return share, passes
         warm = True
 
@@ -60,7 +60,7 @@ def decide(
 
 
 @inlined
-def settle_all(count: int, model: Model, state: State) -> bool:
+def apply_solutions(count: int, model: Model, state: State) -> bool:
     """Apply the voltages of a solution to the trains; return whether every decision stands.
 
     If not, some trains are to brake otherwise, and the step has to be solved again.
@@ -75,7 +75,7 @@ def settle_all(count: int, model: Model, state: State) -> bool:
         if train.motion.phase == Phase.DWELLING:
             train.forces.next_speed_m_s = 0.0
             continue
-        settle(train, kind, model.options)
+        apply_solution(train, kind, model.options)
         if must_replan(train, kind, data):
             replan(train, kind, data)
             train.decision.decided = False

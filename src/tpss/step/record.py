@@ -24,7 +24,7 @@ from tpss.vehicle.train_type import TrainType
 
 @inlined
 def note_journey(train: Train, row: Journey) -> None:
-    """Keep how a train would go on; a whole record at once takes seconds to compile."""
+    """Keep how a train would continue; copying a whole record at once takes seconds to compile."""
     motion, plan = row.motion, row.plan
     motion.phase = train.motion.phase
     motion.position_m = train.motion.position_m
@@ -159,9 +159,11 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
         lost_w += square * branch.impedance_ohm.real
     lumped = network.branches.size
     for s in range(network.sections.size):
-        found = flow.sections[at(s)]
-        recording.branch_current[at(step), at(lumped + 2 * s)] = magnitude(found.current_a)
-        recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(found.end_current_a)
+        solution = flow.sections[at(s)]
+        recording.branch_current[at(step), at(lumped + 2 * s)] = magnitude(solution.current_a)
+        recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
+            solution.end_current_a
+        )
         lost_w += section_losses(s, model, state)
     recording.network_losses[at(step)] = lost_w
 
@@ -169,14 +171,14 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
 @inlined
 def section_losses(s: int, model: Model, state: State) -> float:
     """Losses of a contact-line section, I²R piece by piece. [W]"""
-    section, found, flow = model.network.sections[at(s)], state.flow.sections[at(s)], state.flow
+    section, solution, flow = model.network.sections[at(s)], state.flow.sections[at(s)], state.flow
     voltage, z = flow.nodes[at(section.start_node)].voltage_v, section.impedance_ohm_per_m
     sum_v2_per_m = 0.0
-    for k in range(found.first, found.end + 1):
-        if k < found.end:
+    for k in range(solution.first, solution.end + 1):
+        if k < solution.end:
             after, length_m = flow.standing[at(k)].voltage_v, flow.standing[at(k)].piece_m
         else:
-            after, length_m = flow.nodes[at(section.end_node)].voltage_v, found.closing_m
+            after, length_m = flow.nodes[at(section.end_node)].voltage_v, solution.closing_m
         sum_v2_per_m += squared(voltage - after) / length_m
         voltage = after
     return sum_v2_per_m * z.real / squared(z)

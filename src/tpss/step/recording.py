@@ -58,16 +58,16 @@ def new_recording(
     Parameters
     ----------
     memory : callable
-        What gives the room.
+        Allocates the arrays.
     with_journeys : bool
-        Whether it is also kept how each train would go on.
+        Whether it is also kept how each train would continue.
     """
     network, rows = model.network, steps + 1
 
     def unknown(size: int) -> Floats:
-        room = memory(size)
-        room.fill(np.nan)
-        return room
+        values = memory(size)
+        values.fill(np.nan)
+        return values
 
     def blank(columns: int, kind: type[Record]) -> Any:
         size = rows * columns * len(kind.dtype.names or ())

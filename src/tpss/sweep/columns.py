@@ -7,7 +7,7 @@ from typing import Any, get_type_hints
 
 import pyarrow as pa
 
-from tpss.audit.verdict import LIMITS
+from tpss.audit.verdict import JUDGED
 from tpss.results.key_figures import LIMITED, KeyFigures, ServiceFigures, StationFigures
 from tpss.sweep.inputs import Inputs
 from tpss.sweep.variation import Variation
@@ -46,7 +46,7 @@ OUTPUTS = {
     "mean_passes": pa.float64(),
     "most_passes": pa.int64(),
     "audit_passed": pa.bool_(),
-    **{f"audit.{name}": pa.float64() for name in LIMITS},
+    **{f"audit.{name}": pa.float64() for name in JUDGED},
     **{f"limited.{name}": pa.int64() for name in LIMITED},
 }
 
@@ -120,7 +120,7 @@ def output_columns(figures: KeyFigures) -> dict[str, Any]:
         "peak_power_mw": _highest(station.peak_power_mw for station in figures.stations),
         "peak_loading": _highest(station.peak_loading for station in figures.stations),
         "audit_passed": figures.audit.passed,
-        **{f"audit.{name}": audit[name] for name in LIMITS},
+        **{f"audit.{name}": audit[name] for name in JUDGED},
         **{f"limited.{name}": count for name, count in figures.limited.items()},
         **_figures_of_each("station", figures.stations),
         **_figures_of_each("service", figures.services),

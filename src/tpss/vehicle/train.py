@@ -48,7 +48,7 @@ class Timetable(Record):
 
 
 class Motion(Record):
-    """Where a train is; with its `Plan` all that it needs to go on from an instant."""
+    """Where a train is; with its `Plan` all that it needs to continue from an instant."""
 
     phase: Phase
     position_m: float
@@ -82,7 +82,7 @@ class Decision(Record):
     """What the driver of a train wants in the present step."""
 
     decided: bool
-    """Whether he has decided about the present step."""
+    """Whether the driver has decided about the present step."""
     course: Course
     hold_s: float
     """Time at constant speed. [s]"""
@@ -127,7 +127,7 @@ class Train(Record):
 
 
 class Journey(Record):
-    """What a train has to know to go on from an instant."""
+    """What a train needs to continue from an instant."""
 
     motion: Motion
     plan: Plan

@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 from tpss.driving.course import (
-    braking_distance,
     distance_of_part,
     even_braking,
-    highest_speed_that_stops_within,
+    highest_speed_that_stops,
     latest_braking,
     mean_braking_force,
     part_of_step,
+    stopping_distance,
 )
 
 
@@ -34,8 +34,8 @@ def random_stops(count, seed):
         yield speed, room * speed**2 / (2.0 * b), b, float(10.0 ** random.uniform(-0.3, 2.5))
 
 
-def test_the_braking_distance_is_200_m(as_run):
-    assert as_run(braking_distance)(20.0, 1.0) == 200.0
+def test_the_stopping_distance_is_200_m(as_run):
+    assert as_run(stopping_distance)(20.0, 1.0) == 200.0
 
 
 def test_a_train_holds_its_speed_for_as_long_as_it_can(as_run):
@@ -117,13 +117,13 @@ def test_a_train_that_has_to_be_driven_does_not_brake(as_run):
 def test_highest_speed_is_the_last_one_from_which_the_train_can_stop(as_run):
     for speed, distance_m, b, step_s in random_stops(400, seed=9):
         room_m = distance_m + step_s * speed / 2.0
-        highest = as_run(highest_speed_that_stops_within)(speed, room_m, b, step_s)
+        highest = as_run(highest_speed_that_stops)(speed, room_m, b, step_s)
         left_m = room_m - step_s * (speed + highest) / 2.0
         assert left_m == pytest.approx(highest**2 / (2.0 * b), abs=1e-9 * room_m)
 
 
 def test_standing_train_100_metres_before_its_stop(as_run):
     """v²/2 + 5 v = 100 at b = 1 m/s² and steps of 10 s: v = √(25 + 200) - 5 = 10 m/s."""
-    assert as_run(highest_speed_that_stops_within)(0.0, 100.0, 1.0, 10.0) == pytest.approx(10.0)
-    assert as_run(highest_speed_that_stops_within)(0.0, 0.0, 1.0, 10.0) == 0.0
-    assert math.isfinite(as_run(highest_speed_that_stops_within)(30.0, 10.0, 1.0, 10.0))
+    assert as_run(highest_speed_that_stops)(0.0, 100.0, 1.0, 10.0) == pytest.approx(10.0)
+    assert as_run(highest_speed_that_stops)(0.0, 0.0, 1.0, 10.0) == 0.0
+    assert math.isfinite(as_run(highest_speed_that_stops)(30.0, 10.0, 1.0, 10.0))
