@@ -20,7 +20,7 @@ from tpss.sweep.columns import output_columns
 from tpss.sweep.derive import scenario_with
 from tpss.sweep.design import PROFILE, Design, design_of
 from tpss.sweep.folder import read_manifest
-from tpss.sweep.gradients import Array, staircase, weights_of
+from tpss.sweep.gradients import Array, gradient_profile, weights_of
 from tpss.sweep.study import study_of_json
 
 FIRST_PROFILE = 1_000_000
@@ -67,8 +67,8 @@ def matched(other: tpss.Scenario, own: tpss.Scenario, design: Design) -> tpss.Sc
 
     Of a line with stations at its ends, and a train that runs all of it.
     """
-    edges_km, drawn = staircase(other.line)
-    permille = bent(drawn, staircase(own.line)[1], edges_km, correlation_km(design))
+    edges_km, drawn = gradient_profile(other.line)
+    permille = bent(drawn, gradient_profile(own.line)[1], edges_km, correlation_km(design))
     if permille is None:
         return None
     pieces = zip(edges_km[:-1].tolist(), permille.tolist(), strict=True)

@@ -81,7 +81,7 @@ def _clock_of(scenario: Scenario) -> Clock:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A scenario whose run can begin, as often as one likes."""
+    """A scenario that is ready to run, any number of times."""
 
     scenario: Scenario
     layout: Layout

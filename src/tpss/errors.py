@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """One fault of an input: where it is, what it is, and how to mend it."""
+    """One fault of an input: where it is, what it is, and how to correct it."""
 
     file: str
     key: str
@@ -22,11 +22,20 @@ class Finding:
 
 
 def suggest(word: str, known: Iterable[str]) -> str:
-    """Remedy for an unknown word: the nearest known one, if any is near, and all there are."""
+    """Remedy for an unknown word: the most similar known one, if any, and all of them."""
     names = sorted(known)
-    near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
-    listed = f"choose from {', '.join(names)}"
-    return f"did you mean {near[0]}? {listed}" if near else listed
+    choices = f"choose from {', '.join(names)}"
+    return f"did you mean {close}? {choices}" if (close := closest(word, names)) else choices
+
+
+def closest(word: str, known: Sequence[str]) -> str:
+    """The known word that is most similar to another; empty if none is similar."""
+    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.5)), "")
+
+
+def shortened(text: str) -> str:
+    """The first characters of a long text."""
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 class TpssError(Exception):

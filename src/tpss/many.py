@@ -1,4 +1,4 @@
-"""Many scenarios in threads, of which nothing is kept but the key figures."""
+"""Many scenarios, simulated in threads, of which only the key figures are kept."""
 
 import os
 import threading
@@ -14,7 +14,7 @@ from tpss.scenario.scenario import Scenario
 from tpss.step.state import Floats
 
 AHEAD = 4
-"""Scenarios a thread that are begun or wait to be, at most."""
+"""Highest number of scenarios per thread that are running or waiting."""
 
 
 def simulate_many(
@@ -22,13 +22,13 @@ def simulate_many(
 ) -> Iterator[KeyFigures]:
     """Simulate scenarios in threads, and give the key figures of each, in their order.
 
-    Scenarios are taken as they are needed, so there may be any number of them; memory stays flat.
+    Scenarios are drawn as they are needed, so there may be any number of them; memory stays constant.
     The figures are those of `simulate`, whatever the number of threads.
 
     Parameters
     ----------
     scenarios : iterable of Scenario or Prepared
-        A `Prepared` of `tpss.prepare` can be run again and again without being built anew.
+        A `Prepared` of `tpss.prepare` can be run repeatedly without being rebuilt.
     threads : int, optional
         Number of threads; by default one for each core.
 
@@ -68,29 +68,29 @@ def key_figures(scenario: Scenario | Prepared) -> KeyFigures:
         As `simulate_many`.
     """
     prepared = scenario if isinstance(scenario, Prepared) else build(scenario)
-    rooms = _own.__dict__.setdefault("rooms", Rooms())
-    rooms.leave()
-    return run_for_figures(prepared.start, prepared.frame, prepared.clock, rooms.take)
+    scratch = _of_this_thread.__dict__.setdefault("scratch", Scratch())
+    scratch.reset()
+    return run_for_figures(prepared.start, prepared.frame, prepared.clock, scratch.allocate)
 
 
-class Rooms:
-    """Memory that one run after the other works in."""
+class Scratch:
+    """Memory that successive runs reuse."""
 
     def __init__(self) -> None:
-        self._room: Floats = np.empty(0)
-        self._taken = 0
+        self._memory: Floats = np.empty(0)
+        self._used = 0
 
-    def leave(self) -> None:
-        """Let all that was taken be taken again."""
-        self._taken = 0
+    def reset(self) -> None:
+        """Release all that was allocated, so that it is used again."""
+        self._used = 0
 
-    def take(self, size: int) -> Floats:
-        """Give an array of so many numbers, whatever they are."""
-        begin, self._taken = self._taken, self._taken + size
-        if self._taken > self._room.size:
-            # Arrays that were given out keep what they lie in; the next run finds room for all.
-            self._room = np.empty(2 * self._taken)
-        return self._room[begin : self._taken]
+    def allocate(self, size: int) -> Floats:
+        """An array of so many numbers, not initialised."""
+        begin, self._used = self._used, self._used + size
+        if self._used > self._memory.size:
+            # Arrays that were allocated before keep the old memory; the next run fits into the new.
+            self._memory = np.empty(2 * self._used)
+        return self._memory[begin : self._used]
 
 
-_own = threading.local()
+_of_this_thread = threading.local()

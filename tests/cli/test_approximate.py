@@ -90,7 +90,7 @@ def test_predict_prints_the_figures_of_a_line(tpss_command, model):
 def test_predict_says_that_a_line_collapses(tpss_command, model):
     said = tpss_command("approximate", "predict", model, *settings(length_km=150, headway_min=6))
     assert said.code == 0
-    assert said.out.startswith("The line does not carry this: probability of collapse")
+    assert said.out.startswith("The line cannot carry this load: probability of collapse")
 
 
 @pytest.mark.parametrize("name", ["lines.csv", "lines.parquet"])

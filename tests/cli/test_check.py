@@ -32,7 +32,7 @@ def test_a_scenario_is_told_in_a_few_lines(tpss_command, tmp_path):
         "West 0 km: 6 x Q48/Q49 of 10 MVA, control all-on",
         "freight: Rc4-freight-1470t, mass 1470 t, adhesive mass 79 t, max speed 135 km/h",
         "eastbound: freight from West to East, every 10 min from 0 min, already running",
-        "standards 15kV-16.7Hz: 12 to 17.25 kV, at times 11 to 18 kV",
+        "standards 15kV-16.7Hz: 12 to 17.25 kV, for a limited time 11 to 18 kV",
         "steps of 0.5 min until eastbound 1 arrives",
     ):
         assert words in said.out, words
@@ -59,8 +59,8 @@ def test_what_departs_from_the_library_and_the_defaults_is_told(tpss_command):
         "own: 0.1 + j0.3 Ω/km",
         "steps of 1 min until eastbound 1 arrives, rail wet",
         "trains on the line at the start: 1, stops: Middle 2 min",
-        "standards 15kV-16.7Hz: 12.5 to 17.25 kV, at times 11 to 18 kV; changed from the library: "
-        "umin1_kv 12.5 (12); peak window 10 min to the end; zones hill",
+        "standards 15kV-16.7Hz: 12.5 to 17.25 kV, for a limited time 11 to 18 kV; changed from the "
+        "library: umin1_kv 12.5 (12); peak window 10 min to the end; zones hill",
     ):
         assert words in said.out, words
 
@@ -139,8 +139,8 @@ def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, s
     start = text.index("other = [")
     short_file.write_text(text[:start] + text[text.index("]", start) + 1 :])
     said = check(tpss_command, short_file, *changes)
-    assert "Note: line.gradients begins at 2 km; its first gradient holds from 0 km on" in said.out
-    assert "Note: line.gradients goes on to 25 km, but the line ends at 20 km" in said.out
+    assert "Note: line.gradients begins at 2 km; its first gradient applies from 0 km on" in said.out
+    assert "Note: line.gradients continues to 25 km, but the line ends at 20 km" in said.out
     assert "gradients 1 ‰; from beginning to end +20 m" in said.out
 
 
@@ -156,7 +156,7 @@ def test_a_gradient_on_which_a_train_cannot_start_is_noted(tpss_command, short_f
     assert "to start" not in at_15.out
     assert (
         "Note: traffic.0 (eastbound): between 0 and 20 km the gradient is 20 ‰, on which freight "
-        "needs 304 kN to start; dry rails give it 257 kN" in at_20.out
+        "needs 304 kN to start; dry rails allow 257 kN" in at_20.out
     )
 
 

@@ -92,7 +92,7 @@ def test_a_process_that_is_interrupted_saves_its_run(tmp_path, short_file):
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
-    assert "Interrupted: what there is will be saved; another Ctrl-C gives it up." in err
+    assert "Interrupted: the result so far will be saved; another Ctrl-C discards it." in err
     assert "Saved in results/short-line-001" in out
     result = load_result(tmp_path / "results" / "short-line-001")
     assert result.status == "interrupted"
@@ -128,7 +128,7 @@ def test_an_interrupted_saving_is_completed(tpss_command, tmp_path, short_file, 
     press_ctrl_c_while_saving(monkeypatch, times=1)
     said = tpss_command("run", short_file)
     assert said.code == 130
-    assert "Interrupted when the run had ended: the result is whole." in said.out
+    assert "Interrupted after the run had ended: the result is complete." in said.out
     assert load_result(tmp_path / "results" / "short-line-001").status == "finished"
 
 

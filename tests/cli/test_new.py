@@ -59,7 +59,7 @@ def test_no_file_is_overwritten(tpss_command, tmp_path, name):
     (tmp_path / name).write_text("Years of work.")
     said = tpss_command("new", ".")
     assert (said.code, said.out) == (2, "")
-    assert f"{name} exists already and is left as it is; name another folder" in said.err
+    assert f"{name} exists already and is not changed; name another folder" in said.err
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "Years of work."
 

@@ -82,14 +82,14 @@ def judged(**limits):
 def test_a_run_within_its_limits_is_told_so_in_one_line(tpss_command):
     said = tpss_command("run", HEADWAY, *SHORT)
     assert "Voltage: no train below 12.0 kV or above 17.25 kV" in said.out
-    assert "Limit passed" not in said.out
+    assert "Limit violated" not in said.out
 
 
 def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_command, tmp_path):
     said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, umin2_kv=14.5))
     assert said.code == 0
     told = re.findall(
-        r"Limit passed: train eastbound initial \d+: at least 3\.0 min below 14\.5 kV near km "
+        r"Limit violated: train eastbound initial \d+: at least 3\.0 min below 14\.5 kV near km "
         r"\d+\.\d \(lowest 14\.\d\d kV at \d\.\d min\)",
         said.out,
     )
@@ -101,7 +101,7 @@ def test_the_worst_violations_are_told_in_words_and_the_others_counted(tpss_comm
 
 def test_a_voltage_that_is_low_for_as_long_as_it_may_be_is_told_as_such(tpss_command):
     said = tpss_command("run", HEADWAY, *SHORT, *judged(umin1_kv=14.8, longest_low_min=5))
-    assert "Limit passed" not in said.out
+    assert "Limit violated" not in said.out
     pattern = r"Voltage: train .*: at least 3\.0 min below 14\.8 kV near km .*; 5 min are allowed"
     assert re.search(pattern, said.out)
 
@@ -258,7 +258,7 @@ def test_a_result_that_no_disk_can_hold_is_printed_at_least(
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out
     assert "results cannot be written: File too large" in said.err
-    assert "Nothing of the result is kept but what is printed here." in said.err
+    assert "Only what is printed here is kept of the result." in said.err
     assert files_in(tmp_path) == {}
     assert folders_in(tmp_path) == ["results", "spare"]
 

@@ -118,7 +118,7 @@ def test_another_file_is_not_replaced(tpss_command, short_file):
     before = short_file.read_bytes()
     said = tpss_command("schema", "--out", short_file)
     assert said.code == 2
-    assert "is there and is not a schema of TPSS; name another file" in said.err
+    assert "exists and is not a schema of TPSS; name another file" in said.err
     assert short_file.read_bytes() == before
 
 

@@ -33,7 +33,7 @@ def test_a_study_is_run_and_summarised(finished, tpss_command):
     assert again.code == 0
     assert "6 of 6 cases: 6 finished" in again.out
     resumed = tpss_command("sweep", "study.toml", "--out", "out")
-    assert "6 cases were there already" in resumed.err
+    assert "6 cases were finished before" in resumed.err
 
 
 def test_figures_that_no_case_has_are_left_out(tpss_command, tmp_path, scheduler):

@@ -76,7 +76,7 @@ PROFILES = [
     *spoilt("ascending order", {
         "unsorted": (HEADER + "0,1\n\n5,2\n3,1\n7,0\n", "line 5, position_km", "3"),
     }),
-    *spoilt("each place once", {"twice": (HEADER + "0,1\n0,2\n", "line 3, position_km", "0")}),
+    *spoilt("each position once", {"twice": (HEADER + "0,1\n0,2\n", "line 3, position_km", "0")}),
 ]  # fmt: skip
 
 
@@ -130,13 +130,13 @@ def test_a_folder_in_place_of_a_file_is_reported(tmp_path):
     ("content", "place", "value", "problem", "remedy"),
     [
         pytest.param(b"format = 1\nname = \n", "line 2", "name =", "Invalid value",
-                     "mend the file", id="no-value"),
+                     "correct the file", id="no-value"),
         pytest.param(b"name = 'a'\nname = 'b'\n", "line 2", "name = 'b'", "not TOML",
-                     "mend the file", id="key-twice"),
+                     "correct the file", id="key-twice"),
         pytest.param(b"[line]\r\nlength_km = 160 km\r\n", "line 2", "length_km = 160 km",
-                     "not TOML", "mend the file", id="unit-behind-a-number"),
-        pytest.param(b"[line\n", "line 1", "[line", "not TOML", "mend the file", id="bracket"),
-        pytest.param(b"x = [1,", "", "", "at end of document", "mend the file", id="cut-off"),
+                     "not TOML", "correct the file", id="unit-behind-a-number"),
+        pytest.param(b"[line\n", "line 1", "[line", "not TOML", "correct the file", id="bracket"),
+        pytest.param(b"x = [1,", "", "", "at end of document", "correct the file", id="cut-off"),
         pytest.param(b"position_km,gradient_permille\n", "line 1",
                      "position_km,gradient_permille", "not TOML", "toml.io", id="csv"),
         pytest.param(b"# a\nname = 'Lule\xe5'\n", "line 2", "byte 0xe5", "not text in UTF-8",

@@ -202,7 +202,7 @@ TABLES = [
     pytest.param({"speed_kmh": [0, 50, 40], "force_kn": [3, 2, 1]}, "speed_kmh", "[0, 50, 40]",
                  "ascending order", id="speeds unsorted"),
     pytest.param({"speed_kmh": [0, 0], "force_kn": [3, 2]}, "speed_kmh", "[0, 0]",
-                 "each place once", id="speed twice"),
+                 "each value once", id="speed twice"),
     pytest.param({"speed_kmh": [-5, 0], "force_kn": [3, 2]}, "speed_kmh.0", "-5",
                  "greater than or equal to 0 km/h", id="negative speed"),
     pytest.param({"speed_kmh": SPEEDS, "force_kn": [3, -2, 1]}, "force_kn.1", "-2",

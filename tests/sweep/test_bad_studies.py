@@ -28,12 +28,12 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
     [
         (
             {**SOBOL, "vary": {"traffic.0.headway_min": {"low": 30.0, "high": 5.0}}},
-            ["vary.traffic.0.headway_min", "an empty range, 30 to 5", "let low be less than high"],
+            ["vary.traffic.0.headway_min", "an empty range, 30 to 5", "set low below high"],
         ),
         ({"vary": {"traffic.0.headway_min": []}}, ["vary.traffic.0.headway_min", "an empty list"]),
         (
             {"vary": {"traffic.0.headway_min": {"low": 5.0, "high": 30.0}}},
-            ["does not say how many values", "add steps = 5"],
+            ["without a number of values", "add steps = 5"],
         ),
         (
             {"vary": {"traffic.0.headway_min": {"low": 5.0, "hihg": 30.0}}},
@@ -63,7 +63,7 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
             {"vary": {"supply.high_voltage_line.transformers": [1]}},
             [
                 "vary.supply.high_voltage_line.transformers = 1",
-                "makes no scenario: supply.high_voltage_line.type: it is missing",
+                "the scenario is not valid: supply.high_voltage_line.type: it is missing",
             ],
         ),
         (
@@ -72,7 +72,7 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
         ),
         ({"vary": None}, ["nothing varies", "add a table vary, choices or gradients"]),
         ({"cases": 5}, ["a grid has as many cases as combinations", "leave cases out"]),
-        ({"design": "sobol"}, ["how many cases does the sobol have?", "add cases = 256"]),
+        ({"design": "sobol"}, ["the sobol needs a number of cases", "add cases = 256"]),
         ({"design": "random"}, ["design = 'random'", "choose from grid, latin-hypercube, sobol"]),
         ({"scenario": "long_line.toml"}, ["long_line.toml", "there is no such file"]),
         (
@@ -132,7 +132,7 @@ def test_a_scenario_in_place_of_a_study_is_told_and_the_other_way_round():
             load(EXAMPLES / example)
         (finding,) = caught.value.findings
         assert finding.problem == words
-        assert finding.remedy.startswith("run it by tpss")
+        assert finding.remedy.startswith("run it with tpss")
 
 
 def test_all_faults_of_the_base_scenario_are_told(tmp_path):

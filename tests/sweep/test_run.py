@@ -215,7 +215,7 @@ def test_two_processes_do_not_work_in_one_folder(tmp_path, scheduler):
     tpss.run_study(small, folder, scheduler=scheduler)
     manifest = json.loads((folder / "study.json").read_text("utf-8"))
     with Folder(folder).opened(manifest):
-        assert "is being worked on by another process" in refused(small, folder, scheduler)
+        assert "is in use by another process" in refused(small, folder, scheduler)
 
 
 def test_a_full_disk_loses_nothing_that_was_there(tmp_path, scheduler):
@@ -227,7 +227,7 @@ def test_a_full_disk_loses_nothing_that_was_there(tmp_path, scheduler):
         said = refused(small, folder, scheduler)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    assert "cannot be written: File too large; make room" in said
+    assert "cannot be written: File too large; free space" in said
     assert list(parts(folder)) == []
     assert not list(folder.glob("**/*.unfinished"))
     assert tpss.run_study(small, folder, scheduler=scheduler).done == 6

@@ -2,19 +2,18 @@
 
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
+from tpss.cli.terminal import progress_bar, say
 from tpss.errors import ApproximatorError, Finding, ScenarioError
 from tpss.files.refusals import reason
 
@@ -34,7 +33,8 @@ def train_model(folder: Path, out: Path, form: str, seed: int, force: bool, quie
     check_target(out, force)
     console = Console(stderr=True, quiet=quiet)
     try:
-        with nullcontext() if quiet else _progress_bar(console) as report:
+        networks = "{task.completed}/{task.total} networks"
+        with progress_bar("Training", networks, _progress, console) as report:
             model = train_approximator(folder, form=form, seed=seed, report=report)
     except KeyboardInterrupt:
         print("Interrupted; nothing was written.", file=sys.stderr)
@@ -61,26 +61,11 @@ def _save(model: "Approximator", out: Path, force: bool) -> tuple[Path | None, s
         return model.save(spare), f"{fault}\nIt was saved as {spare} instead."
     except ApproximatorError as error:
         spare.parent.rmdir()
-        return None, f"{fault}\n{error}\nNothing of the training is kept but what is printed here."
+        return None, f"{fault}\n{error}\nOnly what is printed here is kept of the training."
 
 
-@contextmanager
-def _progress_bar(console: Console) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar of the networks that are fitted; gives the callable to report to."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("networks"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("Training", total=None)
-
-        def report(done: int, whole: int) -> None:
-            bar.update(task, completed=done, total=whole)
-
-        yield report
+def _progress(done: int, whole: int) -> dict[str, Any]:
+    return {"completed": done, "total": whole}
 
 
 def predict_lines(
@@ -98,20 +83,20 @@ def predict_lines(
 
     model = load_approximator(file)
     if out is not None:
-        _demand_kind(out)
+        _demand_table_file(out)
         check_target(out, force)
     lines, place = _lines(model, assignments, table, scenario)
-    found = model.predict(lines, "flag" if flag else "refuse", place)
+    predictions = model.predict(lines, "flag" if flag else "refuse", place)
     if out is not None:
-        _write(pd.concat([lines.reset_index(drop=True), found], axis=1), out)
+        _write(pd.concat([lines.reset_index(drop=True), predictions], axis=1), out)
         print(f"Wrote {out}")
-    elif len(found) == 1:
-        _print_prediction(model, found.iloc[0])
+    elif len(predictions) == 1:
+        _print_prediction(model, predictions.iloc[0])
     else:
-        _print_predictions(model, found)
-    for row, words in enumerate(found["outside"].tolist()):
+        _print_predictions(model, predictions)
+    for row, words in enumerate(predictions["outside"].tolist()):
         if words and row < LINES_SHOWN:
-            which = f"row {row + 1} " if len(found) > 1 else ""
+            which = f"row {row + 1} " if len(predictions) > 1 else ""
             print(f"{which}outside the trained region: {words}", file=sys.stderr)
     return DONE
 
@@ -152,7 +137,7 @@ def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
     return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
 
 
-def _demand_kind(path: Path) -> None:
+def _demand_table_file(path: Path) -> None:
     if path.suffix not in (".csv", ".parquet"):
         raise ApproximatorError(
             f"{path} is neither .csv nor .parquet; give it one of these endings"
@@ -160,7 +145,7 @@ def _demand_kind(path: Path) -> None:
 
 
 def _read_table(path: Path) -> pd.DataFrame:
-    _demand_kind(path)
+    _demand_table_file(path)
     try:
         if path.suffix == ".parquet":
             return pd.read_parquet(path)
@@ -180,13 +165,13 @@ def _write(table: pd.DataFrame, out: Path) -> None:
 
 
 def _print_prediction(model: "Approximator", row: Any) -> None:
-    """Figures of one line, an output a row."""
+    """Figures of one line, one row per output."""
     from tpss.approximator.approximator import COLLAPSE, LIKELY
 
     names = [output.name for output in model.file.outputs]
     if COLLAPSE in row and row[COLLAPSE] >= LIKELY:
         chance = f"{row[COLLAPSE]:.3f}"
-        print(f"The line does not carry this: probability of collapse {chance}")
+        print(f"The line cannot carry this load: probability of collapse {chance}")
         return
     table = _table("", "figure", "90 % interval", "unit")
     for name in names:
@@ -199,21 +184,23 @@ def _print_prediction(model: "Approximator", row: Any) -> None:
     Console().print(table)
 
 
-def _print_predictions(model: "Approximator", found: pd.DataFrame) -> None:
-    """Figures of several lines, a line a row; those of single stations are in files only."""
+def _print_predictions(model: "Approximator", predictions: pd.DataFrame) -> None:
+    """Figures of several lines, one row per line; those of single stations are in files only."""
     from tpss.approximator.approximator import COLLAPSE
 
     names = [output.name for output in model.file.outputs if "station." not in output.name]
     table = _table("row", *(_heading(name) for name in names))
-    if COLLAPSE in found:
+    if COLLAPSE in predictions:
         table.add_column("collapse", justify="right")
-    for number, (_, row) in enumerate(found.head(LINES_SHOWN).iterrows(), start=1):
+    for number, (_, row) in enumerate(predictions.head(LINES_SHOWN).iterrows(), start=1):
         cells = [_with_interval(row, name) for name in names]
-        chance = [f"{row[COLLAPSE]:.3f}"] if COLLAPSE in found else []
+        chance = [f"{row[COLLAPSE]:.3f}"] if COLLAPSE in predictions else []
         table.add_row(str(number), *cells, *chance)
     Console().print(table)
-    if len(found) > LINES_SHOWN:
-        print(f"{len(found) - LINES_SHOWN:,} more rows; --out writes all of them into a file.")
+    if len(predictions) > LINES_SHOWN:
+        print(
+            f"{len(predictions) - LINES_SHOWN:,} more rows; --out writes all of them into a file."
+        )
 
 
 def _with_interval(row: Any, name: str) -> str:
@@ -224,7 +211,7 @@ def _with_interval(row: Any, name: str) -> str:
 
 
 def check_model(file: Path, folder: Path | None) -> int:
-    """Say what an approximator is, or how it predicts a study; return the exit code."""
+    """Print what an approximator is, or how well it predicts a study; return the exit code."""
     from tpss.approximator.approximator import load_approximator
 
     model, console = load_approximator(file), Console()
@@ -233,17 +220,17 @@ def check_model(file: Path, folder: Path | None) -> int:
         return DONE
     from tpss.approximator.compare import compare
 
-    found = compare(model, folder)
-    console.print(f"{found.tested:,} cases {found.which}", highlight=False)
-    if found.outside:
-        console.print(f"{found.outside:,} lie outside the trained region", highlight=False)
-    _print_scores(found.scores, found.collapse, console)
+    comparison = compare(model, folder)
+    say(console, f"{comparison.tested:,} cases {comparison.which}")
+    if comparison.outside:
+        say(console, f"{comparison.outside:,} lie outside the trained region")
+    _print_scores(comparison.scores, comparison.collapse, console)
     return DONE
 
 
 def _print_model(model: "Approximator", console: Console) -> None:
     data, inputs = model.file.data, model.file.inputs
-    tell = [
+    description = [
         f"Trained on {data.used - len(data.held_out):,} cases of the study {data.study} "
         f"({data.study_hash}) at steps of {data.time_step_min:g} min; {len(data.held_out):,} held out.",
         f"Simulated by TPSS {data.tpss_version} (kernels {data.kernel_hash}), trained by "
@@ -251,7 +238,7 @@ def _print_model(model: "Approximator", console: Console) -> None:
         + ".",
         f"{model.neurons} in each of {model.members} networks.",
     ]
-    for line in tell:
+    for line in description:
         console.print(line, highlight=False, markup=False)
     table = _table("input", "trained at", "unit", "may be given as")
     for each in inputs.varying:
@@ -275,7 +262,7 @@ def _print_scores(
     console.print(table)
     if collapse is not None:
         console.print(
-            f"Whether the line collapses is told rightly in {collapse.accuracy:.1%} of the cases; "
+            f"Whether the line collapses is predicted correctly in {collapse.accuracy:.1%} of cases; "
             f"{collapse.share:.1%} collapse.",
             highlight=False,
         )

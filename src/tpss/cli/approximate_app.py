@@ -9,14 +9,14 @@ import typer
 from tpss.cli.arguments import Quiet
 
 app = typer.Typer(
-    help="TPSA, the approximator: learn from a study what its simulations lead to, and predict more.",
+    help="TPSA, the approximator: learn from the simulations of a study, and predict further ones.",
     no_args_is_help=True,
     rich_markup_mode="markdown",
 )
 
 
 class FormName(StrEnum):
-    """What an approximator is asked and answers."""
+    """Which inputs and outputs an approximator has."""
 
     AGGREGATED = "aggregated"
     PROFILE = "profile"
@@ -26,7 +26,7 @@ class FormName(StrEnum):
 ModelFile = Annotated[
     Path,
     typer.Argument(
-        metavar="MODEL", help="File that tpss approximate train has written.", show_default=False
+        metavar="MODEL", help="File written by tpss approximate train.", show_default=False
     ),
 ]
 
@@ -39,7 +39,7 @@ def train(
     folder: Annotated[
         Path,
         typer.Argument(
-            metavar="DIR", help="Folder of a study, as tpss sweep writes it.", show_default=False
+            metavar="DIR", help="Folder of a study, written by tpss sweep.", show_default=False
         ),
     ],
     out: Annotated[Path, typer.Option(help="File to write (JSON).")] = Path("model.json"),
@@ -47,18 +47,18 @@ def train(
         FormName,
         typer.Option(
             metavar="FORM",
-            help="aggregated; profile: told where it is steep too, beyond mean and standard deviation "
-            "of the gradients; or original: the highest mean speed of a train added to a line, from "
-            "the number and the speed of those that run there.",
+            help="aggregated; profile: also with the location of the steep sections, beyond mean and "
+            "standard deviation of the gradients; or original: the highest mean speed of a train added "
+            "to a line, from the number and the speed of the trains that run there.",
         ),
     ] = FormName.AGGREGATED,
-    seed: Annotated[int, typer.Option(min=0, help="Number that all draws follow from.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random numbers.")] = 0,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Train an approximator on the table of a study.
 
-    Four fifths of the cases are trained on; the others tell how good it is, and the file says so.
+    Four fifths of the cases are used for training, the others to score it; the file holds the scores.
 
     Exit codes: 0 done, 2 bad input, or the file cannot be written, 130 interrupted (nothing is
     written).
@@ -87,14 +87,14 @@ def predict(
     table: Annotated[
         Path | None,
         typer.Option(
-            help="Lines to predict, a row each and a column an input (.csv or .parquet).",
+            help="Lines to predict, one row per line and one column per input (.csv or .parquet).",
             show_default=False,
         ),
     ] = None,
     scenario: Annotated[
         Path | None,
         typer.Option(
-            help="Scenario file (TOML) whose inputs are taken; --set changes them.",
+            help="Scenario file (TOML) to compute the inputs from; --set changes them.",
             show_default=False,
         ),
     ] = None,
@@ -102,7 +102,7 @@ def predict(
         bool,
         typer.Option(
             "--flag",
-            help="Predict outside the trained region too, and say so, in place of refusing.",
+            help="Predict outside the trained region too, with a warning, instead of an error.",
         ),
     ] = False,
     out: Annotated[
@@ -115,7 +115,7 @@ def predict(
 ) -> None:
     """Predict figures of lines that were not simulated, each with an interval.
 
-    A figure lies in its interval in nine of ten cases like those of the study.
+    In nine of ten cases like those of the study, a figure lies in its interval.
 
     Exit codes: 0 done, 2 bad input, an input outside the trained region, or the file cannot be
     written.
@@ -142,10 +142,10 @@ def check(
         ),
     ] = None,
 ) -> None:
-    """Say what an approximator was trained on, what it asks and answers, and how good it is.
+    """Print what an approximator was trained on, its inputs and outputs, and how accurate it is.
 
-    With the folder of a study, its cases inside the trained region are predicted and compared; of
-    the study that it was trained on, those that were held out.
+    With the folder of a study, its cases inside the trained region are predicted and compared; from
+    the study that it was trained on, only the cases that were held out.
 
     Exit codes: 0 done, 2 bad input.
     """

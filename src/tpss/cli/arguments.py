@@ -26,7 +26,7 @@ Assignments = Annotated[
 
 ResultFolder = Annotated[
     Path,
-    typer.Argument(metavar="RESULT", help="Folder that tpss run has written.", show_default=False),
+    typer.Argument(metavar="RESULT", help="Folder written by tpss run.", show_default=False),
 ]
 
-Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]

@@ -1,4 +1,4 @@
-"""The command ``tpss check``: what a scenario says, without simulating it."""
+"""The command ``tpss check``: what a scenario describes, without simulating it."""
 
 import textwrap
 from collections.abc import Iterator
@@ -11,13 +11,14 @@ from rich.table import Table
 
 from tpss import library, units
 from tpss.cli.library import KINDS
-from tpss.cli.notes import lies_between, notes
+from tpss.cli.notes import notes
+from tpss.cli.terminal import say
 from tpss.model.build import build_model
 from tpss.model.supply import transformer_positions_km
 from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
-from tpss.scenario.fields import Part
+from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
@@ -27,11 +28,11 @@ from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply, Tran
 from tpss.scenario.traffic import Traffic
 
 MOST_LISTED = 8
-"""Longer lists are told by their number and range."""
+"""Longer lists are shown by their first and last item and their length."""
 
 
 def check_scenario(file: Path, assignments: list[str]) -> None:
-    """Validate a scenario, build its model, and print what it says.
+    """Validate a scenario, build its model, and print what it describes.
 
     Raises
     ------
@@ -51,11 +52,11 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     console.print(rows)
     for note in notes(scenario):
         console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
-    console.print(f"\nNo faults in {file}", highlight=False, markup=False, soft_wrap=True)
+    say(console, f"\nNo faults in {file}")
 
 
 def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    """Headings and texts that say what a scenario describes."""
+    """Headings and texts that describe a scenario."""
     yield from _line(scenario.line)
     yield from _supply(scenario.supply)
     for name, train in scenario.trains.items():
@@ -66,18 +67,10 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
     yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
 
 
-def library_name(kind: str, part: Part) -> str:
-    """Name of the library's entry with the values of a part, or "own"."""
-    for name in library.entries(kind):
-        if type(part).model_validate(library.values(kind, name)) == part:
-            return name
-    return "own"
-
-
 def _line(line: Line) -> Iterator[tuple[str, str]]:
     yield "line", f"{line.length_km:g} km"
     yield "stations", _listed([f"{s.name} {s.position_km:g} km" for s in line.stations])
-    pieces = lies_between(line, 0.0, line.length_km)
+    pieces = line.gradients_between(0.0, line.length_km)
     lowest, highest = min(p for _, _, p in pieces), max(p for _, _, p in pieces)
     climb_m = sum((end - start) * permille for start, end, permille in pieces)
     spread = f"{lowest:g} ‰" if lowest == highest else f"{lowest:g} to {highest:g} ‰"
@@ -100,7 +93,7 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.converter_stations:
-        yield "converters", _station(station)
+        yield "converters", _converter_station(station)
     for transformers in supply.transformer_stations:
         yield "transformers", _transformer_station(transformers)
 
@@ -112,14 +105,16 @@ def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
     between = library_name("transformers", line.line_transformer)
     at_stations = library_name("transformers", line.station_transformer)
     placed = f"{between} at {_listed(positions)}" if positions else "none between stations"
-    kind = library_name("high_voltage_lines", line.type)
-    return f"{kind}, {line.base_kv:g} kV; transformers: {placed}, {at_stations} at the stations"
-
-
-def _station(station: ConverterStation) -> str:
-    kind = library_name("converters", station.type)
+    conductors = library_name("high_voltage_lines", line.type)
     return (
-        f"{station.name} {station.position_km:g} km: {station.converters} x {kind} of "
+        f"{conductors}, {line.base_kv:g} kV; transformers: {placed}, {at_stations} at the stations"
+    )
+
+
+def _converter_station(station: ConverterStation) -> str:
+    converter = library_name("converters", station.type)
+    return (
+        f"{station.name} {station.position_km:g} km: {station.converters} x {converter} of "
         f"{station.type.rating_mva:g} MVA, control {station.control}"
     )
 
@@ -138,7 +133,7 @@ def _transformer_station(station: TransformerStation) -> str:
 def _standards(standards: Standards) -> str:
     limits = standards.voltage_limits
     texts = [
-        f"{limits.system}: {limits.umin1_kv:g} to {limits.umax1_kv:g} kV, at times "
+        f"{limits.system}: {limits.umin1_kv:g} to {limits.umax1_kv:g} kV, for a limited time "
         f"{limits.umin2_kv:g} to {limits.umax2_kv:g} kV",
         *_changed(limits, "voltage_limits", limits.system),
     ]
@@ -151,7 +146,7 @@ def _standards(standards: Standards) -> str:
 
 
 def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
-    """What a part changes of the entry of the library that it starts from, if anything."""
+    """What a part changes in the library entry that it starts from, if anything."""
     usual = library.entries(kind).get(entry or "", {})
     changed = [
         f"{key} {_plain(getattr(part, key))} ({_plain(usual[key])})"

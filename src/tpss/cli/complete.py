@@ -1,4 +1,4 @@
-"""What the shell offers when a word of the command line is completed."""
+"""Completion of words of the command line by the shell."""
 
 import shlex
 from pathlib import Path
@@ -13,9 +13,9 @@ def scenario_files(incomplete: str) -> list[str]:
     """TOML files that begin like this; none, and so the shell's own choice, if a folder may be meant."""
     folder, slash, beginning = incomplete.rpartition("/")
     place = Path(folder + slash)
-    found = [path for path in place.glob("*") if path.name.startswith(beginning)]
-    names = [f"{folder}{slash}{path.name}" for path in found if path.suffix == ".toml"]
-    left_to_the_shell = any(path.is_dir() for path in found) or any(
+    matches = [path for path in place.glob("*") if path.name.startswith(beginning)]
+    names = [f"{folder}{slash}{path.name}" for path in matches if path.suffix == ".toml"]
+    left_to_the_shell = any(path.is_dir() for path in matches) or any(
         shlex.quote(name) != name for name in names
     )
     return [] if left_to_the_shell else sorted(names)

@@ -9,7 +9,7 @@ from tpss.results.result import load_result
 
 
 def export_result(folder: Path, kind: Kind, out: Path | None, force: bool) -> None:
-    """Export the tables of a result, and say where they lie.
+    """Export the tables of a result, and print where they are.
 
     Raises
     ------

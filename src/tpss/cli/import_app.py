@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(help="Make scenario files from the files of others.", no_args_is_help=True)
+app = typer.Typer(help="Make scenario files from files of other formats.", no_args_is_help=True)
 
 
 @app.callback()
@@ -28,8 +28,8 @@ def ttobench(
     """Turn tracks and trains of TTOBench into lines and trains, and each pair into a scenario.
 
     A track gives a line (TOML, with a CSV profile of its gradients), a train gives a model file.
-    Each says in its comments what was taken, left out and assumed. Every pair of a track and a train
-    gives a scenario that runs at once; its supply and its traffic are assumed, and marked so.
+    Comments in each state what was read, left out and assumed. Every pair of a track and a train
+    gives a scenario that can be run; its supply and its traffic are assumed, and marked as such.
     """
     from tpss.cli.imports import import_ttobench
 

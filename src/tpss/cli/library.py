@@ -1,4 +1,4 @@
-"""The command ``tpss library``: what ships as data, with units and sources."""
+"""The command ``tpss library``: the data that ship with TPSS, with units and sources."""
 
 from dataclasses import dataclass
 from importlib import import_module
@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
+from tpss.cli.terminal import say
 from tpss.errors import LibraryError, suggest
 
 if TYPE_CHECKING:
@@ -31,22 +32,22 @@ class Kind:
     """Table of a scenario in which `key` takes the name of an entry."""
     key: str
     remark: str
-    """How to depart from the entry."""
+    """How to change the values of the entry."""
 
 
 OWN_TABLE = (
-    "or a table of your own in place of the name, such as its values:\n\n{key} = {{ {values} }}"
+    "or a table of your own instead of the name, such as its values:\n\n{key} = {{ {values} }}"
 )
 
 KINDS = {
     "locomotives": Kind(
-        "Trains: a locomotive with what it hauls",
+        "Trains: a locomotive with its wagons",
         "tpss.scenario.rolling_stock",
         "Train",
         ("mass_t", "adhesive_mass_t", "max_speed_kmh", "max_motor_current_a"),
         "[trains.freight]",
         "model",
-        "and below the name any of its values, to change it",
+        "and below the name any of its values that are to be changed",
     ),
     "catenaries": Kind(
         "Contact-line systems",
@@ -92,7 +93,7 @@ KINDS = {
         ("umin2_kv", "umin1_kv", "un_kv", "umax1_kv", "umax2_kv", "mean_useful_kv"),
         "[supply]",
         "system",
-        "by which the result is judged; [standards.voltage_limits] may change any of these values",
+        "whose limits judge the result; [standards.voltage_limits] may change any of these values",
     ),
     "systems": Kind(
         "Electrification systems",
@@ -101,7 +102,7 @@ KINDS = {
         ("nominal_kv", "frequency_hz", "base_kv", "base_mva"),
         "[supply]",
         "system",
-        "and as frequency_hz beside it another frequency",
+        "with frequency_hz next to it for another frequency",
     ),
 }  # fmt: skip
 
@@ -118,13 +119,13 @@ def print_library(kind: str | None, name: str | None) -> None:
     if kind is None:
         for each in KINDS:
             _print_entries(each, console)
-        _print_plain(console, "All values of an entry: tpss library KIND NAME")
+        say(console, "All values of an entry: tpss library KIND NAME")
         return
     kind = _known_kind(kind)
     if name is None:
         _print_entries(kind, console)
         example = next(iter(library.entries(kind)))
-        _print_plain(console, f"All values of an entry: tpss library {kind} {example}")
+        say(console, f"All values of an entry: tpss library {kind} {example}")
         return
     if name not in library.entries(kind):
         remedy = suggest(name, library.entries(kind))
@@ -167,16 +168,14 @@ def _print_entry(kind: str, name: str, console: Console) -> None:
     how, entry = KINDS[kind], library.entries(kind)[name]
     console.print(f"\n[bold]{escape(name)}[/bold]  {how.title}", highlight=False)
     console.print(_entry_table(kind, entry))
-    _print_plain(console, f"Source: {_source(entry)}\n")
+    say(console, f"Source: {_source(entry)}\n")
     used = usage(kind, name)
     if not used:
-        _print_plain(console, "Supplies of this system cannot be described yet.")
+        say(console, "Supplies of this system cannot be described yet.")
         return
-    _print_plain(console, f"In a scenario:\n\n{used}")
+    say(console, f"In a scenario:\n\n{used}")
     values = ", ".join(tomli_w.dumps(library.values(kind, name)).splitlines())
-    console.print(
-        how.remark.format(key=how.key, values=values), highlight=False, markup=False, soft_wrap=True
-    )
+    say(console, how.remark.format(key=how.key, values=values))
 
 
 def _entry_table(kind: str, entry: dict[str, Any]) -> Table:
@@ -209,7 +208,3 @@ def _value(value: Any) -> str:
 def _source(entry: dict[str, Any]) -> str:
     """Source of an entry, its citations of the bibliography without their markup."""
     return str(entry["source"]).replace("]_", "]")
-
-
-def _print_plain(console: Console, text: str) -> None:
-    console.print(text, highlight=False, markup=False)

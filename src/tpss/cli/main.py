@@ -21,7 +21,7 @@ from tpss.results.file_kinds import Kind
 
 
 class Against(StrEnum):
-    """What the horizontal axis of a journey carries."""
+    """What the horizontal axis of a journey shows."""
 
     TIME = "time"
     DISTANCE = "distance"
@@ -81,10 +81,10 @@ def run(
         ),
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report", help="Write report.html into the result folder too.")
+        bool, typer.Option("--report", help="Also write report.html into the result folder.")
     ] = False,
 ) -> None:
-    """Simulate a scenario, print what matters, and save the result.
+    """Simulate a scenario, print the key figures, and save the result.
 
     Exit codes: 0 done, 2 bad input, 3 the line cannot carry its load or a train stalls (results up
     to then are saved), 4 the audit failed, 130 interrupted (results are saved).
@@ -102,7 +102,7 @@ def report(
         list[Path],
         typer.Argument(
             metavar="RESULT...",
-            help="Folder that tpss run has written; several are compared side by side.",
+            help="Folder written by tpss run; several are compared side by side.",
             show_default=False,
         ),
     ],
@@ -119,7 +119,7 @@ def report(
     """Write a report of a result, or a comparison of several, into one HTML file.
 
     It holds summary, plots, tables, audit and scenario, opens in any browser without a network, and
-    prints.
+    can be printed.
     """
     from tpss.cli.report import report_results
 
@@ -160,10 +160,10 @@ def plot(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
 ) -> None:
-    """Draw figures of a result, as a file each, for print and presentations.
+    """Draw figures of a result, one file per figure, for print and presentations.
 
     Exit codes: 0 done, 2 the folder holds no result, its audit failed, there is no such figure or
-    train, nothing to draw, or the files cannot be written.
+    train or nothing to draw, or the files cannot be written.
     """
     from tpss.cli.plot import plot_result
 
@@ -172,10 +172,10 @@ def plot(
 
 @app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")
 def check(file: ScenarioFile, set_: Assignments = None) -> None:
-    """Find every fault of a scenario, and say what it describes, without simulating it.
+    """List every fault of a scenario, or print what it describes, without simulating it.
 
-    Notes point out what is no fault, but may not be meant. Exit codes: 0 the scenario has no fault,
-    2 it has some; each is listed with its place and its remedy.
+    Notes point out what is not a fault, but may not be intended. Exit codes: 0 the scenario has no
+    fault, 2 it has some; each is listed with its place and its remedy.
     """
     from tpss.cli.check import check_scenario
 
@@ -192,7 +192,7 @@ def export(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
 ) -> None:
-    """Write the tables of a result as files for other programs, all of them or none.
+    """Write the tables of a result as files for other programs; all files are written or none.
 
     They hold trains and stations, every step of every train, violations of voltage limits, and the
     evidence for standards. Headings carry units, such as `energy [MWh]`. xlsx is one workbook.
@@ -216,7 +216,7 @@ def sweep(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the table; one that holds a part of the study is gone on with.",
+            help="Folder for the table; a study that it holds in part is continued.",
             show_default=False,
         ),
     ] = None,
@@ -231,12 +231,17 @@ def sweep(
     workers: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Processes of the local cluster; by default one a core.", show_default=False
+            min=1,
+            help="Processes of the local cluster; by default one per core.",
+            show_default=False,
         ),
     ] = None,
     dry_run: Annotated[
         bool,
-        typer.Option("--dry-run", help="Check the study, and say how many cases and how long."),
+        typer.Option(
+            "--dry-run",
+            help="Check the study, and print the number of cases and the expected time.",
+        ),
     ] = False,
     summary: Annotated[
         Path | None,
@@ -246,13 +251,13 @@ def sweep(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Run the cases of a study, and keep a row of each in a table (Parquet).
+    """Run the cases of a study, and write one row per case into a table (Parquet).
 
-    A line that collapses or a train that stalls is a result. The same command goes on with what was
-    interrupted, however it was, and runs nothing twice.
+    A line that collapses or a train that stalls is a result. After an interruption of any kind, the
+    same command continues the study, and runs no case twice.
 
     Exit codes: 0 done, 2 bad input, or some cases could not be run (the table says why), 4 the audit
-    of a case failed, 130 interrupted (what is done is kept).
+    of a case failed, 130 interrupted (finished cases are kept).
     """
     from tpss.cli.sweep import run_study_file, summarise_folder
 
@@ -268,7 +273,7 @@ def sweep(
 @app.command(epilog="Example:  tpss new my-line")
 def new(
     folder: Annotated[
-        Path, typer.Argument(help="Folder to write; files that are there stay.", show_default=False)
+        Path, typer.Argument(help="Folder to write; existing files are kept.", show_default=False)
     ],
 ) -> None:
     """Write a small, commented scenario to start from.
@@ -285,8 +290,8 @@ def library(
     kind: Annotated[
         str | None,
         typer.Argument(
-            help="locomotives, catenaries, converters, transformers, high_voltage_lines or "
-            "voltage_limits.",
+            help="locomotives, catenaries, converters, transformers, high_voltage_lines, "
+            "voltage_limits or systems.",
             show_default=False,
             autocompletion=complete.library_kinds,
         ),
@@ -302,7 +307,7 @@ def library(
 ) -> None:
     """List what scenarios refer to by name: trains, catenaries, converters and so on.
 
-    Everything is shown with its unit and its source, an entry with all its values too.
+    Values are shown with units and sources; of a single entry, all values.
     """
     from tpss.cli.library import print_library
 
@@ -316,7 +321,7 @@ def schema(
         typer.Option(help="File to write; by default the schema is printed.", show_default=False),
     ] = None,
 ) -> None:
-    """Print the JSON Schema of scenario files, by which editors complete and check them.
+    """Print the JSON Schema of scenario files, which editors use to complete and check them.
 
     Editors with Taplo (such as Even Better TOML) find it by the first line of a scenario,
     `#:schema scenario.schema.json`.
@@ -330,8 +335,8 @@ def main() -> None:
     """Run the command line; faults of the input are printed, never raised."""
     from tpss.errors import TpssError
 
-    # Most objects of a short-lived process are modules: to collect garbage among them, again and
-    # again while they load and once more at the end, takes a quarter of the time of a run.
+    # Most objects of a short-lived process are modules: collecting garbage among them, repeatedly
+    # while they load and again at the end, takes a quarter of the time of a run.
     gc.disable()
     atexit.register(gc.freeze)
     try:
@@ -344,7 +349,7 @@ def main() -> None:
             raise
         typer.echo(
             f"Internal error: {type(error).__name__}: {error}\n"
-            "This is a fault of TPSS, please report it; TPSS_DEBUG=1 shows where it arose.",
+            "This is a fault of TPSS, please report it; TPSS_DEBUG=1 shows where it occurred.",
             err=True,
         )
         sys.exit(1)

@@ -11,12 +11,12 @@ TEMPLATE = ("scenario.toml", "gradients.csv")
 
 
 def new_scenario(folder: Path) -> None:
-    """Write the example into a folder, and say what to do with it.
+    """Write the example into a folder, and print what to do with it.
 
     Raises
     ------
     ResultError
-        One of its files exists already, or the folder cannot be written; nothing is left of it then.
+        One of its files exists already, or the folder cannot be written; nothing is written then.
     """
     template = files("tpss.cli").joinpath("template")
     texts = {folder / name: template.joinpath(name).read_bytes() for name in TEMPLATE}
@@ -31,10 +31,10 @@ def new_scenario(folder: Path) -> None:
         for file in written:
             file.unlink(missing_ok=True)
         if isinstance(error, FileExistsError):
-            message = f"{error.filename} exists already and is left as it is; name another folder"
+            message = f"{error.filename} exists already and is not changed; name another folder"
         else:
             message = f"{folder} cannot be written: {reason(error)}; name another folder"
         raise ResultError(message) from error
     scenario = shlex.quote(str(folder / TEMPLATE[0]))
-    print(f"Wrote {' and '.join(str(file) for file in texts)}.  Now look into them, and:\n")
+    print(f"Wrote {' and '.join(str(file) for file in texts)}.  Edit them, then run:\n")
     print(f"  tpss check {scenario}\n  tpss run {scenario}")

@@ -1,4 +1,4 @@
-"""What is no fault of a scenario, but may not be what its author meant."""
+"""What is not a fault of a scenario, but may not be what its author intended."""
 
 import math
 from collections.abc import Iterator
@@ -15,9 +15,6 @@ from tpss.units import si
 WHOLE = 1e-6
 """A time this close to a whole number of steps, in steps, is one."""
 
-Piece = tuple[float, float, float]
-"""Where a gradient begins and ends [km], and the gradient [‰]."""
-
 
 def notes(scenario: Scenario) -> list[str]:
     """Remarks in the order of the file."""
@@ -31,23 +28,12 @@ def notes(scenario: Scenario) -> list[str]:
     ]
 
 
-def lies_between(line: Line, start_km: float, end_km: float) -> list[Piece]:
-    """Pieces of the gradient profile between two positions."""
-    begins = [-math.inf, *(gradient.from_km for gradient in line.gradients[1:])]
-    ends = [*begins[1:], math.inf]
-    pieces = [
-        (max(begin, start_km), min(end, end_km), gradient.permille)
-        for begin, end, gradient in zip(begins, ends, line.gradients, strict=True)
-    ]
-    return [piece for piece in pieces if piece[0] < piece[1]]
-
-
 def _profile(line: Line) -> Iterator[str]:
     first, last = line.gradients[0].from_km, line.gradients[-1].from_km
     if first > 0.0:
-        yield f"line.gradients begins at {first:g} km; its first gradient holds from 0 km on"
+        yield f"line.gradients begins at {first:g} km; its first gradient applies from 0 km on"
     if last > line.length_km:
-        yield f"line.gradients goes on to {last:g} km, but the line ends at {line.length_km:g} km"
+        yield f"line.gradients continues to {last:g} km, but the line ends at {line.length_km:g} km"
     for i, limit in enumerate(line.speed_limits):
         if limit.from_km >= line.length_km:
             yield (
@@ -118,19 +104,20 @@ def _is_whole(steps: float) -> bool:
 
 
 def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
-    """The steepest place of a service's way, if its train could not start there."""
+    """The steepest place of a service's route, if its train could not start there."""
     position_km = {station.name: station.position_km for station in scenario.line.stations}
-    way = lies_between(scenario.line, position_km[entry.origin], position_km[entry.destination])
-    start_km, end_km, permille = max(way, key=lambda piece: piece[2])
+    ends_km = position_km[entry.origin], position_km[entry.destination]
+    route = scenario.line.gradients_between(*ends_km)
+    start_km, end_km, permille = max(route, key=lambda piece: piece[2])
     train = scenario.trains[entry.train]
     needed_kn = _starting_force_n(train, permille) / 1e3
     rail = Rail[scenario.simulation.rail.upper()]
-    given_kn = plain(adhesion_limit)(si(train, "adhesive_mass_t"), 0.0, rail) / 1e3
-    if needed_kn > given_kn:
+    available_kn = plain(adhesion_limit)(si(train, "adhesive_mass_t"), 0.0, rail) / 1e3
+    if needed_kn > available_kn:
         yield (
             f"traffic.{i} ({entry.name}): between {start_km:g} and {end_km:g} km the gradient is "
             f"{permille:g} ‰, on which {entry.train} needs {needed_kn:.0f} kN to start; "
-            f"{scenario.simulation.rail} rails give it {given_kn:.0f} kN"
+            f"{scenario.simulation.rail} rails allow {available_kn:.0f} kN"
         )
 
 

@@ -16,7 +16,7 @@ JOURNEY = "journey"
 FORMATS = ("png", "svg", "pdf")
 
 DOTS_PER_INCH = 200
-"""Of png files; the others have no dots."""
+"""Resolution of png files."""
 
 
 def plot_result(
@@ -27,7 +27,7 @@ def plot_result(
     out: Path | None,
     force: bool,
 ) -> None:
-    """Write a figure of a result, or all of them, and say where they are.
+    """Write a figure of a result, or all of them, and print where they are.
 
     Raises
     ------
@@ -59,16 +59,17 @@ def plot_result(
         reasons = ", ".join(dict.fromkeys(reason for _, reason in left_out))
         raise ResultError(f"{folder} ({result.status}) holds nothing to draw: {reasons}")
     files = save_files(place, contents, force)
-    print(_said(place, files, figure))
+    listed = f"Wrote into {place}: {', '.join(file.name for file in files)}"
+    print(listed if figure == ALL else f"Wrote {files[0]}")
     for name, reason in left_out:
         print(f"Left out {name}: {reason}")
 
 
 def _demand_use(figure: str, train: str | None, against: str, of_a_train: Sequence[str]) -> None:
-    """Refuse options that the figure would not heed."""
+    """Refuse options that the figure would not use."""
     if train is not None and figure not in of_a_train:
         raise ResultError(
-            f"{figure} is not of one train; leave --train out, or draw {', '.join(of_a_train)}"
+            f"{figure} does not show a single train; leave --train out, or draw {', '.join(of_a_train)}"
         )
     if against == "time" and figure != JOURNEY:
         raise ResultError(f"{figure} is not a {JOURNEY}; leave --against out")
@@ -85,22 +86,16 @@ def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str
     file = out or folder / FIGURES / f"{figure}.png"
     if file.suffix.removeprefix(".").lower() not in FORMATS:
         raise ResultError(
-            f"{file} does not say its format; let it end in {', '.join(f'.{f}' for f in FORMATS)}"
+            f"{file} has an unknown format; use a name that ends in .{', .'.join(FORMATS)}"
         )
     if not file.parent.is_dir() and out is not None:
         raise ResultError(f"{file} cannot be written: there is no folder {file.parent}")
     return file.parent, {figure: file.name}
 
 
-def _bytes(figure: "Figure", kind: str) -> bytes:
+def _bytes(figure: "Figure", suffix: str) -> bytes:
     file = io.BytesIO()
     # Without its date the same result gives the same file.
-    undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind.lower()]
-    figure.savefig(file, format=kind.lower(), dpi=DOTS_PER_INCH, metadata=undated)
+    undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[suffix.lower()]
+    figure.savefig(file, format=suffix.lower(), dpi=DOTS_PER_INCH, metadata=undated)
     return file.getvalue()
-
-
-def _said(place: Path, files: Sequence[Path], figure: str) -> str:
-    if figure != ALL:
-        return f"Wrote {files[0]}"
-    return f"Wrote into {place}: {', '.join(file.name for file in files)}"

@@ -13,7 +13,7 @@ COMPARISON = "comparison.html"
 
 
 def report_results(folders: Sequence[Path], out: Path | None, force: bool) -> None:
-    """Write a report of a result folder, or a comparison of several, and say where it is.
+    """Write a report of a result folder, or a comparison of several, and print where it is.
 
     Raises
     ------
@@ -24,22 +24,12 @@ def report_results(folders: Sequence[Path], out: Path | None, force: bool) -> No
     from tpss.results.result import load_result
 
     own = Path(COMPARISON) if len(folders) > 1 else folders[0] / REPORT
-    # A damaged result is told before a report that is there already.
+    # A damaged result is reported before an existing report.
     results = [load_result(folder) for folder in folders]
     check_target(out or own, force)
-    if len(results) == 1:
-        file = write_report(results[0], out or own, force=force)
-    else:
-        named = dict(zip(labels(folders, results), results, strict=True))
-        file = write_report(named, out or own, force=force)
+    named = dict(zip(labels(folders, results), results, strict=True))
+    file = write_report(results[0] if len(results) == 1 else named, out or own, force=force)
     print(f"Wrote {file}")
-
-
-def write_report_of(result: "Result", folder: Path, force: bool) -> Path:
-    """Write the report of a result into its own folder."""
-    from tpss.report.html import write_report
-
-    return write_report(result, folder / REPORT, force=force)
 
 
 def labels(folders: Sequence[Path], results: Sequence["Result"]) -> list[str]:

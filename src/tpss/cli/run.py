@@ -3,23 +3,23 @@
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as ProgressBar
 
+from tpss.cli.terminal import announce_compilation, progress_bar, say
 from tpss.errors import ResultError
+from tpss.results.contents import REPORT
 
 if TYPE_CHECKING:
     from tpss.results.result import Result
     from tpss.run.run import Progress
     from tpss.scenario import Scenario
+
+PROGRESS = "{task.percentage:3.0f} %  {task.fields[detail]}"
 
 DONE, BAD_INPUT, NO_SOLUTION, AUDIT_FAILED, INTERRUPTED = 0, 2, 3, 4, 130
 
@@ -59,7 +59,7 @@ def run_scenario(
 
 @dataclass(frozen=True)
 class _Ended:
-    """A run that has ended and was saved, if it could be."""
+    """A run that has ended, and was saved if possible."""
 
     result: "Result"
     folder: Path | None
@@ -69,52 +69,38 @@ class _Ended:
 
 
 def exit_code(result: "Result") -> int:
-    """Exit code that tells how a run ended."""
+    """Exit code of a run that has ended."""
     if not result.audit["passed"]:
         return AUDIT_FAILED
     return {"finished": DONE, "interrupted": INTERRUPTED}.get(result.status, NO_SOLUTION)
 
 
 def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quiet: bool) -> _Ended:
-    """Simulate and save; from the first step on, a Ctrl-C ends the run and saves what there is."""
+    """Simulate and save; from the first step on, a Ctrl-C ends the run and saves the result so far."""
     from tpss.api import prepare
     from tpss.run.interrupt import interruptible
-    from tpss.run.kernels import are_ready
 
     console = Console(stderr=True, quiet=quiet)
-    if not are_ready():
-        console.print("Compiling the numerical kernels; this takes up to half a minute, once.")
+    announce_compilation(console)
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:
-        with nullcontext() if quiet else _progress_bar(scenario.name, console) as progress:
+        with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
             result = prepared.run(progress, interrupted)
         folder, fault = _save(result, out, force)
     return _Ended(result, folder, fault, bool(interrupted))
 
 
 def _notice() -> None:
-    """Written past the buffers of the program, which the Ctrl-C may have met at work on them."""
+    """Written without the program's buffers, which the Ctrl-C may have interrupted in a write."""
     with suppress(OSError):
-        os.write(2, b"\nInterrupted: what there is will be saved; another Ctrl-C gives it up.\n")
+        os.write(
+            2, b"\nInterrupted: the result so far will be saved; another Ctrl-C discards it.\n"
+        )
 
 
-@contextmanager
-def _progress_bar(name: str, console: Console) -> Iterator[Callable[["Progress"], None]]:
-    """A progress bar with simulated time and trains on the line; gives the callable to report to."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %  {task.fields[clock]}"),
-        TimeRemainingColumn(),
-    )
-    with ProgressBar(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(escape(name), total=1.0, clock="")
-
-        def report(state: "Progress") -> None:
-            clock = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
-            bar.update(task, completed=state.share, clock=clock)
-
-        yield report
+def _progress(state: "Progress") -> dict[str, Any]:
+    detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
+    return {"completed": state.share, "total": 1.0, "detail": detail}
 
 
 def _save(result: "Result", out: Path | None, force: bool) -> tuple[Path | None, str]:
@@ -129,7 +115,7 @@ def _save(result: "Result", out: Path | None, force: bool) -> tuple[Path | None,
     try:
         rescue = _save_elsewhere(result)
     except (ResultError, OSError) as error:
-        return None, f"{fault}\n{error}\nNothing of the result is kept but what is printed here."
+        return None, f"{fault}\n{error}\nOnly what is printed here is kept of the result."
     return rescue, f"{fault}\nThe result was saved into {rescue} instead."
 
 
@@ -143,9 +129,8 @@ def _save_elsewhere(result: "Result") -> Path:
 
 
 def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
-    """Print what matters; return the exit code."""
+    """Print the key figures; return the exit code."""
     from tpss.cli import tables
-    from tpss.cli.report import write_report_of
 
     result, known = ended.result, ended.result.dataset.train.to_numpy().tolist()
     if not quiet or ended.folder is None:
@@ -154,12 +139,13 @@ def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
         if show is not None and show in known:
             tables.print_train(result, show, console)
         if not ended.fault:
-            saved = f"Saved in {ended.folder}"
-            console.print(saved, highlight=False, soft_wrap=True, markup=False)
+            say(console, f"Saved in {ended.folder}")
         if ended.interrupted and result.status != "interrupted":
-            console.print("Interrupted when the run had ended: the result is whole.")
+            console.print("Interrupted after the run had ended: the result is complete.")
     if report and ended.folder is not None:
-        file = write_report_of(result, ended.folder, force=False)
+        from tpss.report.html import write_report
+
+        file = write_report(result, ended.folder / REPORT)
         if not quiet:
             print(f"Wrote {file}")
     if ended.fault:

@@ -16,17 +16,19 @@ def write_schema(out: Path | None) -> None:
     Raises
     ------
     ResultError
-        The file cannot be written, or is there and holds something else than a schema of TPSS.
+        The file cannot be written, or exists and holds something other than a schema of TPSS.
     """
     text = json.dumps(scenario_schema(), indent=2, ensure_ascii=False) + "\n"
     if out is None:
         print(text, end="")
         return
     if os.path.lexists(out) and not _is_our_schema(out):
-        raise ResultError(f"{out} is there and is not a schema of TPSS; name another file")
+        raise ResultError(f"{out} exists and is not a schema of TPSS; name another file")
     with explained(out, "name another file"):
         write_file(out, text.encode())
-    print(f"Wrote {out}.  In a scenario, the first line  #:schema {out.name}  leads editors to it.")
+    print(
+        f"Wrote {out}.  In a scenario, the first line  #:schema {out.name}  makes editors use it."
+    )
 
 
 def _is_our_schema(file: Path) -> bool:

@@ -1,18 +1,16 @@
-"""The command ``tpss sweep``: run a study, or tell what its folder holds."""
+"""The command ``tpss sweep``: run a study, or print a summary of its folder."""
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED
+from tpss.cli.terminal import announce_compilation, progress_bar, say
 from tpss.errors import StudyError
 
 if TYPE_CHECKING:
@@ -20,12 +18,14 @@ if TYPE_CHECKING:
     from tpss.sweep.study import Study
     from tpss.sweep.summary import Summary
 
+PROGRESS = "{task.completed}/{task.total} cases  {task.fields[detail]}"
+
 MOST_PROBLEMS = 5
-"""Different problems of cases that are told in words."""
+"""Different problems of cases that are printed."""
 
 
 def demand_packages() -> None:
-    """Refuse to go on without what studies need.
+    """Demand the packages that studies need.
 
     Raises
     ------
@@ -54,12 +54,14 @@ def run_study_file(
         _print_estimate(study, workers)
         return DONE
     console = Console(stderr=True, quiet=quiet)
-    _tell_of_compilation(console)
+    announce_compilation(console)
     try:
-        with nullcontext() if quiet else _progress_bar(study.file.name, console) as report:
+        with progress_bar(study.file.name, PROGRESS, _progress, console) as report:
             ended = run_study(study, out, scheduler=scheduler, workers=workers, report=report)
     except KeyboardInterrupt:
-        print("Interrupted; what is done is kept, and the same command goes on.", file=sys.stderr)
+        print(
+            "Interrupted; finished cases are kept, and the same command continues.", file=sys.stderr
+        )
         return INTERRUPTED
     if not quiet:
         _print_rate(ended, console)
@@ -87,20 +89,14 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
     return BAD_INPUT if summary.problems else DONE
 
 
-def _tell_of_compilation(console: Console) -> None:
-    from tpss.run.kernels import are_ready
-
-    if not are_ready():
-        console.print("Compiling the numerical kernels; this takes up to a minute, once.")
-
-
 def _print_estimate(study: "Study", workers: int | None) -> None:
     from tpss.sweep.campaign import estimate
 
-    found = estimate(study, workers)
+    expected = estimate(study, workers)
+    each_ms = expected.case_s * 1e3
     print(
-        f"{study.file.name}: {found.cases:,} cases, {found.case_s * 1e3:.1f} ms each in one process, "
-        f"about {_duration(found.whole_s)} with {found.workers} worker(s).  Nothing was written."
+        f"{study.file.name}: {expected.cases:,} cases, {each_ms:.1f} ms each in one process, about "
+        f"{_duration(expected.whole_s)} with {expected.workers} worker(s).  Nothing was written."
     )
 
 
@@ -110,24 +106,9 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-@contextmanager
-def _progress_bar(name: str, console: Console) -> Iterator[Callable[["Advance"], None]]:
-    """A progress bar with rate and time left; gives the callable to report to."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("cases  {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(escape(name), total=None, rate="")
-
-        def report(state: "Advance") -> None:
-            rate = f"{_rate(state):,.0f} a second"
-            bar.update(task, total=state.cases, completed=state.done, rate=rate)
-
-        yield report
+def _progress(state: "Advance") -> dict[str, Any]:
+    detail = f"{_rate(state):,.0f} per second"
+    return {"completed": state.done, "total": state.cases, "detail": detail}
 
 
 def _rate(state: "Advance") -> float:
@@ -137,18 +118,16 @@ def _rate(state: "Advance") -> float:
 def _print_rate(ended: "Advance", console: Console) -> None:
     run = ended.done - ended.before
     if run:
-        console.print(
-            f"{run:,} cases in {_duration(ended.elapsed_s)}, {_rate(ended):,.0f} a second",
-            highlight=False,
-        )
+        rate = f"{_rate(ended):,.0f} per second"
+        say(console, f"{run:,} cases in {_duration(ended.elapsed_s)}, {rate}")
     if ended.before:
-        console.print(f"{ended.before:,} cases were there already.", highlight=False)
+        say(console, f"{ended.before:,} cases were finished before.")
 
 
 def _print_summary(summary: "Summary", folder: Path) -> None:
     console = Console()
     states = ", ".join(f"{count:,} {status}" for status, count in summary.status.items())
-    console.print(f"{summary.done:,} of {summary.cases:,} cases: {states}", highlight=False)
+    say(console, f"{summary.done:,} of {summary.cases:,} cases: {states}")
     table = Table(title="Cases that finished", title_justify="left", box=None, pad_edge=False)
     table.add_column("")
     for column in summary.spread.columns:
@@ -157,5 +136,5 @@ def _print_summary(summary: "Summary", folder: Path) -> None:
         table.add_row(escape(str(label)), *(f"{value:.4g}" for value in row))
     if summary.status.get("finished"):
         console.print(table)
-    console.print(f"Time of all cases together: {_duration(summary.work_s)}", highlight=False)
-    console.print(f"The table lies in {folder / 'cases'}", highlight=False, soft_wrap=True)
+    say(console, f"Computing time of all cases: {_duration(summary.work_s)}")
+    say(console, f"The table is in {folder / 'cases'}")

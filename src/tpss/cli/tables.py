@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import units
+from tpss.cli.terminal import say
 from tpss.results.explain import warnings
 from tpss.results.result import Result
 from tpss.results.tables import train_steps
@@ -29,7 +30,7 @@ def print_result(result: Result, console: Console) -> None:
     console.print(_train_table(result))
     console.print(_station_table(result))
     for line in key_figures(result):
-        console.print(line, highlight=False, soft_wrap=True, markup=False)
+        say(console, line)
     print_violations(result, console)
     for line in warnings(summary):
         console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
@@ -62,7 +63,7 @@ _TRAIN_COLUMNS = (
     _Column("departure_min", "departs", "min", 2),
     _Column("arrival_min", "arrives", "min", 2),
     _Column("trip_min", "trip", "min", 2),
-    _Column("distance_km", "way", "km", 1),
+    _Column("distance_km", "distance", "km", 1),
     _Column("mean_speed_kmh", "mean v", "km/h", 1),
     _Column("energy_mwh", "energy", "MWh", 3),
     _Column("lowest_voltage_kv", "low U", "kV", 2),
@@ -114,13 +115,13 @@ def _train_table(result: Result) -> Table:
     rows = _named_rows(trips.head(MOST_TRAINS), "train")
     table = _table("Trains", "train", _TRAIN_COLUMNS, rows)
     if len(trips) > MOST_TRAINS:
-        table.caption = f"... and {len(trips) - MOST_TRAINS} trains more, in the saved result"
+        table.caption = f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result"
     return table
 
 
 def _station_table(result: Result) -> Table:
     rows = _named_rows(result.stations, "station")
-    return _table("Converter stations", "station", _STATION_COLUMNS, rows)
+    return _table("Feeding stations", "station", _STATION_COLUMNS, rows)
 
 
 def key_figures(result: Result) -> list[str]:
@@ -157,17 +158,16 @@ def print_violations(result: Result, console: Console) -> None:
     figures = result.summary["standards"]
     words = figures["worst_violations"][:MOST_VIOLATIONS]
     for line in words:
-        text = f"[bold yellow]Limit passed:[/bold yellow] {escape(line)}"
+        text = f"[bold yellow]Limit violated:[/bold yellow] {escape(line)}"
         console.print(text, highlight=False, soft_wrap=True)
     if figures["violations"] > len(words):
-        more = f"... and {figures['violations'] - len(words)} more; tpss export lists all"
-        console.print(more, highlight=False, soft_wrap=True)
+        say(console, f"... and {figures['violations'] - len(words)} more; tpss export lists all")
 
 
 def print_train(result: Result, name: str, console: Console) -> None:
-    """Print a train's journey, a row a step."""
+    """Print a train's journey, one row per step."""
     steps = train_steps(result.dataset.sel(train=[name]))
     rows = _named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
     table = _table(name, "time\n[dim]min[/dim]", _STEP_COLUMNS, rows)
-    # A row must stay on one line, however narrow the terminal.
+    # A row stays on one line, in a narrow terminal too.
     Console(file=console.file, width=max(console.width, 110)).print(table)

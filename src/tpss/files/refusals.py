@@ -1,4 +1,4 @@
-"""What is refused before anything is written, and an error of the system in words that help."""
+"""What is refused before anything is written, and a message for an error of the system."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ def explained(
     kind: type[TpssError] = ResultError,
     within: bool = False,
 ) -> Iterator[None]:
-    """Raise an error of the system as one that says what cannot be written, why, and what to do.
+    """Turn an error of the system into one that says what cannot be written, why, and what to do.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def explained(
 
 
 def refuse_to_replace(place: Path, force: bool, what: str, is_one: Callable[[Path], bool]) -> None:
-    """Refuse to replace what is there, unless that is asked for and it is what it should be.
+    """Refuse to replace what is there, unless `force` is set and it is of the expected sort.
 
     Raises
     ------

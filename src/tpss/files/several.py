@@ -15,7 +15,7 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
     Raises
     ------
     ResultError
-        The folder is none, or files exist and may not be replaced.
+        The folder is not one, or files exist and may not be replaced.
     """
     if os.path.lexists(folder) and not folder.is_dir():
         raise ResultError(f"{folder} is not a folder; {ANOTHER}")
@@ -52,7 +52,7 @@ def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list
 
 
 def _move_files(new: Path, target: Path, old: Path) -> None:
-    """Put written files into a folder; if one cannot be moved, all is as it was before."""
+    """Put written files into a folder; if one cannot be moved, everything is restored."""
     moved: list[str] = []
     try:
         for file in sorted(new.iterdir()):

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 TRIAL_BYTES = 2**16
-"""A disk without room for so much is full."""
+"""A disk without space for so many bytes is full."""
 
 Content = bytes | memoryview
 
@@ -40,7 +40,7 @@ def write_new(place: Path, content: Content) -> None:
 
 
 def _write(place: Path, content: Content, mode: str) -> None:
-    """Write a file, and see to it that it is on the disk."""
+    """Write a file through to the disk."""
     with place.open(mode) as file:
         file.write(content)
         file.flush()
@@ -71,7 +71,7 @@ def try_out(target: Path) -> None:
 def move_folder(
     new: Path, target: Path, old: Path, carry_over: Callable[[Path, Path], None]
 ) -> None:
-    """Put a written folder into its place; one that it replaces goes only when that is done.
+    """Put a written folder into its place; one that it replaces is removed only afterwards.
 
     Parameters
     ----------

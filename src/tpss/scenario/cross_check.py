@@ -1,17 +1,16 @@
 """Checks between the parts of a scenario.
 
-They read the document as it was written, not the validated parts, and pass over what is not there
-or of the wrong type, so that they report their faults beside those of single fields.
+They read the document as it was written, not the validated parts, and skip what is missing or of
+the wrong type, so that their faults are reported together with those of single fields.
 """
 
-import difflib
 import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
 from tpss import library
-from tpss.errors import Finding
+from tpss.errors import Finding, closest
 from tpss.scenario.machine import CurrentLimitation
 from tpss.scenario.supply.supply import STATIONS
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
@@ -44,13 +43,13 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
 _Fault = tuple[str, str, str, str]
 
 LONGEST_AGGRESSIVE_STEP_MIN = 1.0
-"""Longest step with the aggressive driver, and the longest that the thesis knew. [min]"""
+"""Longest step with the aggressive driver, and the longest in the thesis. [min]"""
 
 CLOSEST_KM = 0.001 - 1e-9
-"""Least distance between two feeding points, with what decimal places may be off. [km]"""
+"""Least distance between two feeding points, less a margin for rounding. [km]"""
 
 LARGEST = 1e300
-"""Larger numbers count as this one; a whole number may have any number of digits."""
+"""Larger numbers count as this one: an integer in a file has any number of digits."""
 
 
 def _table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -88,7 +87,7 @@ def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     first = next((limit for _, limit in _items(line, "speed_limits")), {})
     begin = _number(first, "from_km")
     if begin is not None and begin > 0.0:
-        problem = "no speed limit holds from the beginning of the line"
+        problem = "no speed limit applies at the beginning of the line"
         yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "let the first limit begin at 0"
 
 
@@ -97,8 +96,8 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
     if simulation.get("driver") != "aggressive" or step_min is None:
         return
     if step_min > LONGEST_AGGRESSIVE_STEP_MIN:
-        problem = "too long for the aggressive driver, who looks at the speed only once a step"
-        remedy = f'take {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
+        problem = "too long for the aggressive driver, who checks the speed only once per step"
+        remedy = f'use {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
 
 
@@ -140,7 +139,7 @@ def _supply(supply: Mapping[str, Any], length: float | None) -> Iterator[_Fault]
 
 
 def _too_close(key: str, position: float, others: list[float]) -> Iterator[_Fault]:
-    """Two feeding points closer than a metre are one, which rounding cannot tell from the other."""
+    """Two feeding points closer than a metre count as one: rounding may not separate them."""
     if any(abs(position - other) < CLOSEST_KM for other in others):
         problem = "closer than a metre to another converter station or transformer"
         yield key, f"{position:.17g}", problem, "leave one of them out, or place it elsewhere"
@@ -160,7 +159,7 @@ def _placed_transformers(
         if number < 0.0:
             yield key, f"{number:g}", "before the beginning of the line", "place it at 0 or beyond"
         if number in stations:
-            problem = "a converter station stands here, which has a transformer of its own"
+            problem = "a converter station is here, which has its own transformer"
             yield key, f"{number:g}", problem, "leave it out, or place it elsewhere"
         else:
             yield from _too_close(key, number, [*stations, *(km for km in before if km != number)])
@@ -179,31 +178,22 @@ def _spaced_transformers(
         yield key, shown, problem, "give transformers_km instead"
     elif min(b - a for a, b in pairwise(stations)) / (count + 1.0) < CLOSEST_KM:
         problem = "closer than a metre to each other between neighbouring converter stations"
-        yield key, shown, problem, "take fewer, or give transformers_km instead"
-
-
-def _is_named(entry: Mapping[str, Any]) -> bool:
-    return isinstance(entry.get("name"), str)
+        yield key, shown, problem, "use fewer, or give transformers_km instead"
 
 
 def _service_names(document: Mapping[str, Any]) -> Iterator[_Fault]:
     """The n-th train of a service is called "<service> n" or "<service> initial n"."""
-    names = {entry.get("name") for _, entry in _items(document, "traffic") if _is_named(entry)}
-    for i, entry in _items(document, "traffic"):
-        name = entry.get("name")
-        if (
-            isinstance(name, str)
-            and name.endswith(" initial")
-            and name[: -len(" initial")] in names
-        ):
+    entries = [(i, entry.get("name")) for i, entry in _items(document, "traffic")]
+    names = {i: name for i, name in entries if isinstance(name, str)}
+    for i, name in names.items():
+        if name.endswith(" initial") and name.removesuffix(" initial") in names.values():
             problem = "its trains would have the names of another service's initial trains"
             yield f"traffic.{i}.name", repr(name), problem, "give it another name"
 
 
 def _unknown(key: str, name: object, known: list[str], kind: str) -> Iterator[_Fault]:
     if isinstance(name, str) and name not in known:
-        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-        hint = f"did you mean {near[0]}? " if near else ""
+        hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
         listed = ", ".join(known) or "none"
         yield key, repr(name), f"there is no such {kind}", f"{hint}{kind}s: {listed}"
 
@@ -227,12 +217,8 @@ def _traffic(
     start_km, end_km = places[begin], places[end]
     if end_km <= start_km:
         problem = f"{end} ({end_km:g} km) does not lie beyond {begin} ({start_km:g} km)"
-        yield (
-            f"{key}.to",
-            repr(end),
-            problem,
-            "trains run towards growing positions: swap or mirror",
-        )
+        remedy = "trains run towards increasing positions: swap the two, or mirror the line"
+        yield f"{key}.to", repr(end), problem, remedy
         return
     yield from _stops(key, entry, places, start_km, end_km)
     for i, train in _items(entry, "initial_trains"):
@@ -240,7 +226,7 @@ def _traffic(
         if position is not None and position >= 0.0 and not start_km <= position < end_km:
             problem = f"not between {begin} ({start_km:g} km) and {end} ({end_km:g} km)"
             place = f"{key}.initial_trains.{i}.position_km"
-            yield place, f"{position:g}", problem, "place it on the way of its trains"
+            yield place, f"{position:g}", problem, "place it on the route of its trains"
 
 
 def _stops(
@@ -253,6 +239,6 @@ def _stops(
             continue
         if not before_km < places[name] < end_km:
             problem = f"at {places[name]:g} km, not between {before_km:g} and {end_km:g} km"
-            remedy = "list the stops in the order in which the train meets them, ends left out"
+            remedy = "list the stops in the order of travel, without the first and last station"
             yield f"{key}.stops.{i}.station", repr(name), problem, remedy
         before_km = max(before_km, places[name])

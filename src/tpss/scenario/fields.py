@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
+from itertools import pairwise
 from operator import lt
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
@@ -31,21 +33,21 @@ class Part(BaseModel):
 
 
 def fields_of(part: Any) -> dict[str, FieldInfo]:
-    """Fields of a part of a scenario, be it a model or a dataclass; nothing else has any."""
+    """Fields of a part of a scenario, a model or a dataclass; empty for anything else."""
     if isinstance(part, type) and issubclass(part, BaseModel):
         return part.model_fields
-    found: dict[str, FieldInfo] = getattr(part, "__pydantic_fields__", {})
-    return found
+    fields: dict[str, FieldInfo] = getattr(part, "__pydantic_fields__", {})
+    return fields
 
 
-def _is_whole(value: Any) -> Any:
+def _is_integer_one(value: Any) -> Any:
     if type(value) is not int:  # true and 1.0 equal 1
         raise PydanticKnownError("literal_error", {"expected": "1"})
     return value
 
 
 def marked(part: Any, marker: type, path: str = "") -> Iterator[str]:
-    """Key paths below a part of a scenario, ``*`` for any item or key, of what bears a marker."""
+    """Key paths below a part of a scenario, ``*`` for any item or key, of the fields with a marker."""
     if get_origin(part) is Annotated:
         kind, *metadata = get_args(part)
         if any(isinstance(each, marker) for each in metadata):
@@ -63,14 +65,14 @@ def marked(part: Any, marker: type, path: str = "") -> Iterator[str]:
         yield from marked(field.annotation, marker, key)
 
 
-Version = Annotated[Literal[1], BeforeValidator(_is_whole)]
+Version = Annotated[Literal[1], BeforeValidator(_is_integer_one)]
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 
 
 class AlongLine:
-    """Marks a position that moves in proportion where a study gives the line another length."""
+    """Marks a position that a study scales when it changes the length of the line."""
 
 
 Position = Annotated[Real, AlongLine()]
@@ -87,7 +89,7 @@ Name = Annotated[str, Field(min_length=1), AfterValidator(_is_one_line)]
 OWN_FILE = {
     "type": "string",
     "pattern": r"\.toml$",
-    "description": "A file of one's own beside the scenario, which holds the table.",
+    "description": "A file next to the scenario, which holds the table.",
 }
 """JSON Schema of a name that `tpss.scenario.inline` replaces by what is in the file."""
 
@@ -95,8 +97,42 @@ _Item = TypeVar("_Item")
 
 
 def fault(problem: str, remedy: str) -> PydanticCustomError:
-    """A fault that brings its own words."""
+    """A fault with its own message."""
     return PydanticCustomError("fault", "{problem}", {"problem": problem, "remedy": remedy})
+
+
+def either_or(first: str, second: str) -> PydanticCustomError:
+    """The fault that both of two keys are given, or neither."""
+    remedy = "leave one of them out, or add the one that is missing"
+    return fault(f"give either {first} or {second}", remedy)
+
+
+def demand_entry(kind: str, name: str) -> str:
+    """A name, which must be one of the library's entries of a kind."""
+    known = library.entries(kind)
+    if name not in known:
+        raise PydanticCustomError(
+            "unknown_name",
+            "the library has no such entry in {kind}",
+            {"kind": kind, "known": sorted(known)},
+        )
+    return name
+
+
+def entry_of(kind: str) -> AfterValidator:
+    """Demand the name of a library entry."""
+    return AfterValidator(partial(demand_entry, kind))
+
+
+@cache
+def _library_parts(kind: str, part: type["Part"]) -> dict[str, "Part"]:
+    return {name: part.model_validate(library.values(kind, name)) for name in library.entries(kind)}
+
+
+def library_name(kind: str, part: "Part") -> str:
+    """Name of the library entry with the values of a part, or "own"."""
+    entries = _library_parts(kind, type(part)).items()
+    return next((name for name, known in entries if known == part), "own")
 
 
 @dataclass(frozen=True)
@@ -119,18 +155,11 @@ class FromLibrary:
     def _look_up(self, value: Any) -> Any:
         if not isinstance(value, str):
             return value
-        entries = library.entries(self.kind)
-        if value not in entries:
-            raise PydanticCustomError(
-                "unknown_name",
-                "the library has no such entry in {kind}",
-                {"kind": self.kind, "known": sorted(entries)},
-            )
-        return library.values(self.kind, value)
+        return library.values(self.kind, demand_entry(self.kind, value))
 
 
 def one_of(first: str, second: str) -> Callable[[JsonSchemaValue], None]:
-    """For the JSON Schema of a part: demand either of two keys, and not both."""
+    """For the JSON Schema of a part: demand exactly one of two keys."""
 
     def demand(schema: JsonSchemaValue) -> None:
         schema["required"] = [key for key in schema["required"] if key not in (first, second)]
@@ -140,35 +169,20 @@ def one_of(first: str, second: str) -> Callable[[JsonSchemaValue], None]:
 
 
 def ascending(field: str) -> AfterValidator:
-    """Demand that the items' `field` grows strictly from one to the next."""
+    """Demand that numbers, or the items' `field`, increase strictly from one to the next."""
 
     def check(items: Sequence[_Item]) -> Sequence[_Item]:
-        _demand_ascending([getattr(item, field) for item in items], field)
+        values: list[Any] = [getattr(item, field, item) for item in items]
+        if not all(map(lt, values, values[1:])):
+            before, after = next(pair for pair in pairwise(values) if not lt(*pair))
+            raise PydanticCustomError(
+                "not_ascending",
+                "{field} does not increase: {after} follows {before}",
+                {"field": field, "before": before, "after": after},
+            )
         return items
 
     return AfterValidator(check)
-
-
-def ascending_numbers(field: str) -> AfterValidator:
-    """Demand that the numbers grow strictly from one to the next."""
-
-    def check(numbers: Sequence[float]) -> Sequence[float]:
-        _demand_ascending(numbers, field)
-        return numbers
-
-    return AfterValidator(check)
-
-
-def _demand_ascending(values: Sequence[float], field: str) -> None:
-    if all(map(lt, values, values[1:])):
-        return
-    for before, after in zip(values, values[1:], strict=False):
-        if after <= before:
-            raise PydanticCustomError(
-                "not_ascending",
-                "{field} does not grow: {after} follows {before}",
-                {"field": field, "before": before, "after": after},
-            )
 
 
 def unique(field: str) -> AfterValidator:

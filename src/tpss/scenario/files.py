@@ -1,4 +1,4 @@
-"""Read the files of a scenario: TOML, and CSV profiles beside it."""
+"""Read the files of a scenario: TOML, and CSV profiles next to it."""
 
 import re
 import tomllib
@@ -6,10 +6,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, ScenarioError, shortened
 
 PROFILE_COLUMNS = {"from_km": "position_km", "permille": "gradient_permille"}
-"""Columns of a gradient profile, by the keys that they stand for in a scenario."""
+"""Columns of a gradient profile, by the corresponding keys of a scenario."""
 
 
 class Profile(NamedTuple):
@@ -48,7 +48,7 @@ def _remedy_for_missing(path: Path) -> str:
     if not path.parent.is_dir():
         return f"there is no folder {path.parent} either; check the path"
     here = sorted(p.name for p in path.parent.glob(f"*{path.suffix}"))
-    return f"files of this kind there: {', '.join(here[:8])}" if here else "check the path"
+    return f"files of this type there: {', '.join(here[:8])}" if here else "check the path"
 
 
 def read_toml(path: Path, named_by: str = "") -> dict[str, Any]:
@@ -65,7 +65,7 @@ def read_toml(path: Path, named_by: str = "") -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         at_line = re.search(r"at line (\d+)", str(error))
         place, value = shown_line(text, int(at_line[1])) if at_line else ("", "")
-        remedy = "mend the file at that place; https://toml.io describes the format"
+        remedy = "correct the file at that place; https://toml.io describes the format"
         finding = Finding(str(path), place, value, f"not TOML: {error}", remedy)
         raise ScenarioError([finding]) from error
 
@@ -74,7 +74,7 @@ def shown_line(text: str, number: int) -> tuple[str, str]:
     """Name of a line, counted from 1, and its text, as a finding shows them."""
     lines = text.split("\n")
     line = lines[number - 1].strip() if number <= len(lines) else ""
-    return f"line {number}", line if len(line) <= 60 else f"{line[:57]}..."
+    return f"line {number}", shortened(line)
 
 
 def read_gradients(path: Path) -> Profile:
@@ -93,10 +93,12 @@ def read_gradients(path: Path) -> Profile:
     rows = [(number, [cell.strip() for cell in text.split(",")]) for number, text in lines]
     header = list(PROFILE_COLUMNS.values())
     if not rows or rows[0][1] != header:
-        found = ",".join(rows[0][1]) if rows else ""
+        header_row = ",".join(rows[0][1]) if rows else ""
         remedy = f"begin with the line {','.join(header)}"
         key = f"line {rows[0][0]}" if rows else "line 1"
-        raise ScenarioError([Finding(str(path), key, found, "not the expected header", remedy)])
+        raise ScenarioError(
+            [Finding(str(path), key, header_row, "not the expected header", remedy)]
+        )
     findings: list[Finding] = []
     gradients = [_read_row(path, number, cells, findings) for number, cells in rows[1:]]
     if not gradients:
@@ -112,12 +114,12 @@ def read_gradients(path: Path) -> Profile:
 
 
 def _check_order(profile: Profile) -> list[Finding]:
-    """Rows whose position does not grow."""
+    """Faults of rows whose position does not increase."""
     findings = []
     for i, (before, after) in enumerate(pairwise(row["from_km"] for row in profile.rows)):
         if after <= before:
-            problem = f"the position does not grow: {after:g} follows {before:g}"
-            remedy = "put the rows in ascending order, each place once"
+            problem = f"the position does not increase: {after:g} follows {before:g}"
+            remedy = "put the rows in ascending order, each position once"
             place = profile.place(i + 1, "from_km")
             findings.append(Finding(str(profile.path), place, f"{after:g}", problem, remedy))
     return findings
@@ -128,7 +130,7 @@ def _read_row(
 ) -> dict[str, float]:
     row = ",".join(cells)
     if len(cells) != len(PROFILE_COLUMNS):
-        problem = f"{len(cells)} values where {len(PROFILE_COLUMNS)} belong"
+        problem = f"{len(cells)} values, expected {len(PROFILE_COLUMNS)}"
         remedy = "write a position and a gradient, separated by a comma, with decimal points"
         findings.append(Finding(str(path), f"line {number}", row, problem, remedy))
         return {}

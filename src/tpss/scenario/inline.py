@@ -1,6 +1,6 @@
 """Put the files that a scenario names in place of their names.
 
-A name that ends in ``.toml`` stands for the table in that file, beside the scenario: of a train's
+A name that ends in ``.toml`` stands for the table in that file, next to the scenario: of a train's
 model, of the line, of anything that the library has entries for.  ``gradients_file`` stands for a
 profile in CSV.  A scenario then holds everything that it says, and its faults are traced back to the
 files in which they stand.
@@ -69,15 +69,15 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
     if not _names_files(document):
         return Inlined(document, source)
     document = copy_of(document)
-    found = Inlined(document, source)
+    inlined = Inlined(document, source)
     for place in PLACES:
         for container, key, location in _named_files(document, place, ()):
             if place[0] == "trains":
-                _merge_model(container, location[:-1], found)
+                _merge_model(container, location[:-1], inlined)
             else:
-                _insert_table(container, key, location, found)
-    _insert_profile(found)
-    return found
+                _insert_table(container, key, location, inlined)
+    _insert_profile(inlined)
+    return inlined
 
 
 def _names_files(document: dict[str, Any]) -> bool:
@@ -101,72 +101,72 @@ def _named_files(
 
 
 def _keys_at(container: Any, key: str) -> list[Any]:
-    """Keys or numbers of a container's items that a key, or ``*``, means."""
+    """Keys or indices of a container's items that match a key, or ``*``."""
     if isinstance(container, dict):
         return [name for name in container if key in ("*", name)]
     return list(range(len(container))) if key == "*" and isinstance(container, list | tuple) else []
 
 
-def _read(name: str, location: Location, found: Inlined) -> dict[str, Any] | None:
+def _read(name: str, location: Location, inlined: Inlined) -> dict[str, Any] | None:
     """Table in a file, without its source; None, with a finding, if it cannot be read."""
     key = ".".join(str(part) for part in location)
     try:
-        table = read_toml(found.source.parent / name, key)
+        table = read_toml(inlined.source.parent / name, key)
     except ScenarioError as error:
-        found.findings += error.findings
+        inlined.findings += error.findings
         return None
     table.pop("source", None)
     return table
 
 
-def _insert_table(container: Any, key: Any, location: Location, found: Inlined) -> None:
+def _insert_table(container: Any, key: Any, location: Location, inlined: Inlined) -> None:
     name = container[key]
-    table = _read(name, location, found)
+    table = _read(name, location, inlined)
     if table is None:
-        found.unread.add(location)
+        inlined.unread.add(location)
         return
     container[key] = table
-    found.files[location] = found.source.parent / name
-    found.own[location] = set()
+    inlined.files[location] = inlined.source.parent / name
+    inlined.own[location] = set()
 
 
-def _merge_model(train: dict[str, Any], location: Location, found: Inlined) -> None:
-    """Let a train's file give what the train itself does not; the train then has no model."""
+def _merge_model(train: dict[str, Any], location: Location, inlined: Inlined) -> None:
+    """Complete a train with the values of its file; the train then has no model."""
     name = train.pop("model")
-    table = _read(name, (*location, "model"), found)
+    table = _read(name, (*location, "model"), inlined)
     if table is None:
-        # Any values let what the scenario itself says be judged.
+        # Any values allow what the scenario itself says to be checked.
         train["model"] = next(iter(library.entries("locomotives")))
         return
-    path = found.source.parent / name
+    path = inlined.source.parent / name
     if "model" in table:
-        problem = "a model file gives all values itself"
+        problem = "a model file must give all values itself"
         remedy = "write the values of that model into this file"
-        found.findings.append(
+        inlined.findings.append(
             Finding(str(path), "model", repr(table.pop("model")), problem, remedy)
         )
-    found.files[location], found.own[location] = path, set(train)
+    inlined.files[location], inlined.own[location] = path, set(train)
     for key, value in table.items():
         train.setdefault(key, value)
 
 
-def _insert_profile(found: Inlined) -> None:
+def _insert_profile(inlined: Inlined) -> None:
     """Read the gradients that a line names as a file into it."""
-    line = found.document.get("line")
+    line = inlined.document.get("line")
     if not isinstance(line, dict) or not isinstance(line.get("gradients_file"), str):
         return
-    file, location = found.origin(("line", "gradients_file"))
+    file, location = inlined.origin(("line", "gradients_file"))
     key, name = ".".join(str(part) for part in location), line["gradients_file"]
     if "gradients" in line:
         problem = "gradients are given twice, as a file and as a list"
         remedy = "leave out gradients_file or gradients"
-        found.findings.append(Finding(str(file), key, repr(name), problem, remedy))
+        inlined.findings.append(Finding(str(file), key, repr(name), problem, remedy))
         return
     del line["gradients_file"]
     try:
-        found.profile = read_gradients(file.parent / name)
-        line["gradients"] = found.profile.rows
+        inlined.profile = read_gradients(file.parent / name)
+        line["gradients"] = inlined.profile.rows
     except ScenarioError as error:
-        # A level line lets the rest of the document be judged.
+        # A level line allows the rest of the document to be checked.
         line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]
-        found.findings += error.findings
+        inlined.findings += error.findings

@@ -1,5 +1,7 @@
 """The line: its length, gradients, speed limits and stations."""
 
+import math
+from collections.abc import Sequence
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
@@ -7,28 +9,33 @@ from pydantic.dataclasses import dataclass
 
 from tpss.scenario.fields import Name, Part, Position, Real, ascending, one_of, unique
 
+Piece = tuple[float, float, float]
+"""Beginning and end of a piece of constant value [km], and that value."""
+
 
 @dataclass(frozen=True, slots=True, config=ConfigDict(extra="forbid", allow_inf_nan=False))
 class Gradient:
-    """A gradient that holds from its position to the next one's."""
+    """A gradient that applies from its position to that of the next one."""
 
-    # A profile has thousands of them: without dictionaries they take a fifth of the memory.
+    # A profile has thousands of them: with slots they need a fifth of the memory.
 
     from_km: Real = Field(
-        ge=-100_000, le=100_000, description="Position from which the gradient holds."
+        ge=-100_000, le=100_000, description="Position from which the gradient applies."
     )
     permille: Real = Field(ge=-100, le=100, description="Rise over run, positive uphill.")
 
 
 class SpeedLimit(Part):
-    """A speed limit that holds from its position to the next one's."""
+    """A speed limit that applies from its position to that of the next one."""
 
-    from_km: Position = Field(ge=0, le=100_000, description="Position from which the limit holds.")
+    from_km: Position = Field(
+        ge=0, le=100_000, description="Position from which the limit applies."
+    )
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
 
 class Station(Part):
-    """A place where trains may begin, stop or end."""
+    """A passenger station, where trains may begin, stop or end."""
 
     name: Name = Field(description="Name that traffic entries refer to.")
     position_km: Position = Field(ge=0, description="Position on the line.")
@@ -44,11 +51,11 @@ class Line(Part):
     )
     gradients_file: str | None = Field(
         default=None,
-        description="CSV file beside the scenario with the columns position_km and "
+        description="CSV file next to the scenario with the columns position_km and "
         "gradient_permille, in place of `gradients`.",
     )
     gradients: Annotated[tuple[Gradient, ...], Field(min_length=1), ascending("from_km")] = Field(
-        description="Gradients; the outer ones go on beyond the profile's ends."
+        description="Gradients; the outer ones continue beyond the ends of the profile."
     )
     speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
         Field(description="Speed limits; the first one begins at 0.")
@@ -56,3 +63,20 @@ class Line(Part):
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
     ] = Field(description="Stations, at least two.")
+
+    def gradients_between(self, start_km: float, end_km: float) -> list[Piece]:
+        """Pieces of the gradient profile between two positions. [‰]"""
+        return _pieces([(g.from_km, g.permille) for g in self.gradients], start_km, end_km)
+
+    def speed_limits_between(self, start_km: float, end_km: float) -> list[Piece]:
+        """Pieces of the speed profile between two positions. [km/h]"""
+        return _pieces([(s.from_km, s.speed_kmh) for s in self.speed_limits], start_km, end_km)
+
+
+def _pieces(profile: Sequence[tuple[float, float]], start_km: float, end_km: float) -> list[Piece]:
+    begins = [-math.inf, *(from_km for from_km, _ in profile[1:])]
+    pieces = [
+        (max(begin, start_km), min(end, end_km), value)
+        for begin, end, (_, value) in zip(begins, [*begins[1:], math.inf], profile, strict=True)
+    ]
+    return [piece for piece in pieces if piece[0] < piece[1]]

@@ -28,6 +28,6 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
     source = Path(path)
     document = read_toml(source)
     if {"scenario", "design"} <= document.keys():
-        remedy = "run it by tpss sweep, or name the scenario that it varies"
+        remedy = "run it with tpss sweep, or name the scenario that it varies"
         raise ScenarioError([Finding(str(source), "", "", "a study, not a scenario", remedy)])
     return Scenario.from_own_document(override(document, changes or {}, source), source)

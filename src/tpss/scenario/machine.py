@@ -1,11 +1,11 @@
-"""A train's machine: what its motors give, and curves over speed in place of single numbers."""
+"""A train's machine: the effort of its motors, and curves over speed in place of numbers."""
 
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from tpss.scenario.fields import Part, Real, ascending_numbers, fault
+from tpss.scenario.fields import Part, Real, ascending, fault
 
 MOST_VOLTAGES = 16
 """Rows that a table of tractive effort may have."""
@@ -15,7 +15,7 @@ Ratio = Annotated[Real, Field(ge=0.1, le=1)]
 Speeds = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=500)], ...],
     Field(min_length=2),
-    ascending_numbers("speed_kmh"),
+    ascending("speed_kmh"),
 ]
 
 
@@ -35,7 +35,9 @@ class Curve(Part):
 
     @field_validator("value")
     @classmethod
-    def _a_value_a_speed(cls, value: tuple[float, ...], info: ValidationInfo) -> tuple[float, ...]:
+    def _one_value_per_speed(
+        cls, value: tuple[float, ...], info: ValidationInfo
+    ) -> tuple[float, ...]:
         if "speed_kmh" in info.data:
             _demand_length(value, "value", len(info.data["speed_kmh"]), "speed_kmh")
         return value
@@ -61,6 +63,16 @@ def _depth(value: object) -> str:
     return names[0]
 
 
+Voltages = Annotated[
+    tuple[Annotated[Real, Field(gt=0, le=100)], ...],
+    Field(min_length=2, max_length=MOST_VOLTAGES),
+    ascending("voltage_kv"),
+]
+Currents = Annotated[
+    tuple[Annotated[Real, Field(gt=0, le=5_000)], ...],
+    Field(min_length=2),
+    ascending("motor_current_a"),
+]
 Force = Annotated[Real, Field(ge=0, le=10_000)]
 Row = tuple[Force, ...]
 Rows = tuple[Row, ...]
@@ -75,24 +87,10 @@ class EffortTable(Part):
     """
 
     speed_kmh: Speeds = Field(description="Speeds, ascending.")
-    voltage_kv: (
-        Annotated[
-            tuple[Annotated[Real, Field(gt=0, le=100)], ...],
-            Field(min_length=2, max_length=MOST_VOLTAGES),
-            ascending_numbers("voltage_kv"),
-        ]
-        | None
-    ) = Field(
+    voltage_kv: Voltages | None = Field(
         default=None, description="Voltages at the pantograph; `force_kn` has a row for each."
     )
-    motor_current_a: (
-        Annotated[
-            tuple[Annotated[Real, Field(gt=0, le=5_000)], ...],
-            Field(min_length=2),
-            ascending_numbers("motor_current_a"),
-        ]
-        | None
-    ) = Field(
+    motor_current_a: Currents | None = Field(
         default=None,
         description="Current limits of a motor; `force_kn` has a block (rows over voltage, or a row) "
         "for each, and the train's `max_motor_current_a` chooses between them.",
@@ -102,11 +100,11 @@ class EffortTable(Part):
         | Annotated[Rows, Tag("rows")]
         | Annotated[Blocks, Tag("blocks")],
         Discriminator(_depth),
-    ] = Field(description="Force of all motors, a value a speed.")
+    ] = Field(description="Force of all motors, one value per speed.")
 
     @field_validator("force_kn")
     @classmethod
-    def _a_value_a_point(cls, force: Any, info: ValidationInfo) -> Any:
+    def _one_value_per_point(cls, force: Any, info: ValidationInfo) -> Any:
         axes = ("motor_current_a", "voltage_kv", "speed_kmh")
         if not set(axes) <= set(info.data):
             return force  # an axis has a fault of its own
@@ -150,13 +148,13 @@ class EffortLimits(Part):
         default=None,
         gt=0,
         le=100,
-        description="Line voltage from which force and power are whole; leave both voltages out: "
-        "at any.",
+        description="Line voltage from which force and power are full; leave both voltages out: "
+        "at any voltage.",
     )
     zero_voltage_kv: Real | None = Field(
         default=None,
         ge=0,
-        description="Line voltage below which there is none; in between they fall linearly.",
+        description="Line voltage below which they are zero; in between they fall linearly.",
     )
 
     @model_validator(mode="after")
@@ -176,7 +174,7 @@ class EffortLimits(Part):
 
 
 class CurrentLimitation(Part):
-    """Current that a train may draw at most: full from a · Un on, that of its auxiliaries at Umin2."""
+    """Highest current of a train: full from a · Un on, only that of its auxiliaries at Umin2."""
 
     max_current_a: Real = Field(
         gt=0,
@@ -187,7 +185,7 @@ class CurrentLimitation(Part):
         default=0.95,
         gt=0,
         le=1,
-        description="a, the share of Un from which the current is whole.",
+        description="a, the share of Un from which the full current is allowed.",
     )
     un_kv: Real = Field(default=15.0, gt=0, le=100, description="Nominal voltage, Un.")
     umin2_kv: Real = Field(
@@ -212,7 +210,7 @@ class CurrentLimitation(Part):
 _OF_A_TABLE = {"speed_kmh", "force_kn", "voltage_kv", "motor_current_a"}
 
 
-def _kind_of_effort(value: object) -> str | None:
+def _type_of_effort(value: object) -> str | None:
     if isinstance(value, EffortTable) or (isinstance(value, dict) and _OF_A_TABLE & set(value)):
         return "table"
     if _is_a_table(value):
@@ -225,7 +223,7 @@ TractiveEffort = Annotated[
     | Annotated[EffortTable, Tag("table")]
     | Annotated[EffortLimits, Tag("limits")],
     Discriminator(
-        _kind_of_effort,
+        _type_of_effort,
         custom_error_type="fault",
         custom_error_message="neither the name of a machine nor a table",
         custom_error_context={

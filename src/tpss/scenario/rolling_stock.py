@@ -1,12 +1,11 @@
-"""The trains: a library model or one's own, any of its fields overridden."""
+"""The trains: a model of the library or of a file, any of its fields overridden."""
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, ValidationInfo, field_validator, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Real, fault
+from tpss.scenario.fields import Name, Part, Real, entry_of, fault
 from tpss.scenario.machine import (
     CurrentLimitation,
     EffortTable,
@@ -15,27 +14,16 @@ from tpss.scenario.machine import (
 )
 
 
-def _is_a_library_model(name: str) -> str:
-    known = library.entries("locomotives")
-    if name not in known:
-        raise PydanticCustomError(
-            "unknown_name",
-            "the library has no such entry in {kind}",
-            {"kind": "locomotives", "known": sorted(known)},
-        )
-    return name
-
-
 class Train(Part):
     """A train: the locomotive's machine and the whole train's mechanics."""
 
-    model: Annotated[Name, AfterValidator(_is_a_library_model)] | None = Field(
+    model: Annotated[Name, entry_of("locomotives")] | None = Field(
         default=None,
-        description="Library model, or a file of one's own that ends in .toml, whose values the "
+        description="Library model, or the name of a file that ends in .toml, whose values the "
         "other keys override; leave it out, and give all of them.",
     )
     tractive_effort: TractiveEffort = Field(
-        description="What the motors give at most: the name of a machine (Rc4), a table over speed "
+        description="Highest force of the motors: the name of a machine (Rc4), a table over speed "
         "(and voltage, and current limit), or a highest force and power."
     )
     mass_t: Real = Field(ge=1, le=20_000, description="Mass of the whole train.")
@@ -73,7 +61,9 @@ class Train(Part):
         le=10,
         description="Highest acceleration; leave it out: no such limit.",
     )
-    max_retardation_m_s2: Real = Field(ge=0.01, le=5, description="Highest braking retardation.")
+    max_retardation_m_s2: Real = Field(
+        ge=0.01, le=5, description="Highest deceleration by braking."
+    )
     efficiency: RatioOverSpeed = Field(
         description="From pantograph to motor shaft: a number, or a curve over speed."
     )
@@ -118,7 +108,7 @@ class Train(Part):
         default=15.0,
         ge=0.1,
         le=100,
-        description="Line voltage to which the transformer's secondary voltage belongs.",
+        description="Line voltage at which the transformer has its secondary voltage.",
     )
     transformer_secondary_v: Real = Field(
         default=487.0,
@@ -206,14 +196,9 @@ class Train(Part):
     @model_validator(mode="after")
     def _adhesive_mass_is_a_part_of_the_mass(self) -> Self:
         if self.adhesive_mass_t > self.mass_t:
-            raise PydanticCustomError(
-                "conflict",
-                "adhesive_mass_t ({adhesive} t) is more than mass_t ({mass} t)",
-                {
-                    "adhesive": self.adhesive_mass_t,
-                    "mass": self.mass_t,
-                    "remedy": "raise mass_t, which is of the whole train, or lower adhesive_mass_t",
-                },
+            raise fault(
+                f"adhesive_mass_t ({self.adhesive_mass_t} t) is more than mass_t ({self.mass_t} t)",
+                "raise mass_t, which is of the whole train, or lower adhesive_mass_t",
             )
         return self
 
@@ -223,6 +208,6 @@ class Train(Part):
         if not isinstance(given, dict) or not isinstance(given.get("model"), str):
             return given
         known = library.entries("locomotives")
-        # An unknown model is reported by its own field; any values let the others be judged too.
+        # An unknown model is reported by its own field; any values allow the others to be checked too.
         model = given["model"] if given["model"] in known else next(iter(known))
         return {**library.values("locomotives", model), **given}

@@ -24,32 +24,32 @@ from tpss.scenario.validate import validate
 class Scenario(Part):
     """A validated, frozen scenario of format 1.
 
-    Made by `tpss.load_scenario` or `Scenario.from_document`, which check the parts against each
-    other too.  `with_` gives a changed copy.
+    Created by `tpss.load_scenario` or `Scenario.from_document`, which also check the parts against
+    each other.  `with_` gives a changed copy.
     """
 
     format: Version = Field(description="Version of the file format.")
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")] = Field(
-        description="Short name; result folders take theirs from it."
+        description="Short name, used for result folders."
     )
     description: str = Field(default="", description="What the scenario is about.")
     simulation: Simulation = Field(description="How the simulation runs.")
     line: Line = Field(description="The railway line.")
     supply: Supply = Field(description="Everything that feeds the trains.")
     trains: Annotated[dict[Name, Train], Field(min_length=1)] = Field(
-        description="Kinds of train by name, at least one."
+        description="Types of train by name, at least one."
     )
     traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")] = Field(
         description="Services, at least one; the first train of the first one is studied."
     )
     standards: Standards = Field(
-        default={}, validate_default=True, description="By what the result is judged."
+        default={}, validate_default=True, description="Criteria by which the result is judged."
     )
 
     @model_validator(mode="before")
     @classmethod
     def _judge_by_the_limits_of_the_system(cls, given: Any) -> Any:
-        """Take the voltage limits of the supply's system, unless the standards name others."""
+        """Use the voltage limits of the supply's system, unless the standards name others."""
         if not isinstance(given, dict):
             return given
         supply, standards = given.get("supply", {}), given.get("standards", {})
@@ -84,7 +84,7 @@ class Scenario(Part):
 
     @classmethod
     def from_own_document(cls, document: dict[str, Any], source: str | Path) -> Self:
-        """`from_document` for a document that nobody else holds, and so need not be copied.
+        """`from_document` for a document that the caller gives up, and so need not be copied.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Scenario(Part):
         ----------
         changes : mapping of str to value
             Key paths, such as ``"simulation.time_step_min"`` or ``"traffic.0.headway_min"``, and
-            their new values; None takes a key out.
+            their new values; None removes a key.
 
         Raises
         ------

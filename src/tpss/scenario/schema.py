@@ -12,7 +12,7 @@ TITLE = "TPSS scenario"
 
 
 class _OfToml(GenerateJsonSchema):
-    """Schema of what a TOML file can say: it has no null, and its keys need no titles."""
+    """Schema for TOML, which has no null; its keys need no titles."""
 
     def nullable_schema(self, schema: Any) -> JsonSchemaValue:
         return self.generate_inner(schema["schema"])
@@ -29,8 +29,8 @@ class _OfToml(GenerateJsonSchema):
 def scenario_schema() -> dict[str, Any]:
     """JSON Schema of a scenario file.
 
-    It knows every key, with its description, unit, range and choices, and the names in the library.
-    What lies between the parts (a train that does not exist, a stop outside the line) is found by
+    It describes every key, with its unit, range and choices, and lists the names in the library.
+    Faults between the parts (a train that does not exist, a stop outside the line) are detected by
     `tpss.load_scenario` only.
     """
     schema = Scenario.model_json_schema(by_alias=True, schema_generator=_OfToml)
@@ -54,7 +54,7 @@ def _add_unit(key: str, field: dict[str, Any]) -> None:
 
 
 def _start_from_a_model(train: dict[str, Any]) -> None:
-    """A train names a library model or a file, or gives by itself what those would give."""
+    """A train names a library model or a file, or gives all required keys itself."""
     names = {"type": "string", "enum": sorted(library.entries("locomotives"))}
     description = train["properties"]["model"]["description"]
     train["properties"]["model"] = {"anyOf": [names, OWN_FILE], "description": description}
@@ -62,7 +62,7 @@ def _start_from_a_model(train: dict[str, Any]) -> None:
 
 
 def _start_from_a_system(limits: dict[str, Any]) -> None:
-    """Voltage limits start from a system of the library, which gives every key that all have."""
+    """Voltage limits start from a system of the library, which gives the keys common to all."""
     entries = library.entries("voltage_limits")
     given = set.intersection(*(set(entry) for entry in entries.values()))
     limits["required"] = [name for name in limits["required"] if name not in given]

@@ -3,13 +3,12 @@
 from typing import Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import Part, Real
+from tpss.scenario.fields import Part, Real, either_or
 
 
 class Simulation(Part):
-    """Time step, end of the run, and the thesis's choices beside ours."""
+    """Time step, end of the run, and choices between our models and those of the thesis."""
 
     model_config = ConfigDict(json_schema_extra={"not": {"required": ["until", "duration_min"]}})
 
@@ -22,12 +21,12 @@ class Simulation(Part):
     )
     power_sampling: Literal["mean", "start"] = Field(
         default="mean",
-        description="Speed with which motor power is billed: mean of the step, or its start "
+        description="Speed from which motor power is computed: mean of the step, or at its start "
         "(the thesis).",
     )
     gradient_sampling: Literal["mean", "start"] = Field(
         default="mean",
-        description="Gradient of a step: mean over its way, or at its start (the thesis).",
+        description="Gradient of a step: mean over its distance, or at its start (the thesis).",
     )
     adhesion_speed_unit: Literal["m/s", "km/h"] = Field(
         default="m/s",
@@ -37,27 +36,23 @@ class Simulation(Part):
     rail: Literal["dry", "wet"] = Field(default="dry", description="State of the rails.")
     load_flow: Literal["equations", "least-squares"] = Field(
         default="equations",
-        description="Solution of the load flow as a system of equations, or by the least squares of "
-        "the power mismatches, as the original program did; that takes a few hundred times as long.",
+        description="Solve the load flow as a system of equations, or by least squares of the power "
+        "mismatches, as the original program did; that takes a few hundred times as long.",
     )
     driver: Literal["regulated", "aggressive"] = Field(
         default="regulated",
-        description="A driver who holds the speed limit, or that of the original program: full "
+        description="Driver who holds the speed limit, or that of the original program: full "
         "effort below the limit, coasting up to 5 km/h above it, braking beyond.",
     )
 
     braking: Literal["whole-steps", "within-step"] = Field(
         default="whole-steps",
-        description="Braking to stops and lower limits in whole steps (the thesis), or so late that it "
-        "may begin within a step, as may a stop: that makes long steps accurate.",
+        description="Braking to stops and lower limits in whole steps (the thesis), or from as late as "
+        "possible, within a step, which may end in a stop: that makes long steps accurate.",
     )
 
     @model_validator(mode="after")
-    def _one_way_to_end(self) -> Self:
+    def _has_one_end(self) -> Self:
         if self.until is not None and self.duration_min is not None:
-            raise PydanticCustomError(
-                "either_or",
-                "give either {first} or {second}",
-                {"first": "until", "second": "duration_min"},
-            )
+            raise either_or("until", "duration_min")
         return self

@@ -1,31 +1,19 @@
-"""By what a result is judged: limits of the voltage, the peak window, zones of the line."""
+"""Criteria for a result: limits of the voltage, the peak window, zones of the line."""
 
 from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, model_validator
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Position, Real, unique
+from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, unique
 
 KIND = "voltage_limits"
-
-
-def _is_a_library_system(name: str) -> str:
-    known = library.entries(KIND)
-    if name not in known:
-        raise PydanticCustomError(
-            "unknown_name",
-            "the library has no such entry in {kind}",
-            {"kind": KIND, "known": sorted(known)},
-        )
-    return name
 
 
 class VoltageLimits(Part):
     """Limits of the voltage at the pantograph: those of a system in the library, or one's own."""
 
-    system: Annotated[Name, AfterValidator(_is_a_library_system)] = Field(
+    system: Annotated[Name, entry_of(KIND)] = Field(
         default="15kV-16.7Hz",
         description="Library entry, that of the supply's system; the other keys override its values.",
     )
@@ -34,8 +22,8 @@ class VoltageLimits(Part):
     umin1_kv: Real = Field(gt=0, description="Lowest permanent voltage, Umin1.")
     umax1_kv: Real = Field(gt=0, description="Highest permanent voltage, Umax1.")
     umax2_kv: Real = Field(gt=0, description="Highest non-permanent voltage, Umax2.")
-    longest_low_min: Real = Field(ge=0, description="Longest time below Umin1 at a stretch.")
-    longest_high_min: Real = Field(ge=0, description="Longest time above Umax1 at a stretch.")
+    longest_low_min: Real = Field(ge=0, description="Longest uninterrupted time below Umin1.")
+    longest_high_min: Real = Field(ge=0, description="Longest uninterrupted time above Umax1.")
     mean_useful_kv: Real | None = Field(
         default=None,
         gt=0,
@@ -52,7 +40,7 @@ class VoltageLimits(Part):
             return given
         known = library.entries(KIND)
         system = given.get("system", cls.model_fields["system"].default)
-        # An unknown system is reported by its own field; any values let the others be judged too.
+        # An unknown system is reported by its own field; any values allow the others to be checked too.
         entry = system if isinstance(system, str) and system in known else next(iter(known))
         return {**library.values(KIND, entry), **given}
 
@@ -61,22 +49,15 @@ class VoltageLimits(Part):
         keys = ("umin2_kv", "umin1_kv", "un_kv", "umax1_kv", "umax2_kv")
         for low, high in zip(keys, keys[1:], strict=False):
             if getattr(self, low) > getattr(self, high):
-                raise PydanticCustomError(
-                    "conflict",
-                    "{low} ({low_kv} kV) is more than {high} ({high_kv} kV)",
-                    {
-                        "low": low,
-                        "low_kv": getattr(self, low),
-                        "high": high,
-                        "high_kv": getattr(self, high),
-                        "remedy": f"keep to the order {', '.join(keys)}",
-                    },
+                raise fault(
+                    f"{low} ({getattr(self, low)} kV) is more than {high} ({getattr(self, high)} kV)",
+                    f"keep to the order {', '.join(keys)}",
                 )
         return self
 
 
 class Zone(Part):
-    """A stretch of line whose mean useful voltage is asked for."""
+    """A section of line whose mean useful voltage is evaluated."""
 
     name: Name = Field(description="Name, shown in the results.")
     from_km: Position = Field(ge=0, description="Where it begins.")
@@ -89,7 +70,7 @@ class Zone(Part):
 
 
 class Standards(Part):
-    """By what the result is judged; it changes no result."""
+    """Criteria by which the result is judged; they do not change it."""
 
     voltage_limits: VoltageLimits = Field(
         default={},
@@ -100,12 +81,12 @@ class Standards(Part):
         default=0.0, ge=0, description="Where the peak window of the mean useful voltage begins."
     )
     peak_to_min: Real | None = Field(
-        default=None, gt=0, description="Where it ends; leave it out: with the run."
+        default=None, gt=0, description="Where it ends; leave it out: at the end of the run."
     )
     zones: Annotated[tuple[Zone, ...], unique("name")] = Field(
         default=(),
         description="Zones of the mean useful voltage; leave them out: the feeding sections "
-        "between converter stations.",
+        "between feeding stations.",
     )
 
     @model_validator(mode="after")
@@ -117,8 +98,4 @@ class Standards(Part):
 def _demand_growth(part: Part, first: str, last: str) -> None:
     begin, end = getattr(part, first), getattr(part, last)
     if end is not None and end <= begin:
-        raise PydanticCustomError(
-            "conflict",
-            "{last} ({end}) does not lie beyond {first} ({begin})",
-            {"first": first, "begin": begin, "last": last, "end": end, "remedy": f"raise {last}"},
-        )
+        raise fault(f"{last} ({end}) does not lie beyond {first} ({begin})", f"raise {last}")

@@ -3,19 +3,28 @@
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import Flag, Name, Part, Position, Real, ascending_numbers, one_of
+from tpss.scenario.fields import (
+    Flag,
+    Name,
+    Part,
+    Position,
+    Real,
+    ascending,
+    either_or,
+    fault,
+    one_of,
+)
 
 Times = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=100_000)], ...],
     Field(min_length=1),
-    ascending_numbers("departures_min"),
+    ascending("departures_min"),
 ]
 
 
 class Stop(Part):
-    """A stop on the way."""
+    """An intermediate stop."""
 
     station: Name = Field(description="Station of the line.")
     dwell_min: Real = Field(ge=0, le=100_000, description="Time that the train stands.")
@@ -29,11 +38,11 @@ class InitialTrain(Part):
 
 
 class Traffic(Part):
-    """A service: trains of one kind from one station to another."""
+    """A service: trains of one type from one station to another."""
 
     model_config = ConfigDict(json_schema_extra=one_of("headway_min", "departures_min"))
 
-    name: Name = Field(description="Name, from which the trains take theirs.")
+    name: Name = Field(description="Name, from which the names of its trains are derived.")
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
@@ -48,32 +57,26 @@ class Traffic(Part):
     )
     already_running: Flag = Field(
         default=False,
-        description="Whether trains stand along the line at the start, as if the service had "
-        "always run.",
+        description="Whether trains are distributed along the line at the start, as if the "
+        "service had always run.",
     )
     initial_trains: tuple[InitialTrain, ...] = Field(
         default=(), description="Trains on the line at the start."
     )
-    stops: tuple[Stop, ...] = Field(default=(), description="Stops on the way, in order.")
+    stops: tuple[Stop, ...] = Field(default=(), description="Intermediate stops, in order.")
 
     @model_validator(mode="after")
-    def _one_way_to_depart(self) -> Self:
+    def _departures_are_given_once(self) -> Self:
         if (self.headway_min is None) == (self.departures_min is None):
-            raise PydanticCustomError(
-                "either_or",
-                "give either {first} or {second}",
-                {"first": "headway_min", "second": "departures_min"},
-            )
+            raise either_or("headway_min", "departures_min")
         if self.already_running and (self.departures_min is not None or self.initial_trains):
-            raise PydanticCustomError(
-                "conflict",
-                "already_running needs headway_min, and stands in place of initial_trains",
-                {"remedy": "leave already_running out, or use it with headway_min alone"},
+            raise fault(
+                "already_running needs headway_min, and replaces initial_trains",
+                "leave already_running out, or use it with headway_min alone",
             )
         if self.departures_min is not None and self.first_departure_min:
-            raise PydanticCustomError(
-                "conflict",
-                "first_departure_min goes with headway_min; departures_min lists every departure",
-                {"remedy": "leave first_departure_min out"},
+            raise fault(
+                "first_departure_min belongs to headway_min; departures_min lists every departure",
+                "leave first_departure_min out",
             )
         return self

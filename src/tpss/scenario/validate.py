@@ -7,7 +7,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, Tag, ValidationError
 
 from tpss import units
-from tpss.errors import Finding, ScenarioError, suggest
+from tpss.errors import Finding, ScenarioError, shortened, suggest
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
@@ -49,9 +49,8 @@ _REMEDIES = {
     "control_character": "write it on one line, without tabs and other control characters",
     "string_pattern_mismatch": "use letters, digits, dots, hyphens and underscores only",
     "too_short": "add at least one more",
-    "not_ascending": "put them in ascending order, each place once",
+    "not_ascending": "put them in ascending order, each value once",
     "not_unique": "give each one its own",
-    "either_or": "leave one of them out, or add the one that is missing",
 }
 
 
@@ -119,23 +118,18 @@ def _finding(model: type, detail: dict[str, Any], inlined: Inlined) -> Finding:
 def _shown(detail: dict[str, Any]) -> str:
     """The value of a fault, where one value is at fault."""
     value = detail["input"]
-    if detail["type"] in ("missing", "either_or"):
+    if detail["type"] == "missing":
         return ""
     if "remedy" in detail.get("ctx", {}) and isinstance(value, dict | None):
         return ""  # a fault between several values, or of one that is not there
-    return _short(value)
-
-
-def _short(value: Any) -> str:
     try:
-        text = repr(value)
-    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return shortened(repr(value))
+    except ValueError:  # Python does not print integers of more than 4300 digits
         return "a number of thousands of digits"
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, str]:
-    """What is wrong at a place of a file, and how to mend it."""
+    """What is wrong at a place of a file, and how to correct it."""
     kind, context, message = detail["type"], detail.get("ctx", {}), detail["msg"]
     words = [name for name in place if isinstance(name, str)]
     unit = units.label(words[-1]) if words else ""
@@ -194,14 +188,14 @@ def _follow(model: type, location: Location) -> tuple[type, Location]:
 
 def _choices(field: Any) -> dict[str, type | None]:
     """Alternatives of a field by their tags, with their parts."""
-    found: dict[str, type | None] = {}
+    choices: dict[str, type | None] = {}
     waiting = [field.annotation]
     while waiting:
         annotation = waiting.pop()
         tags = [m.tag for m in getattr(annotation, "__metadata__", ()) if isinstance(m, Tag)]
-        found |= {tag: _part_in(annotation) for tag in tags}
+        choices |= {tag: _part_in(annotation) for tag in tags}
         waiting += [] if tags else get_args(annotation)
-    return found
+    return choices
 
 
 def _part_in(annotation: Any) -> type | None:

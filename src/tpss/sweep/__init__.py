@@ -1,1 +1,1 @@
-"""Studies: many cases of one scenario, run on one machine or a cluster, kept as one table."""
+"""Studies: many cases of one scenario, run on one computer or a cluster, kept as one table."""

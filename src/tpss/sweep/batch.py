@@ -1,4 +1,4 @@
-"""Cases in a row, simulated in one process: what a worker does."""
+"""Successive cases, simulated in one process: the task of a worker."""
 
 import datetime as dt
 import gc
@@ -11,7 +11,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tpss.api import Prepared, build
+from tpss.api import build
 from tpss.errors import TpssError
 from tpss.many import key_figures
 from tpss.sweep.columns import (
@@ -32,7 +32,7 @@ from tpss.sweep.versions import versions
 
 @dataclass(frozen=True)
 class Plan:
-    """All that a worker has to know of a study, as text that goes to any machine."""
+    """All that a worker needs of a study, as text that can be sent to any computer."""
 
     study: str
     stations: tuple[str, ...]
@@ -68,10 +68,10 @@ def run_batch(plan: Plan, first: int, end: int) -> bytes:
 
 
 def warm_up(plan: Plan) -> None:
-    """Get a process ready: the first case compiles the kernels, or loads them.
+    """Prepare a process: the first case compiles the kernels, or loads them.
 
-    What there is then stays.  The garbage collector, which cases wake by their many objects, need not
-    look through it, a tenth of a second each time.
+    The objects that exist then are permanent, and excluded from garbage collection, which the many
+    objects of cases trigger and which would take a tenth of a second each time.
     """
     run_batch(plan, 0, 1)
     gc.collect()
@@ -79,26 +79,21 @@ def warm_up(plan: Plan) -> None:
 
 
 def run_case(design: Design, case: int) -> dict[str, Any]:
-    """Columns of one case; a case that cannot be simulated says why."""
+    """Columns of one case; for a case that cannot be simulated, the reason."""
     values = design.values(case)
     row: dict[str, Any] = {"case": case, **parameter_columns(design.parameters, values)}
     started = time.perf_counter()
     try:
         prepared = build(scenario_of(design, case))
-        row |= described(prepared)
+        scenario = prepared.scenario
+        row |= {**inputs_of(scenario)._asdict(), "scenario_hash": scenario.digest()}
         built = time.perf_counter()
         row |= output_columns(key_figures(prepared))
         row["timing.run_s"] = time.perf_counter() - built
         row["timing.build_s"] = built - started
     except TpssError as error:
         row |= {"status": INVALID, "problem": str(error)}
-    except Exception as error:  # one case that fails must not take the others with it
+    except Exception as error:  # one case that fails must not stop the others
         row |= {"status": FAILED, "problem": f"{type(error).__name__}: {error}"}
     row["timing.ended"] = dt.datetime.now(dt.UTC)
     return row
-
-
-def described(prepared: Prepared) -> dict[str, Any]:
-    """What a case is, in numbers, and the digest of its scenario."""
-    scenario = prepared.scenario
-    return {**inputs_of(scenario)._asdict(), "scenario_hash": scenario.digest()}

@@ -1,7 +1,7 @@
-"""Run a study on Dask: batches to the workers, files into the folder, as few at a time as suffice.
+"""Run a study on Dask: batches to the workers, files into the folder, few at a time.
 
-Workers make a case from its number, so that the scheduler holds a few batches and no scenarios, however
-many cases there are.
+Workers build a case from its number, so that the scheduler holds a few batches and no scenarios,
+whatever the number of cases.
 """
 
 import os
@@ -25,12 +25,12 @@ from tpss.sweep.study import Study
 from tpss.sweep.versions import versions
 
 BATCH_S = 1.0
-"""Time that a batch takes, about: a hundred times what Dask and the file system need for it."""
+"""Approximate time of a batch: a hundred times the overhead of Dask and the file system. [s]"""
 
 MOST_IN_BATCH = 5_000
 
 BATCHES_AHEAD = 2
-"""Batches a worker that are begun or wait to be."""
+"""Batches per worker that are running or waiting."""
 
 CONNECT_S = 10.0
 """How long a scheduler may take to answer. [s]"""
@@ -38,19 +38,19 @@ CONNECT_S = 10.0
 
 @dataclass(frozen=True)
 class Advance:
-    """Where a study stands."""
+    """Progress of a study."""
 
     cases: int
     done: int
-    """Cases whose rows are there."""
+    """Finished cases."""
     before: int
-    """Those of them that were there at the start."""
+    """Cases that were finished at the start."""
     elapsed_s: float
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study will take."""
+    """Expected time of a study."""
 
     cases: int
     case_s: float
@@ -61,11 +61,6 @@ class Estimate:
     def whole_s(self) -> float:
         """Time of all cases."""
         return self.cases * self.case_s / self.workers
-
-
-def default_workers() -> int:
-    """A worker for each core."""
-    return os.cpu_count() or 1
 
 
 def estimate(study: Study, workers: int | None = None) -> Estimate:
@@ -79,7 +74,7 @@ def estimate(study: Study, workers: int | None = None) -> Estimate:
     design = design_of(study)
     check(design)
     case_s = time_per_case(design)
-    return Estimate(design.cases, case_s, workers or default_workers())
+    return Estimate(design.cases, case_s, workers or os.cpu_count() or 1)
 
 
 def run_study(
@@ -96,7 +91,7 @@ def run_study(
     ----------
     study : Study
     folder : path
-        Made, or gone on with if it holds a part of this study.
+        Made, or continued if it holds a part of this study.
     scheduler : str, optional
         Address of a Dask scheduler; by default a local cluster is started.
     workers : int, optional
@@ -144,7 +139,7 @@ def _results(
     """Cases from the first to the one before the second, and their rows, as they are done."""
     if not todo:
         return
-    # This compiles the kernels too, before any worker could do so.
+    # This also compiles the kernels, before any worker does.
     case_s = time_per_case(design)
     with _client(scheduler, workers) as client:
         threads = sum(client.nthreads().values())
@@ -157,7 +152,7 @@ def _results(
 def _in_turn(
     client: distributed.Client, plan: Plan, waiting: Iterator[tuple[int, int]], ahead: int
 ) -> Iterator[tuple[int, int, bytes]]:
-    """Results of batches, of which only so many are with the scheduler at a time."""
+    """Results of batches, of which only a limited number is with the scheduler at a time."""
     own = uuid.uuid4().hex[:8]
     running = distributed.as_completed([], with_results=False)
     ranges: dict[str, tuple[int, int]] = {}
@@ -178,7 +173,7 @@ def _in_turn(
         except Exception as error:
             raise StudyError(
                 f"cases {first} to {end - 1} could not be run ({type(error).__name__}: {error}); the "
-                "others are kept, and the same command goes on from there"
+                "others are kept, and the same command continues from there"
             ) from error
         future.release()
         submit()
@@ -208,10 +203,10 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.
 
 
 def _local_cluster(workers: int | None) -> distributed.LocalCluster:
-    """Processes of one thread each on this machine."""
+    """Processes of one thread each on this computer."""
     try:
         return distributed.LocalCluster(
-            n_workers=workers or default_workers(),
+            n_workers=workers or os.cpu_count() or 1,
             threads_per_worker=1,
             dashboard_address="127.0.0.1:0",  # any free port, as 8787 may be taken
             silence_logs=50,
@@ -223,33 +218,33 @@ def _local_cluster(workers: int | None) -> distributed.LocalCluster:
 
 
 def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
-    """See to it that workers are of this version and have loaded the kernels.
+    """Ensure that workers are of this version and have loaded the kernels.
 
-    They are compiled once on each machine, by one worker, as many at once would all compile them.
+    One worker on each computer compiles them first, as otherwise every worker would compile them.
     """
     try:
-        found: dict[str, Any] = client.run(versions)
+        theirs: dict[str, Any] = client.run(versions)
     except Exception as error:
         raise StudyError(
             f"the workers cannot import TPSS ({error}); install the same version there, with its extra "
             "study"
         ) from error
-    demand_version(found)
-    hosts = {urlsplit(address).hostname: address for address in found}
+    demand_version(theirs)
+    hosts = {urlsplit(address).hostname: address for address in theirs}
     client.run(warm_up, plan, workers=list(hosts.values()))
     client.run(warm_up, plan)
 
 
-def demand_version(found: Mapping[str, Mapping[str, str]]) -> None:
+def demand_version(workers: Mapping[str, Mapping[str, str]]) -> None:
     """Demand that workers, by their addresses, are of this version.
 
     Raises
     ------
     StudyError
     """
-    for address, theirs in found.items():
-        if theirs != versions():
+    for address, version in workers.items():
+        if version != versions():
             raise StudyError(
-                f"the worker at {address} is of another version ({theirs}, here {versions()}); install "
+                f"the worker at {address} is of another version ({version}, here {versions()}); install "
                 "the same version there"
             )

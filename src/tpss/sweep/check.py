@@ -1,4 +1,4 @@
-"""Faults of a study that show before the first case is run, and how long it will take."""
+"""Faults of a study that can be found before the first case is run, and how long it will take."""
 
 import random
 import time
@@ -11,10 +11,10 @@ from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
 from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
-from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
+from tpss.sweep.design import Design, key_of
 
 SAMPLE = 100
-"""Cases that are built, drawn from the study, to find those that cannot be."""
+"""Number of cases, drawn from the study, that are built to find invalid ones."""
 
 TRIAL_S, TRIAL_CASES = 2.0, 20
 """How long, and with how many cases, the time of a case is measured at most."""
@@ -26,7 +26,7 @@ def check(design: Design) -> Names:
     Returns
     -------
     Names
-        Of all stations and services that were met.
+        Of all stations and services that occur.
 
     Raises
     ------
@@ -70,36 +70,29 @@ def _findings(error: TpssError, place: str) -> list[Finding]:
     return [Finding(place, "", "", str(error), "vary it less, or change the base scenario")]
 
 
-def key_of(name: str, design: Design) -> str:
-    """Where a parameter stands in the study file."""
-    if name in (MEAN, DEVIATION, PROFILE):
-        return name
-    return f"choices.{name}" if name in design.study.file.choices else f"vary.{name}"
-
-
 def _of_parameter(
     error: TpssError, design: Design, name: str, values: dict[str, Any]
 ) -> Iterator[Finding]:
-    """Findings of a scenario, told where the value stands that leads to them."""
+    """Findings of a scenario, reported at the study's value that leads to them."""
     source = str(design.study.source)
     for finding in _findings(error, source):
         problem, remedy = finding.problem, finding.remedy
         if finding.key and not _is_place_of(name, finding.key):
             shown = f" = {finding.value}" if finding.value else ""
-            problem = f"makes no scenario: {finding.key}{shown}: {problem}"
+            problem = f"the scenario is not valid: {finding.key}{shown}: {problem}"
         if finding.problem == "not a whole number" and design.parameters[name].low is not None:
             remedy = "add whole = true to the range"
-        yield Finding(source, key_of(name, design), repr(values[name]), problem, remedy)
+        yield Finding(source, key_of(name, design.study), repr(values[name]), problem, remedy)
 
 
 def _is_place_of(name: str, key: str) -> bool:
-    """Whether a key path is one of those that a path with ``*`` means."""
+    """Whether a key path matches a path with ``*``."""
     mine, other = name.split("."), key.split(".")
     return len(mine) == len(other) and all(a in ("*", b) for a, b in zip(mine, other, strict=True))
 
 
 def _of_case(error: TpssError, design: Design, case: int) -> list[Finding]:
-    """Findings of a scenario, told with the values that lead to them."""
+    """Findings of a scenario, reported with the values that lead to them."""
     values = design.values(case)
     together = ", ".join(f"{name} = {value!r}" for name, value in values.items())
     remedy = "vary less, or put values that belong together into choices"
@@ -107,7 +100,7 @@ def _of_case(error: TpssError, design: Design, case: int) -> list[Finding]:
         replace(
             finding,
             file=str(design.study.source),
-            problem=f"case {case} makes no scenario: {finding.problem} ({together})",
+            problem=f"case {case} is not valid: {finding.problem} ({together})",
             remedy=f"{finding.remedy}; {remedy}",
         )
         for finding in _findings(error, str(design.study.source))

@@ -1,4 +1,4 @@
-"""The columns of a study's table: what a case is, what came of it, how it was made."""
+"""The columns of a study's table: inputs and outputs of a case, and its provenance."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from tpss.sweep.inputs import Inputs
 from tpss.sweep.variation import Variation
 
 INVALID, FAILED = "invalid", "failed"
-"""States of cases that could not be simulated: no scenario, or a fault of the program."""
+"""States of cases that could not be simulated: invalid scenarios, and faults of the program."""
 
 TIMINGS = {
     "timing.build_s": pa.float64(),  # scenario and model
@@ -60,7 +60,7 @@ MADE_BY = {
 
 @dataclass(frozen=True)
 class Names:
-    """Names that the columns of a study are made of."""
+    """Names that occur in the columns of a study."""
 
     stations: tuple[str, ...]
     services: tuple[str, ...]
@@ -83,7 +83,7 @@ def schema_of(parameters: dict[str, Variation], names: Names) -> pa.Schema:
 
 
 def _parameter_type(parameter: Variation) -> pa.DataType:
-    """Numbers are numbers, all else is text."""
+    """Type of a parameter's column: flags, numbers, or text for anything else."""
     if parameter.is_text:
         return pa.string()
     values = parameter.ends
@@ -107,29 +107,13 @@ def parameter_columns(parameters: dict[str, Variation], values: dict[str, Any]) 
 
 
 def output_columns(figures: KeyFigures) -> dict[str, Any]:
-    """What came of a case."""
+    """Outputs of a case."""
     lowest, audit = figures.lowest_voltage, figures.audit.as_dict()
     return {
-        "status": figures.status,
         "problem": "; ".join(figures.audit.failures) or None,
         "collapsed": figures.status == "collapsed",
         "stalled": figures.status == "stalled",
-        **{
-            name: getattr(figures, name)
-            for name in (
-                "duration_min",
-                "steps",
-                "carried_share",
-                "trip_time_min",
-                "mean_speed_kmh",
-                "total_energy_mwh",
-                "losses_mwh",
-                "mean_useful_voltage_kv",
-                "dimensioning_train_kv",
-                "mean_passes",
-                "most_passes",
-            )
-        },
+        **{name: getattr(figures, name) for name in OUTPUTS if hasattr(figures, name)},
         "lowest_voltage_kv": lowest.voltage_kv if lowest else math.nan,
         "lowest_voltage_km": lowest.position_km if lowest else math.nan,
         "lowest_voltage_min": lowest.time_min if lowest else math.nan,
@@ -160,9 +144,9 @@ def _highest(values: Iterable[float]) -> float:
 
 
 def table_of(rows: list[dict[str, Any]], schema: pa.Schema) -> pa.Table:
-    """Table of cases; what a case does not have is null."""
+    """Table of cases; missing values are null."""
     columns = {
-        # From pandas' point of view what is not a number is null, so that every reader sees the same.
+        # As in pandas, NaN becomes null, so that every reader sees the same.
         field.name: pa.array([row.get(field.name) for row in rows], field.type, from_pandas=True)
         for field in schema
     }

@@ -1,7 +1,8 @@
-"""Scenarios of a study's cases: values put in their places, what depends on them moved along."""
+"""Scenarios of a study's cases: values are set, and what depends on them is adapted."""
 
 import math
 from collections.abc import Mapping
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.override import copy_of
 from tpss.scenario.scenario import Scenario
-from tpss.sweep.design import DEVIATION, MEAN, PROFILE, Design
+from tpss.sweep.design import DEVIATION, DRAWN, MEAN, PROFILE, Design
 from tpss.sweep.settings import Settings, apply
 
 
@@ -19,7 +20,7 @@ def scenario_of(design: Design, case: int) -> Scenario:
     Raises
     ------
     ScenarioError
-        The values of the case make no scenario.
+        The values of the case do not give a valid scenario.
     """
     return scenario_with(design, design.values(case), case)
 
@@ -30,7 +31,7 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
     Raises
     ------
     ScenarioError
-        They make no scenario.
+        They do not give a valid scenario.
     """
     study = design.study
     document = {**study.base, "name": f"{study.file.name}-{case}"}
@@ -42,7 +43,7 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
     for name, value in values.items():
         if name in study.file.choices:
             settings |= study.file.choices[name][value]
-        elif name not in (MEAN, DEVIATION, PROFILE):
+        elif name not in DRAWN:
             settings[name] = value
     apply(document, settings, study.source)
     if study.file.gradients is not None:
@@ -57,7 +58,7 @@ def draw_gradients(
     """Draw a gradient profile with exactly this mean and standard deviation over the line. [‰]
 
     Gradients of neighbouring pieces are correlated: each is ρ = exp(-piece / correlation) times the
-    one before, and a normal number.  Then the profile is shifted and stretched.
+    one before, and a normal number.  Then the profile is shifted and scaled.
     """
     drawn = design.study.file.gradients
     length_km = document["line"]["length_km"]
@@ -86,8 +87,4 @@ def draw_gradients(
 
 def _correlated(numbers: list[float], rho: float) -> list[float]:
     """Numbers of which each is ρ times the one before, and one of those given."""
-    found, last = [], 0.0
-    for number in numbers:
-        last = rho * last + number
-        found.append(last)
-    return found
+    return list(accumulate(numbers, lambda last, number: rho * last + number))

@@ -17,25 +17,33 @@ MEAN, DEVIATION, PROFILE = (
     "gradients.standard_deviation_permille",
     "gradients.profile",
 )
-"""Names of the parameters that a drawn gradient profile has."""
+DRAWN = (MEAN, DEVIATION, PROFILE)
+"""Names of the parameters of a drawn gradient profile."""
+
+
+def key_of(name: str, study: Study) -> str:
+    """Key of a parameter in the study file."""
+    if name in DRAWN:
+        return name
+    return f"choices.{name}" if name in study.file.choices else f"vary.{name}"
 
 
 def parameters_of(study: Study) -> dict[str, Variation]:
     """What varies in a study, by the names of the table's columns."""
-    found = dict(study.file.vary)
+    parameters = dict(study.file.vary)
     for name, options in study.file.choices.items():
-        found[name] = Variation(values=tuple(options))
+        parameters[name] = Variation(values=tuple(options))
     drawn = study.file.gradients
     if drawn is not None:
-        found |= {MEAN: drawn.mean_permille, DEVIATION: drawn.standard_deviation_permille}
+        parameters |= {MEAN: drawn.mean_permille, DEVIATION: drawn.standard_deviation_permille}
         if drawn.profile is not None:
-            found[PROFILE] = drawn.profile
-    return found
+            parameters[PROFILE] = drawn.profile
+    return parameters
 
 
 @dataclass(frozen=True)
 class Design:
-    """The cases of a study: each is known by its number alone."""
+    """The cases of a study, identified by their numbers."""
 
     study: Study
     parameters: dict[str, Variation]
@@ -65,12 +73,12 @@ class Design:
                 yield name, {**first, name: value}
 
     def _combination(self, case: int) -> dict[str, Any]:
-        """Combination of levels; those of the last parameter follow each other fastest."""
-        found = {}
+        """Combination of levels; those of the last parameter vary fastest."""
+        combination = {}
         for name, levels in reversed(list(zip(self.parameters, self._levels, strict=True))):
             case, place = divmod(case, len(levels))
-            found[name] = levels[place]
-        return {name: found[name] for name in self.parameters}
+            combination[name] = levels[place]
+        return {name: combination[name] for name in self.parameters}
 
     @cached_property
     def _levels(self) -> list[list[Any]]:
@@ -95,15 +103,15 @@ def design_of(study: Study) -> Design:
     Raises
     ------
     ScenarioError
-        A range of a grid does not say how many values it gives.
+        A range of a grid has no number of values.
     """
     parameters = parameters_of(study)
     findings = [
         Finding(
             str(study.source),
-            name if name in (MEAN, DEVIATION, PROFILE) else f"vary.{name}",
+            key_of(name, study),
             f"{{ low = {parameter.low:g}, high = {parameter.high:g} }}",
-            "a range in a grid that does not say how many values it gives",
+            "a range in a grid without a number of values",
             "add steps = 5, or list the values",
         )
         for name, parameter in parameters.items()

@@ -1,4 +1,4 @@
-"""The folder of a study: what it is, and a file of rows for each batch, written whole or not at all."""
+"""The folder of a study: a manifest, and one file of rows per batch, written whole or not at all."""
 
 import json
 import re
@@ -13,14 +13,16 @@ from tpss.errors import StudyError
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import write_file
 
-REMEDY = f"make room, or {ANOTHER}. What is there is kept, and the same command goes on from it"
+REMEDY = (
+    f"free space, or {ANOTHER}. Finished cases are kept, and the same command continues from them"
+)
 
 MANIFEST, CASES = "study.json", "cases"
 
 FORMAT_KEY, FORMAT = "table_format", 1
-"""Name and value of what a folder says of the way in which it is written.
+"""Key and number of the format in which a folder is written.
 
-It grows when a column is renamed, taken away or changes its meaning.
+It increases when a column is renamed, removed or changes its meaning.
 """
 
 _PART = re.compile(r"cases-(\d+)-(\d+)\.parquet")
@@ -37,7 +39,7 @@ class Folder:
 
     @contextmanager
     def opened(self, manifest: dict[str, Any]) -> Iterator[dict[str, Any]]:
-        """Make the folder, or go on with it; gives the manifest that it was begun with.
+        """Make the folder, or continue it; gives the manifest that it was begun with.
 
         Raises
         ------
@@ -100,7 +102,7 @@ LOCK = ".lock"
 
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """Keep other processes out, until this one ends, however it does."""
+    """Keep other processes out until this one ends, in whatever manner."""
     try:
         import fcntl
     except ImportError:  # not on Windows
@@ -111,13 +113,13 @@ def _lock(path: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise StudyError(
-                f"{path} is being worked on by another process; wait for it, or give another --out"
+                f"{path} is in use by another process; wait for it, or give another --out"
             ) from None
         yield
 
 
 def missing(done: Ranges, cases: int) -> Ranges:
-    """What lies between ranges of cases that are done."""
+    """Gaps between ranges of finished cases."""
     gaps, at = [], 0
     for first, end in [*done, (cases, cases)]:
         if first > at:
@@ -136,7 +138,7 @@ def batches(ranges: Ranges, size: int) -> Iterator[tuple[int, int]]:
 
 
 def read_manifest(path: Path) -> dict[str, Any]:
-    """What a folder of a study says of itself.
+    """Manifest of the folder of a study.
 
     Raises
     ------
@@ -156,7 +158,7 @@ def read_manifest(path: Path) -> dict[str, Any]:
 
 
 def load_table(folder: str | Path) -> pd.DataFrame:
-    """The table of a study, a row a case, as far as it is done.
+    """The table of a study, one row per finished case.
 
     Raises
     ------
@@ -167,11 +169,11 @@ def load_table(folder: str | Path) -> pd.DataFrame:
     import pyarrow.parquet as pq
 
     path = Path(folder)
-    found = read_manifest(path).get(FORMAT_KEY)
-    if found != FORMAT:
+    written = read_manifest(path).get(FORMAT_KEY)
+    if written != FORMAT:
         raise StudyError(
-            f"{path} was written by another version of TPSS: its format is {found}, this version reads "
-            f"{FORMAT}; read it with that version, or run the study again"
+            f"{path} was written by another version of TPSS: its format is {written}, this version "
+            f"reads {FORMAT}; read it with that version, or run the study again"
         )
     files = sorted((path / CASES).glob("*.parquet"))
     if not files:
@@ -182,8 +184,8 @@ def load_table(folder: str | Path) -> pd.DataFrame:
             tables.append(pq.read_table(file))
         except (OSError, pa.ArrowException) as error:
             raise StudyError(
-                f"{file} is damaged ({error}); delete it and run the study's command again, which makes "
-                "its cases anew"
+                f"{file} is damaged ({error}); delete it and run the study's command again, which "
+                "repeats its cases"
             ) from error
     table: pd.DataFrame = pa.concat_tables(tables).to_pandas()
     return table.sort_values("case", ignore_index=True)

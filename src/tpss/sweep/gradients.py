@@ -1,8 +1,8 @@
-"""What an approximator may be told of a line's gradients: numbers that any planner has, or can compute.
+"""Statistics of a line's gradients, as inputs of an approximator: any planner can compute them.
 
-Mean and standard deviation leave open where the steep pieces lie.  Three weighted means tell what counts
-most of that: how steep it is where trains start, towards which end the line climbs, and whether it
-climbs far from the converter stations or near them.
+Mean and standard deviation do not say where the steep sections are.  Three weighted means describe what
+matters most about that: how steep it is where trains start, towards which end the line climbs, and
+whether it climbs far from the feeding stations or near them.
 """
 
 import math
@@ -17,7 +17,7 @@ from tpss.scenario.line import Line
 Array = npt.NDArray[np.float64]
 
 START_KM = 2.0
-"""Way from a stand over which a rise costs most time; on the thesis's line the best of 2 to 12 km."""
+"""Distance from a start over which a rise costs most time; best of 2 to 12 km on the thesis's line."""
 
 
 class GradientStatistics(NamedTuple):
@@ -28,15 +28,15 @@ class GradientStatistics(NamedTuple):
     """Standard deviation over the line."""
     steepest: float
     starting: float
-    """Mean over the first `START_KM` of the studied train's way, or over all of it if it is shorter."""
+    """Mean over the first `START_KM` of the studied train's route, or over all of a shorter one."""
     trend: float
     """Rise of the straight line through the gradients, from the line's beginning to its end."""
     middle: float
-    """How much steeper it is far from converter stations than on average; NaN of a single one."""
+    """How much steeper it is far from feeding stations than on average; NaN for a single one."""
 
 
 class Weights(NamedTuple):
-    """What the gradient of each piece counts in a statistic that is a sum of them."""
+    """Weights of the gradients of all pieces in statistics that are weighted sums."""
 
     mean: Array
     starting: Array
@@ -53,11 +53,11 @@ def gradient_statistics(
     ----------
     line : Line
     begin_km, end_km : float
-        Ends of the studied train's way. [km]
+        Ends of the studied train's route. [km]
     stations_km : sequence of float
-        Positions of the converter stations, ascending. [km]
+        Positions of the feeding stations, ascending. [km]
     """
-    edges_km, permille = staircase(line)
+    edges_km, permille = gradient_profile(line)
     weights = weights_of(edges_km, begin_km, end_km, stations_km)
     mean = float(weights.mean @ permille)
     return GradientStatistics(
@@ -70,10 +70,10 @@ def gradient_statistics(
     )
 
 
-def staircase(line: Line) -> tuple[Array, Array]:
+def gradient_profile(line: Line) -> tuple[Array, Array]:
     """Edges [km] of the pieces of equal gradient over the whole line, and the gradients [‰]."""
     from_km = np.array([gradient.from_km for gradient in line.gradients])
-    # The outer gradients go on beyond the profile's ends.
+    # The outer gradients continue beyond the ends of the profile.
     from_km[0] = min(from_km[0], 0.0)
     edges_km = np.clip(np.append(from_km, np.inf), 0.0, line.length_km)
     return edges_km, np.array([gradient.permille for gradient in line.gradients])
@@ -95,7 +95,7 @@ def weights_of(
 
 
 def _trend(share: Array) -> Array:
-    r"""Weight up to a place, of the slope of the straight line that fits gradients g best.
+    r"""Cumulative weight of the slope of the straight line that fits gradients g best.
 
     .. math:: \int_0^1 12 (u - 1/2) \, g(u) \, du
 
@@ -105,19 +105,21 @@ def _trend(share: Array) -> Array:
 
 
 def _middle(edges_km: Array, stations_km: Array) -> Array:
-    r"""Weight up to a place, of the mean that counts what the stations at both sides see of a train.
+    r"""Cumulative weight of a mean by the resistance between a train and the stations at both sides.
 
     .. math:: \int_0^1 6 u (1 - u) \, g(u) \, du
 
-    between two neighbouring stations, with the place as a share u of the way from one to the other: a
-    train's current meets a resistance of the contact line in proportion to u (1 - u).  Of several pairs
-    of stations each counts by its distance.  NaN of a single station.
+    between two neighbouring stations, with the place as a share u of the distance from one to the other:
+    the resistance of the contact line that a train's current meets is proportional to u (1 - u).
+    Several pairs of stations are weighted by their distances.  NaN for a single station.
     """
-    ways_km = np.diff(stations_km)
-    if len(ways_km) == 0:
+    distances_km = np.diff(stations_km)
+    if len(distances_km) == 0:
         return np.full(len(edges_km), np.nan)
-    section = np.clip(np.searchsorted(stations_km, edges_km) - 1, 0, len(ways_km) - 1)
-    u = np.clip((edges_km - stations_km[section]) / ways_km[section], 0.0, 1.0)
+    section = np.clip(np.searchsorted(stations_km, edges_km) - 1, 0, len(distances_km) - 1)
+    u = np.clip((edges_km - stations_km[section]) / distances_km[section], 0.0, 1.0)
     before_km = stations_km[section] - stations_km[0]
-    counted: Array = (before_km + ways_km[section] * u**2 * (3.0 - 2.0 * u)) / ways_km.sum()
+    counted: Array = (
+        before_km + distances_km[section] * u**2 * (3.0 - 2.0 * u)
+    ) / distances_km.sum()
     return counted

@@ -1,15 +1,13 @@
-"""What a case is, in numbers that an approximator can learn from: computed from its scenario."""
+"""Inputs of a case, computed from its scenario, from which an approximator can learn."""
 
 import math
 from collections.abc import Sequence
-from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from tpss import library
 from tpss.model.supply import transformer_positions_km
+from tpss.scenario.fields import library_name
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import Catenary
 from tpss.sweep.gradients import gradient_statistics
 
 
@@ -18,11 +16,11 @@ class Inputs(NamedTuple):
 
     length_km: float
     route_km: float
-    """Way of the studied train."""
+    """Route of the studied train."""
     stops: int
     converter_stations: int
     station_distance_km: float
-    """Mean distance between neighbouring converter stations; NaN of a single one."""
+    """Mean distance between neighbouring feeding stations; NaN for a single one."""
     longest_station_distance_km: float
     converters: int
     """Installed, in all stations."""
@@ -39,28 +37,28 @@ class Inputs(NamedTuple):
     transformers: int
     """Between the stations."""
     feeding_distance_km: float
-    """Mean distance between neighbouring converter stations and transformers."""
+    """Mean distance between neighbouring feeding points."""
     headway_min: float
     """NaN if departures are listed."""
     trains_per_h: float
     """Of all services with a headway."""
     speed_limit_kmh: float
-    """Highest on the way of the studied train, of the line and of the train itself."""
+    """Highest on the route of the studied train, by the line and the train itself."""
     mean_speed_limit_kmh: float
     train_mass_t: float
     max_motor_current_a: float
-    """NaN of a train without this limit."""
+    """NaN for a train without this limit."""
     gradient_mean_permille: float
     gradient_std_permille: float
     """Standard deviation over the line."""
     steepest_permille: float
     """Steepest rise."""
     starting_gradient_permille: float
-    """Mean over the first 2 km of the studied train's way."""
+    """Mean over the first 2 km of the studied train's route."""
     gradient_trend_permille: float
     """Rise of the straight line through the gradients, from the line's beginning to its end."""
     gradient_middle_permille: float
-    """How much steeper it is far from converter stations than on average; NaN of a single one."""
+    """How much steeper it is far from feeding stations than on average; NaN for a single one."""
     time_step_min: float
 
 
@@ -75,8 +73,10 @@ def inputs_of(scenario: Scenario) -> Inputs:
     converters = [station.installed for station in supply.stations]
     ratings = [station.installed * station.unit_mva for station in supply.stations]
     headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]
-    limits = _over([(s.from_km, s.speed_kmh) for s in line.speed_limits], begin_km, end_km)
-    limits = [(way, min(speed, train.max_speed_kmh)) for way, speed in limits]
+    limits = [
+        (end - begin, min(speed, train.max_speed_kmh))
+        for begin, end, speed in line.speed_limits_between(begin_km, end_km)
+    ]
     gradients = gradient_statistics(line, begin_km, end_km, stations_km)
     return Inputs(
         length_km=line.length_km,
@@ -90,7 +90,7 @@ def inputs_of(scenario: Scenario) -> Inputs:
         converters=sum(converters),
         converters_per_station=sum(converters) / len(converters),
         converter_rating_mva=math.fsum(ratings),
-        catenary=_name_of(catenary),
+        catenary=library_name("catenaries", catenary),
         catenary_r_ohm_per_km=catenary.r_ohm_per_km,
         catenary_x_ohm_per_km=catenary.x_ohm_per_km,
         connection_x_ohm=catenary.connection_x_ohm,
@@ -100,7 +100,7 @@ def inputs_of(scenario: Scenario) -> Inputs:
         headway_min=_or_nan(first.headway_min),
         trains_per_h=sum(60.0 / headway for headway in headways),
         speed_limit_kmh=max(speed for _, speed in limits),
-        mean_speed_limit_kmh=sum(way * speed for way, speed in limits) / (end_km - begin_km),
+        mean_speed_limit_kmh=sum(km * speed for km, speed in limits) / (end_km - begin_km),
         train_mass_t=train.mass_t,
         max_motor_current_a=_or_nan(train.max_motor_current_a),
         gradient_mean_permille=gradients.mean,
@@ -121,25 +121,3 @@ def _mean_distance(places_km: Sequence[float]) -> float:
     if len(places_km) < 2:
         return math.nan
     return (places_km[-1] - places_km[0]) / (len(places_km) - 1)
-
-
-def _over(
-    staircase: Sequence[tuple[float, float]], begin_km: float, end_km: float
-) -> list[tuple[float, float]]:
-    """Ways [km] and values of a staircase over a stretch."""
-    ends = [*(place for place, _ in staircase[1:]), math.inf]
-    ways = [
-        (min(end, end_km) - max(place, begin_km), value)
-        for (place, value), end in zip(staircase, ends, strict=True)
-    ]
-    return [(way, value) for way, value in ways if way > 0.0]
-
-
-@cache
-def _catenaries() -> dict[str, Catenary]:
-    names = library.entries("catenaries")
-    return {name: Catenary.model_validate(library.values("catenaries", name)) for name in names}
-
-
-def _name_of(catenary: Catenary) -> str:
-    return next((name for name, known in _catenaries().items() if known == catenary), "own")

@@ -1,4 +1,4 @@
-"""Values by key paths in a scenario's document, each in all the places that its path means."""
+"""Values by key paths in a scenario's document, each in all the places that match its path."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -13,12 +13,12 @@ Settings = dict[str, Any]
 """Values by the key paths of a scenario, in which ``*`` is any item or key."""
 
 LEFT_OUT = "none"
-"""Stands for a key of the scenario that is left out, which TOML has no word for."""
+"""Marks a key of the scenario as left out; TOML has no null."""
 
 LENGTH = "line.length_km"
 
 PLACES = tuple(marked(Scenario, AlongLine))
-"""What moves with the end of the line, in proportion.  The ground, that is the gradients, stays."""
+"""Positions that scale with the length of the line; those of gradients do not."""
 
 INSTEAD_OF = {
     "transformers": "transformers_km",
@@ -29,7 +29,7 @@ INSTEAD_OF = {
     "until": "duration_min",
     "gradients": "gradients_file",
 }
-"""Keys that take the place of another one."""
+"""Keys that replace another one."""
 
 
 def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -> None:
@@ -38,7 +38,7 @@ def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -
     Raises
     ------
     ScenarioError
-        A path leads to no place; it is told as one of `source`.
+        A path leads to no place; the finding names `source`.
     """
     values = {
         path: None if isinstance(value, str) and value == LEFT_OUT else copy_of(value)
@@ -51,17 +51,17 @@ def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -
 
 
 def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
-    """Put values of a document in all the places that their paths mean."""
+    """Put values of a document in all the places that match their paths."""
     changes: dict[str, Any] = {}
     for path, value in settings.items():
-        found = list(places_of(document, path))
-        if not found:
+        places = list(places_of(document, path))
+        if not places:
             problem = "there is no such place in the base scenario"
             remedy = (
                 "name tables by their keys, list items by their number from 0 or all of them by *"
             )
             raise ScenarioError([Finding(str(source), path, repr(value), problem, remedy)])
-        for place in found:
+        for place in places:
             above, _, key = place.rpartition(".")
             if key in INSTEAD_OF and value is not None:
                 changes[f"{above}.{INSTEAD_OF[key]}"] = None
@@ -70,7 +70,7 @@ def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
 
 
 def places_of(document: Any, path: str) -> Iterator[str]:
-    """Key paths that a path with ``*`` means in a document."""
+    """Key paths that match a path with ``*`` in a document."""
     before, star, after = path.partition("*")
     if not star:
         yield path
@@ -94,7 +94,7 @@ def _item(container: Any, key: str) -> Any:
 
 
 def _move_places(document: dict[str, Any], length_km: float) -> None:
-    """Give a line another length; what stands along it moves in proportion."""
+    """Change the length of a line; positions along it scale with it."""
     before_km = _item(_item(document, "line"), "length_km")
     if isinstance(before_km, int | float) and isinstance(length_km, int | float) and before_km > 0:
         for place in (place for pattern in PLACES for place in places_of(document, pattern)):
@@ -105,6 +105,6 @@ def _move_places(document: dict[str, Any], length_km: float) -> None:
             position = _item(container, last)
             if isinstance(position, int | float):
                 key_or_number: Any = int(last) if isinstance(container, list) else last
-                # Multiplied first, what stands at the end stands there exactly.
+                # Multiplied first, a position at the end stays exactly there.
                 container[key_or_number] = position * length_km / before_km
     document["line"]["length_km"] = length_km

@@ -27,7 +27,7 @@ class Gradients(Part):
     )
     profile: Variation | None = Field(
         default=None,
-        description="Number that the profile is drawn from; by default each case has its own.",
+        description="Seed of the profile; by default each case has its own.",
     )
     piece_km: Real = Field(
         default=1.0, ge=0.01, le=100, description="Length over which the gradient stays the same."
@@ -48,14 +48,14 @@ class StudyFile(Part):
         description="Short name."
     )
     description: str = Field(default="", description="What the study is about.")
-    scenario: str = Field(description="Scenario file that all cases start from, beside the study.")
+    scenario: str = Field(description="Scenario file that all cases start from, next to the study.")
     design: Literal["grid", "latin-hypercube", "sobol"] = Field(
-        description="How cases are drawn: all combinations, or so many points of the space."
+        description="How cases are drawn: all combinations, or a number of points of the space."
     )
     cases: Whole | None = Field(
         default=None, ge=1, le=10_000_000, description="Number of cases; a grid has its own."
     )
-    seed: Whole = Field(default=0, ge=0, description="Number that all draws follow from.")
+    seed: Whole = Field(default=0, ge=0, description="Seed of the random numbers.")
     set: Settings = Field(default={}, description="Values that all cases share, by key path.")
     vary: dict[str, Variation] = Field(default={}, description="What varies, by key path.")
     choices: dict[str, Annotated[dict[str, Settings], Field(min_length=1)]] = Field(
@@ -68,11 +68,11 @@ class StudyFile(Part):
         if self.design == "grid" and self.cases is not None:
             raise fault("a grid has as many cases as combinations", "leave cases out")
         if self.design != "grid" and self.cases is None:
-            raise fault(f"how many cases does the {self.design} have?", "add cases = 256")
+            raise fault(f"the {self.design} needs a number of cases", "add cases = 256")
         if not (self.vary or self.choices or self.gradients):
             raise fault("nothing varies", "add a table vary, choices or gradients")
         for name in sorted(set(self.vary) & set(self.choices)):
-            raise fault(f"{name} stands in vary and in choices", "leave one of them out")
+            raise fault(f"{name} is in vary and in choices", "leave one of them out")
         return self
 
 
@@ -89,9 +89,9 @@ class Study:
 
     @property
     def digest(self) -> str:
-        """Digest of all that decides what a case is.
+        """Digest of everything that determines a case.
 
-        A Sobol sequence goes on where it ended, so the number of its cases does not count.
+        A Sobol sequence can be continued, so the number of its cases does not count.
         """
         document = self.file.model_dump(mode="json")
         for key in ("name", "description", *(["cases"] if self.file.design == "sobol" else [])):
@@ -100,7 +100,7 @@ class Study:
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def as_json(self) -> str:
-        """The study as text, from which `study_of_json` makes it again, on any machine."""
+        """The study as text, from which `study_of_json` restores it, on any computer."""
         return json.dumps(
             {
                 "file": self.file.model_dump(mode="json", exclude_none=True),
@@ -133,7 +133,7 @@ def load_study(path: str | Path) -> Study:
     source = Path(path)
     document = read_toml(source)
     if {"trains", "traffic"} <= document.keys():
-        remedy = "run it by tpss run, or name it in a study"
+        remedy = "run it with tpss run, or name it in a study"
         raise ScenarioError([Finding(str(source), "", "", "a scenario, not a study", remedy)])
     for key in ("set", "vary"):
         if isinstance(document.get(key), dict):
@@ -150,7 +150,7 @@ def load_study(path: str | Path) -> Study:
 
 
 def _load_base(base_source: Path, source: Path, name: str) -> dict[str, Any]:
-    """Document of a sound base scenario, with the files that it names."""
+    """Document of a valid base scenario, with the files that it names."""
     try:
         inlined = inline_files(read_toml(base_source), base_source)
         if inlined.findings:
@@ -158,7 +158,7 @@ def _load_base(base_source: Path, source: Path, name: str) -> dict[str, Any]:
         Scenario.from_document(inlined.document, base_source)
     except ScenarioError as error:
         problem = f"the base scenario has {len(error.findings)} fault(s), listed below"
-        remedy = "mend them, or name another scenario"
+        remedy = "correct them, or name another scenario"
         first = Finding(str(source), "scenario", repr(name), problem, remedy)
         raise ScenarioError([first, *error.findings]) from error
     return inlined.document

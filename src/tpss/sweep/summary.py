@@ -13,7 +13,7 @@ SHOWN = {
     "mean_useful_voltage_kv": "mean useful voltage [kV]",
     "peak_loading": "peak loading [1]",
 }
-"""Columns of which the spread is told, of the cases that finished."""
+"""Columns whose spread is shown, over the cases that finished."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Summary:
     """Lowest, median and highest value of columns that have any, of the cases that finished."""
     audits_failed: int
     problems: dict[str, int]
-    """Words of what could not be run, and how often."""
+    """Problems of cases that could not be run, and how often they occur."""
     work_s: float
     """Time of all cases, added up over the workers."""
 

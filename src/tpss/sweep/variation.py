@@ -1,4 +1,4 @@
-"""What one parameter of a study may be: some values, or a range."""
+"""Values of one parameter of a study: a list, or a range."""
 
 import math
 from collections.abc import Mapping
@@ -51,10 +51,11 @@ class Variation(Part):
             raise fault("a range without both ends", "write { low = 5.0, high = 30.0 }")
         if not self.low < self.high:
             problem = f"an empty range, {self.low:g} to {self.high:g}"
-            raise fault(problem, "let low be less than high, or list the values")
+            raise fault(problem, "set low below high, or list the values")
         if self.scale == "log" and self.low <= 0.0:
             raise fault(
-                "a logarithm of what is not positive", 'let low be positive, or scale = "linear"'
+                "a logarithmic range from a number that is not positive",
+                'set low above 0, or scale = "linear"',
             )
         if self.whole and not (self.low.is_integer() and self.high.is_integer()):
             raise fault("a range of whole numbers with other ends", "write whole numbers")
@@ -83,7 +84,7 @@ class Variation(Part):
 
     @cached_property
     def is_text(self) -> bool:
-        """Whether its values are text to a table: neither numbers alone nor flags alone."""
+        """Whether its values are text in a table: neither all numbers nor all flags."""
         if all(isinstance(value, bool) for value in self.ends):
             return False
         return any(
@@ -91,7 +92,7 @@ class Variation(Part):
         )
 
     def at(self, share: float) -> Any:
-        """Value at a share of the way from the first to the last one, 0 <= share < 1."""
+        """Value at a share of the distance from the first to the last one, 0 <= share < 1."""
         if self.values is not None:
             return self.values[int(share * len(self.values))]
         if not self.whole:
@@ -117,7 +118,7 @@ class Variation(Part):
 
 
 def flattened(table: Mapping[str, Any], *, is_variation: bool, above: str = "") -> dict[str, Any]:
-    """A table with key paths for keys: ``traffic.0.headway_min`` may be written with or without quotes.
+    """A table with key paths as keys: ``traffic.0.headway_min`` may be written with or without quotes.
 
     Parameters
     ----------

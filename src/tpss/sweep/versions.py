@@ -1,4 +1,4 @@
-"""Which program makes the rows of a table."""
+"""Versions of the program that creates the rows of a table."""
 
 from functools import cache
 from importlib.metadata import version
@@ -9,11 +9,7 @@ from tpss.kernel import source_digest
 
 
 @cache
-def _versions() -> tuple[tuple[str, str], ...]:
-    package = Path(tpss.__file__).parent
-    return (("tpss_version", version("tpss")), ("kernel_hash", source_digest(package)))
-
-
 def versions() -> dict[str, str]:
     """Version of TPSS, and digest of its kernels' sources and of numba's version."""
-    return dict(_versions())
+    package = Path(tpss.__file__).parent
+    return {"tpss_version": version("tpss"), "kernel_hash": source_digest(package)}

@@ -3,9 +3,8 @@
 from typing import Self
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import Part, Real
+from tpss.scenario.fields import Part, Real, fault
 
 SMALLEST_OHM = 0.0001
 """Lumped impedances smaller than this are lost in the rounding of voltages. [Ω]"""
@@ -27,15 +26,11 @@ class Catenary(Part):
     )
 
     @model_validator(mode="after")
-    def _a_connection_has_an_impedance_that_counts(self) -> Self:
+    def _connection_impedance_is_resolved(self) -> Self:
         impedance_ohm = abs(complex(self.connection_r_ohm, self.connection_x_ohm))
         if 0.0 < impedance_ohm < SMALLEST_OHM:
-            raise PydanticCustomError(
-                "conflict",
-                "the connection impedance ({impedance} ohm) is next to nothing",
-                {
-                    "impedance": impedance_ohm,
-                    "remedy": f"give at least {SMALLEST_OHM:g} ohm, or 0: no connection impedance",
-                },
+            raise fault(
+                f"the connection impedance ({impedance_ohm} ohm) is too small to be resolved",
+                f"give at least {SMALLEST_OHM:g} ohm, or 0: no connection impedance",
             )
         return self

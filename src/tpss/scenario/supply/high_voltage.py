@@ -3,9 +3,17 @@
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from tpss.scenario.fields import FromLibrary, Part, Position, Real, Whole, ascending_numbers, one_of
+from tpss.scenario.fields import (
+    FromLibrary,
+    Part,
+    Position,
+    Real,
+    Whole,
+    ascending,
+    either_or,
+    one_of,
+)
 from tpss.scenario.supply.catenary import SMALLEST_OHM
 
 
@@ -35,9 +43,9 @@ class HighVoltageLine(Part):
     type: Annotated[LineType, FromLibrary("high_voltage_lines")] = Field(
         description="Library name, or a table of your own."
     )
-    transformers_km: (
-        Annotated[tuple[Position, ...], ascending_numbers("transformers_km")] | None
-    ) = Field(default=None, description="Positions of the transformers between stations.")
+    transformers_km: Annotated[tuple[Position, ...], ascending("transformers_km")] | None = Field(
+        default=None, description="Positions of the transformers between stations."
+    )
     transformers: Whole | None = Field(
         default=None,
         ge=0,
@@ -54,11 +62,7 @@ class HighVoltageLine(Part):
     )
 
     @model_validator(mode="after")
-    def _one_way_to_place_transformers(self) -> Self:
+    def _transformers_are_placed_once(self) -> Self:
         if (self.transformers_km is None) == (self.transformers is None):
-            raise PydanticCustomError(
-                "either_or",
-                "give either {first} or {second}",
-                {"first": "transformers_km", "second": "transformers"},
-            )
+            raise either_or("transformers_km", "transformers")
         return self

@@ -16,7 +16,7 @@ Station = ConverterStation | TransformerStation
 """A feeding station of any kind."""
 
 STATIONS = ("converter_stations", "transformer_stations")
-"""Keys of the supply under which feeding stations stand, in the order of the results."""
+"""Keys of the supply that list feeding stations, in the order of the results."""
 
 
 def _frequency_of_the_system(data: dict[str, Any]) -> float:

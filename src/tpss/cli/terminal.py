@@ -1,0 +1,51 @@
+"""What several commands print: progress bars, plain lines, and that the kernels are compiled."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+
+
+def say(console: Console, text: str) -> None:
+    """Print a text as it is, on one line."""
+    console.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def announce_compilation(console: Console) -> None:
+    """Print that the kernels have to be compiled, if they have."""
+    from tpss.run.kernels import are_ready
+
+    if not are_ready():
+        console.print("Compiling the numerical kernels; this takes up to a minute, once.")
+
+
+@contextmanager
+def progress_bar(
+    name: str, detail: str, state_of: Callable[..., dict[str, Any]], console: Console
+) -> Iterator[Callable[..., None] | None]:
+    """A progress bar; gives the callable to report to, or None if the console is quiet.
+
+    Parameters
+    ----------
+    name, detail : str
+        What stands before and after the bar.
+    state_of : callable
+        Turns what is reported into fields of a task.
+    console : Console
+    """
+    if console.quiet:
+        yield None
+        return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn(detail),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(escape(name), total=None, detail="")
+        yield lambda *state: bar.update(task, **state_of(*state))
