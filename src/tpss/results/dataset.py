@@ -141,7 +141,7 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "node": ("node", plan.nodes, of("", "node")),
         "node_kind": ("node", plan.node_kinds, NODE_KIND),
         "node_position": ("node", node_m, of("m", "position of the node")),
-        "station": ("station", list(layout.stations), of("", "converter station")),
+        "station": ("station", list(layout.stations), of("", "feeding station")),
         "station_position": ("station", np.array(layout.station_m), of("m", "position")),
         "branch": ("branch", plan.branch_labels(), of("", "branch")),
         "branch_kind": ("branch", plan.branch_kind_of_each(), of("", "what the branch is")),
