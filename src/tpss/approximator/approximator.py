@@ -86,7 +86,8 @@ class Approximator:
             For each output its value and the ends of its 90 % interval, ``NAME``, ``NAME.low`` and
             ``NAME.high``, in the output's unit; NaN where the line probably cannot
             carry its load.  ``collapse_probability`` is the probability of that, with the lowest and
-            the highest one of the ensemble's members; it is missing if no trained line collapsed.  ``outside`` is empty within the trained region.
+            the highest one of the ensemble's members; it is missing if no trained line collapsed.
+            ``outside`` is empty within the trained region.
 
         Raises
         ------

@@ -75,7 +75,7 @@ class ChoiceInput(Part):
 
     @property
     def cells(self) -> int:
-        """Number of cells, one a value."""
+        """Number of cells, one per value."""
         return len(self.values)
 
     def cell(self, values: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Figures of results for print, one function a figure.
+"""Figures of results for print, one function per figure.
 
 Those of one train or of stations take runs by their labels and overlay them: the first solid, the next
 dashed, then dash-dotted.  All return a matplotlib figure, which is neither shown nor saved:
