@@ -119,23 +119,10 @@ MEANINGS = {
     "TrainType.coasting_inertia_kg": "inertia of a train that the aggressive driver lets coast",
     "TrainType.rotor_mass_kg": r"inertia of the motors as a mass at the wheel rim, $4 K_J (\kappa + 1)$",
     "TrainType.slip_factor": "circumferential speed of the driven wheels over speed",
-    "TrainType.resistance.a_n": "running resistance $A + B v + C v^2$",
-    "TrainType.resistance.b_n_s_per_m": "...",
-    "TrainType.resistance.c_n_s2_per_m2": "...",
     "Demand.per_efficiency": "reciprocal of the efficiency from pantograph to motor shaft",
     "Demand.bridge_sine": "sine of the bridges' firing angle, before it is limited to 0 to 1",
-    "TrainType.networks.tractive_effort": "largest force of all motors",
-    "TrainType.networks.bridge_sine": "sine of the bridges' firing angle",
-    "TrainType.networks.power_factor": "power factor",
-    "Section.start_node": "node at its start",
-    "Section.end_node": "node at its end",
-    "Section.block_ab": "...",
-    "Section.block_ba": "...",
-    "Section.block_bb": "...",
-    "Branch.start_node": "node at its start",
-    "Branch.end_node": "node at its end",
 }
-"""Meanings of fields that have no words of their own, or a formula in them."""
+"""Meanings of fields that have a formula in them."""
 
 
 def page() -> str:

@@ -1,10 +1,16 @@
 """Every equation leads to its code, and every citation to the bibliography."""
 
 import ast
+import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+
+from scenarios import SHORT_LINE
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "tpss"
@@ -120,3 +126,76 @@ def test_every_curve_and_network_cites_its_source():
             if isinstance(node, ast.FunctionDef) and node.name not in helpers:
                 cited = re.search(r"\[\w+\d{4}\]_", ast.get_docstring(node) or "")
                 assert cited, (name, node.name)
+
+
+BRIDGES = {"trains.freight.reactive_power": "double-bridge", "trains.freight.efficiency": 0.8}
+CASES = {
+    "a stop within whole steps": {
+        "simulation.time_step_min": 1.0,
+        "traffic.0.stops": [{"station": "Middle", "dwell_min": 1.0}],
+        "supply.converter_stations.0.control": "loading",
+    },
+    "the original program": {
+        "simulation.driver": "aggressive",
+        "simulation.time_step_min": 0.5,
+        "simulation.duration_min": 3.0,
+        "simulation.load_flow": "least-squares",
+        "trains.freight.motor_voltage": "former",
+        "trains.freight.motor_current": "former",
+        "trains.freight.filter_reactance_ohm": -0.45,
+        **BRIDGES,
+    },
+    "at the limit of rails and machine": {
+        "simulation.time_step_min": 0.5,
+        "simulation.duration_min": 6.0,
+        "simulation.rail": "wet",
+        **BRIDGES,
+    },
+}
+"""Changes of a short line by the name of the case; together they exercise every equation."""
+
+SCRIPT = """
+import json, sys, warnings
+from pathlib import Path
+called = set()
+def note(frame, event, _):
+    if event == "call":
+        called.add((frame.f_code.co_filename, frame.f_code.co_name))
+import tpss
+changes = json.load(sys.stdin)
+sys.setprofile(note)
+result = tpss.simulate(tpss.Scenario.from_document(changes.pop("document"), "case").with_(changes))
+sys.setprofile(None)
+assert result.audit["passed"], result.audit
+folder = Path(tpss.__file__).parent
+inside = [(Path(f), name) for f, name in called if f.startswith(str(folder))]
+print(json.dumps([[f.relative_to(folder).as_posix(), name] for f, name in inside]))
+"""
+
+
+@pytest.fixture(scope="module")
+def called(tmp_path_factory):
+    """Functions that the cases call, as pairs of file and name, with the first case that does."""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(SOURCE.parent)}
+    found = {}
+    for case, changes in CASES.items():
+        done = subprocess.run(
+            [sys.executable, "-W", "error", "-c", SCRIPT], env=environment, text=True,
+            input=json.dumps({**changes, "document": SHORT_LINE}), capture_output=True, check=False,
+            cwd=tmp_path_factory.mktemp("case"),
+        )  # fmt: skip
+        assert done.returncode == 0, (case, done.stderr[-2000:])
+        for file, name in json.loads(done.stdout):
+            found.setdefault((file, name), case)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("equations", "file", "name"), [(equations, file, name) for equations, file, name, _ in ROWS]
+)
+def test_an_equation_is_exercised_by_a_case(called, equations, file, name):
+    """Where an equation stands in the opening text of a file, any of its functions counts."""
+    if name.startswith("("):
+        assert any(place == file for place, _ in called)
+    else:
+        assert (file, name.strip("`")) in called, f"no case computes {equations}"

@@ -16,7 +16,7 @@ from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step
-from tpss.step.coupling import decide, settle_all
+from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data
 from tpss.step.state import State
 
@@ -65,7 +65,7 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
             return share
         for place in state.flow.standing[:count]:
             state.trains[place.train].demand.voltage_v = abs(place.voltage_v)
-        if settle_all(count, model, state):
+        if apply_solutions(count, model, state):
             return share
 
 

@@ -96,16 +96,52 @@ CONVERTER_STATIONS = st.fixed_dictionaries(
 )
 
 
+TRANSFORMERS = st.fixed_dictionaries(
+    {"rated_mva": numbers(5.0, 60.0)},
+    optional={"load_loss_kw": numbers(0.0, 40.0)},
+)
+
+
+def transformer_stations(no_load_kv: tuple[float, float]) -> st.SearchStrategy[Document]:
+    """Transformer stations, ideal ones too, at strong and weak grids."""
+    percent = st.one_of(numbers(2.0, 20.0), numbers(2.0, 20.0), st.just(0.0))
+
+    def with_percent(unit: Document, short_circuit_percent: float) -> Document:
+        losses = {} if short_circuit_percent == 0.0 else unit
+        rated = {"rated_mva": unit["rated_mva"], "short_circuit_percent": short_circuit_percent}
+        return {**losses, **rated}
+
+    return st.fixed_dictionaries(
+        {
+            "no_load_voltage_kv": numbers(*no_load_kv),
+            "transformer": st.builds(with_percent, TRANSFORMERS, percent),
+        },
+        optional={
+            "transformers": st.integers(1, 3),
+            "grid_short_circuit_mva": numbers(200.0, 5000.0),
+            "grid_r_over_x": numbers(0.0, 1.0),
+        },
+    )
+
+
 @st.composite
 def supplies(draw: Draw, length_km: float) -> Document:
-    """One to five converter stations anywhere, perhaps a high-voltage line."""
+    """One to five converter stations anywhere, perhaps a high-voltage line.
+
+    A few of the stations are transformer stations.
+    """
     kms = draw(places_km(length_km, 1, 5))
+    by_grid = draw(st.integers(0, 1)) if draw(st.integers(0, 7)) == 7 else 0
     supply = {
         "frequency_hz": 16.7,
         "catenary": draw(st.one_of(st.sampled_from(["BT", "AT"]), OWN_CATENARIES)),
         "converter_stations": [
             {"name": f"C{i}", "position_km": km, **draw(CONVERTER_STATIONS)}
-            for i, km in enumerate(kms)
+            for i, km in enumerate(kms[by_grid:])
+        ],
+        "transformer_stations": [
+            {"name": f"T{i}", "position_km": km, **draw(transformer_stations((15.5, 17.0)))}
+            for i, km in enumerate(kms[:by_grid])
         ],
     }
     if draw(st.booleans()):
@@ -205,6 +241,54 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
     return entry
 
 
+EMUS = st.fixed_dictionaries(
+    {
+        "tractive_effort": st.fixed_dictionaries(
+            {"max_force_kn": numbers(50.0, 400.0), "max_power_kw": numbers(500.0, 9000.0)},
+            optional={"limit_speed_kmh": numbers(80.0, 300.0)},
+        ),
+        "mass_t": numbers(80.0, 900.0),
+        "adhesive_mass_t": numbers(40.0, 80.0),
+        "resistance_a_n": numbers(0.0, 10_000.0),
+        "resistance_b_n_s_per_m": numbers(0.0, 300.0),
+        "resistance_c_n_s2_per_m2": numbers(0.0, 20.0),
+        "max_speed_kmh": numbers(40.0, 300.0),
+        "max_retardation_m_s2": numbers(0.2, 1.5),
+        "efficiency": numbers(0.6, 1.0),
+        "auxiliary_power_kw": numbers(0.0, 800.0),
+        "power_factor": numbers(0.8, 1.0),
+    },
+    optional={
+        "max_acceleration_m_s2": numbers(0.2, 1.5),
+        "rotating_mass_factor": numbers(0.0, 0.2),
+        "current_limitation": st.fixed_dictionaries(
+            {"max_current_a": numbers(300.0, 1000.0)},
+            optional={"knee_factor": numbers(0.8, 1.0)},
+        ).map(lambda limit: {**limit, "un_kv": 25.0, "umin2_kv": 17.5}),
+    },
+)
+"""Trains with converters, whose auxiliaries stay within their current limitation."""
+
+
+def on_25_kv(draw: Draw, document: Document) -> Document:
+    """A scenario with the supply and the trains of a 25 kV, 50 Hz railway."""
+    supply = document["supply"]
+    stations = [
+        {"name": station["name"], "position_km": station["position_km"],
+         **draw(transformer_stations((25.0, 28.5)))}
+        for kind in ("converter_stations", "transformer_stations") for station in supply[kind]
+    ]  # fmt: skip
+    return {
+        **document,
+        "supply": {
+            "system": "25kV-50Hz",
+            "catenary": draw(OWN_CATENARIES),
+            "transformer_stations": stations,
+        },
+        "trains": {name: draw(EMUS) for name in document["trains"]},
+    }
+
+
 @st.composite
 def sound_scenarios(draw: Draw) -> Document:
     """A scenario without faults, but for trains that may be placed too fast to stop."""
@@ -217,6 +301,8 @@ def sound_scenarios(draw: Draw) -> Document:
         "supply": draw(supplies(line["length_km"])),
         "trains": {f"train {i}": draw(TRAINS) for i in range(draw(st.integers(1, 2)))},
     }
+    if draw(st.integers(0, 4)) == 4:
+        document = on_25_kv(draw, document)
     step = document["simulation"]["time_step_min"]
     span_min = step * draw(STEPS)
     slowest_kmh = min(20.0, *(limit["speed_kmh"] for limit in line["speed_limits"]))

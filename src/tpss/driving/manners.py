@@ -17,12 +17,12 @@ and in the file of its formulas
 
 from tpss.driving import braking, course, whole_steps, within_step
 from tpss.driving.data import Braking, DrivingData, Options
-from tpss.kernel import inlined
+from tpss.kernel import inlined, kernel
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
 
-@inlined
+@kernel
 def stopping_distance(speed_m_s: float, retardation_m_s2: float, options: Options) -> float:
     """Shortest distance in which a train stops. [m]"""
     if options.braking == Braking.WITHIN_STEP:

@@ -70,7 +70,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     limit = min(limits.value[here], kind.highest_speed_m_s)
     stop_m = min(m for m in service.stops_m if m > position_m)
     problem = ""
-    if speed > limit and model.options.driver == Driver.REGULATED:
+    if speed > limit and model.options.driver != Driver.AGGRESSIVE:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif plain(stopping_distance)(speed, retardation, model.options) > stop_m - position_m:
         problem = f"too fast to stop at {stop_m / 1e3:g} km"

@@ -12,11 +12,11 @@ class DavisCoefficients(Record):
     """Running resistance of a whole train on straight level track, R = a + b v + c v²."""
 
     a_n: float
-    """A. [N]"""
+    """Constant part, A. [N]"""
     b_n_s_per_m: float
-    """B. [N s/m]"""
+    """Part that grows with the speed, B. [N s/m]"""
     c_n_s2_per_m2: float
-    """C. [N s²/m²]"""
+    """Part that grows with its square, C. [N s²/m²]"""
 
 
 @inlined

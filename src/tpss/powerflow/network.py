@@ -35,7 +35,9 @@ class Section(Record):
     """A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
 
     start_node: int
+    """Node at which it begins."""
     end_node: int
+    """Node at which it ends."""
     start_m: float
     """Where it begins. [m]"""
     end_m: float
@@ -45,10 +47,13 @@ class Section(Record):
     susceptance_s_per_m: float
     """Shunt susceptance. [S/m]"""
     block_aa: int
-    """Places of its blocks: a is the start node, b the end node."""
+    """Place of the block (start node, start node)."""
     block_ab: int
+    """Place of the block (start node, end node)."""
     block_ba: int
+    """Place of the block (end node, start node)."""
     block_bb: int
+    """Place of the block (end node, end node)."""
     gap_weight: float
     """Square of the power at its ends that a gap causes, both in per unit. [1]"""
 
@@ -57,7 +62,9 @@ class Branch(Record):
     """A lumped impedance."""
 
     start_node: int
+    """Node at its start."""
     end_node: int
+    """Node at its end."""
     impedance_ohm: complex
     """Series impedance. [Ω]"""
     admittance_s: complex

@@ -3,7 +3,7 @@
 The equations are those of `physics.locomotive`; the slopes serve Newton's method.
 """
 
-from tpss.kernel import fused, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.physics.locomotive import acceleration, machine_force, motor_power
 from tpss.physics.motor import armature_current
 from tpss.vehicle.terms import Demand
@@ -33,7 +33,7 @@ def billed_speed(force_n: float, kind: TrainType, demand: Demand) -> tuple[float
     return max(0.0, demand.speed_m_s + weight * a), slope
 
 
-@fused
+@inlined
 def billed_power(
     motor_force_n: float, driven_share: float, kind: TrainType, demand: Demand
 ) -> tuple[float, float, float, float]:

@@ -103,7 +103,7 @@ def certify_free_band(kind: TrainType, demand: Demand) -> None:
     demand.machine_force_n = demand.free_force_n
 
 
-@fused
+@inlined
 def wheel_force(
     voltage_v: float, kind: TrainType, demand: Demand, scratch: Array
 ) -> tuple[float, float]:
@@ -192,7 +192,7 @@ def armature_demand(
     return current, current * relative * slope_n_per_v
 
 
-@fused
+@inlined
 def bridge_demand(
     voltage_v: float, force_n: float, slope_n_per_v: float,
     kind: TrainType, demand: Demand, scratch: Array,

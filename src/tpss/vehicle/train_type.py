@@ -28,8 +28,11 @@ class Networks(Record):
     """The three networks that describe a locomotive's machine."""
 
     tractive_effort: FeedForwardNetwork
+    """Largest force of all motors over speed, line voltage and current limit. [N]"""
     bridge_sine: FeedForwardNetwork
+    """Sine of the firing angle over the voltages of motors and transformer. [1]"""
     power_factor: FeedForwardNetwork
+    """Power factor over speed. [1]"""
 
 
 class TrainType(Record):

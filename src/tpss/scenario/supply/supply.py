@@ -59,19 +59,20 @@ class Supply(Part):
     def _at_least_one_station(
         cls, stations: tuple[ConverterStation, ...], info: ValidationInfo
     ) -> tuple[ConverterStation, ...]:
-        others = info.data.get("transformer_stations")
-        if not stations and others == ():
+        others = [info.data.get(key) for key in STATIONS if key != info.field_name]
+        if not stations and all(each == () for each in others):
             raise PydanticKnownError(
                 "too_short", {"field_type": "Tuple", "min_length": 1, "actual_length": 0}
             )
+        every = [*stations, *(station for each in others for station in each or ())]
         for field in ("name", "position_km"):
-            demand_unique((*stations, *(others or ())), field)
+            demand_unique(every, field)
         return stations
 
     @property
     def stations(self) -> tuple[Station, ...]:
         """All feeding stations, in the order of the results."""
-        return (*self.converter_stations, *self.transformer_stations)
+        return tuple(station for key in STATIONS for station in getattr(self, key))
 
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:

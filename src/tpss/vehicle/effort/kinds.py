@@ -144,6 +144,6 @@ def effort_extrapolates(
     """Whether network or table are used outside what they were made from; limits hold anywhere."""
     if effort.kind == EffortKind.TABLE:
         return outside_table(speed_m_s, voltage_v, effort.table, points)
-    if effort.kind == EffortKind.LIMITS:
-        return False
-    return effort_outside_training(speed_m_s, voltage_v, effort.highest_current_a, network)
+    if effort.kind == EffortKind.NETWORK:
+        return effort_outside_training(speed_m_s, voltage_v, effort.highest_current_a, network)
+    return False
