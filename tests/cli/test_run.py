@@ -369,7 +369,7 @@ def test_a_stalled_train_ends_the_run_with_forces_and_advice(tpss_command, tmp_p
     said = tpss_command("run", HEADWAY, *STEEP)
     assert said.code == 3
     for words in (
-        "Stalled. At 0.00 min eastbound 1 stands and cannot start at 0.00 km",
+        "Stalled. At 0.00 min eastbound 1 cannot start at 0.00 km",
         "demand 448.0 kN",
         "kV and 0.0 km/h",
         "What would help: Lower the train's mass",
