@@ -90,7 +90,7 @@ class ChoiceInput(Part):
         return np.isin(values, self.values)
 
     def scaled(self, values: Any) -> Array:
-        """A column for each value but the first, 1 where it is taken and -1 elsewhere."""
+        """A column for each value but the first, 1 where it occurs and -1 elsewhere."""
         return np.column_stack([2.0 * (values == value) - 1.0 for value in self.values[1:]])
 
     @property

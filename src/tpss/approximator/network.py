@@ -1,4 +1,4 @@
-r"""Ensembles of feed-forward networks with one hidden tanh layer beside direct connections.
+r"""Ensembles of feed-forward networks with one hidden tanh layer and direct connections.
 
 .. math::
 

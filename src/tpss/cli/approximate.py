@@ -77,7 +77,7 @@ def predict_lines(
     out: Path | None,
     force: bool,
 ) -> int:
-    """Predict, print, and write what is asked for; return the exit code."""
+    """Predict, print, and write what is requested; return the exit code."""
     from tpss.approximator.approximator import load_approximator
     from tpss.approximator.model_file import check_target
 

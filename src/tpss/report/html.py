@@ -216,7 +216,7 @@ def _about_samples(data: Mapping[str, Any], runs: Mapping[str, Result]) -> list[
     if any(run.dataset.sizes["time"] > most for run in runs.values()):
         notes.append(
             "the curves over time are drawn from a part of the time steps, which holds the lowest and "
-            "highest value of each stretch; the saved result has them all"
+            "highest value of each interval; the saved result has them all"
         )
     return notes
 

@@ -27,7 +27,7 @@ FEWEST = 16
 def kept(columns: Sequence[Floats], most: int) -> Indices:
     """Indices of the values to draw, about `most` of them.
 
-    The values are cut into stretches of equal length; of each stretch, the lowest and the highest of
+    The values are cut into intervals of equal length; of each interval, the lowest and the highest of
     every column stay, and so do the first and the last value of all.
 
     Parameters

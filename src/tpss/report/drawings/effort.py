@@ -16,7 +16,7 @@ SPEEDS = 120
 def effort(result: Result, train: str | None = None) -> Drawing:
     """Tractive force of a train over its speed, one point per step, coloured by the voltage.
 
-    The curves are the machine's limit at the highest and lowest voltage that the train met, adhesion,
+    The curves are the machine's limit at the highest and lowest voltage of the train, adhesion,
     and running resistance on level track.
 
     Parameters

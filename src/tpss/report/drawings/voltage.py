@@ -14,7 +14,7 @@ from tpss.scenario.standards import VoltageLimits
 
 
 def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> parts.Drawing:
-    """Voltage that a train meets along the line; feeding points are marked.
+    """Voltage of a train along the line; feeding points are marked.
 
     Parameters
     ----------

@@ -68,10 +68,10 @@ class Evidence:
     def useful_voltage_zones(self) -> pd.DataFrame:
         """EN 50388, one row per zone: mean useful voltage in the peak window."""
         zones: Iterable[Any] = self.standards.zones
-        stretches = [useful_voltage.Stretch(z.name, z.from_km, z.to_km) for z in zones]
-        stretches = stretches or useful_voltage.feeding_sections(self.dataset)
+        sections = [useful_voltage.Section(z.name, z.from_km, z.to_km) for z in zones]
+        sections = sections or useful_voltage.feeding_sections(self.dataset)
         return useful_voltage.zone_table(
-            self.dataset, stretches, self._window, self.least_useful_voltage_kv
+            self.dataset, sections, self._window, self.least_useful_voltage_kv
         )
 
     @cached_property

@@ -30,7 +30,7 @@ FAST_KMH = 200.0
 REACHED, MISSED = "reached", "below the minimum"
 
 
-class Stretch(NamedTuple):
+class Section(NamedTuple):
     """A zone of the line."""
 
     name: str
@@ -38,7 +38,7 @@ class Stretch(NamedTuple):
     to_km: float
 
 
-def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
+def feeding_sections(dataset: xr.Dataset) -> list[Section]:
     """Sections of line between feeding stations, and from the outer ones to the line's ends."""
     ends_km = (0.0, _length_km(dataset))
     named = dict.fromkeys(ends_km, "") | dict(
@@ -47,7 +47,7 @@ def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
     points = sorted(named)
     label = {km: str(named[km]) or f"{km:g} km" for km in points}
     return [
-        Stretch(f"{label[begin]}-{label[end]}", float(begin), float(end))
+        Section(f"{label[begin]}-{label[end]}", float(begin), float(end))
         for begin, end in zip(points, points[1:], strict=False)
     ]
 
@@ -70,7 +70,7 @@ def window_steps(steps: int, step_s: float, from_min: float, to_min: float | Non
 
 
 def zone_table(
-    dataset: xr.Dataset, zones: Iterable[Stretch], window: slice | None, least_kv: float | None
+    dataset: xr.Dataset, zones: Iterable[Section], window: slice | None, least_kv: float | None
 ) -> pd.DataFrame:
     """One row per zone: its mean useful voltage, from how many trains, against the minimum.
 

@@ -99,7 +99,7 @@ def highest_mean_table(
     step_s : float
         Length of a time step. [s]
     windows_min : iterable of float
-        Windows beside the time step itself. [min]
+        Windows in addition to the time step itself. [min]
     """
     widths = sorted({step_s / 60.0, *windows_min})
     highest = [highest_means(values, width * 60.0 / step_s) for width in widths]
