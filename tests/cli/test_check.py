@@ -139,7 +139,9 @@ def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, s
     start = text.index("other = [")
     short_file.write_text(text[:start] + text[text.index("]", start) + 1 :])
     said = check(tpss_command, short_file, *changes)
-    assert "Note: line.gradients begins at 2 km; its first gradient applies from 0 km on" in said.out
+    assert (
+        "Note: line.gradients begins at 2 km; its first gradient applies from 0 km on" in said.out
+    )
     assert "Note: line.gradients continues to 25 km, but the line ends at 20 km" in said.out
     assert "gradients 1 ‰; from beginning to end +20 m" in said.out
 

@@ -80,7 +80,7 @@ def test_an_interrupted_run_is_saved(tpss_command, tmp_path, short_file, monkeyp
     minutes = float(result.dataset.time[-1]) / 60.0
     assert 0.0 < minutes < 20.0
     assert f"Interrupted. Stopped at {minutes:.2f} min" in said.out
-    assert "Run it again for the whole." in said.out
+    assert "Run it again to the end." in said.out
 
 
 def test_a_process_that_is_interrupted_saves_its_run(tmp_path, short_file):

@@ -37,7 +37,7 @@ def test_it_holds_every_plot_table_and_section(page):
     read = Page(page)
     for plot in PLOTS:
         assert f'id="{plot}"' in page
-    assert {"Key figures", "Trains", "Converter stations"} <= set(read.captions)
+    assert {"Key figures", "Trains", "Feeding stations"} <= set(read.captions)
     for section in ("Audit", "Scenario as run", "Limits of validity"):
         assert section in read.text
 

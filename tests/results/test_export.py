@@ -166,7 +166,7 @@ def test_a_missing_package_is_named_with_the_remedy(
 def test_a_table_too_long_for_a_sheet_is_refused(result, tmp_path, monkeypatch):
     monkeypatch.setattr(export, "MOST_ROWS", 100)
     with pytest.raises(
-        ResultError, match=r"load_duration has \d+ rows.*room for 99: choose csv or parquet"
+        ResultError, match=r"load_duration has \d+ rows.*at most 99: choose csv or parquet"
     ):
         export.export(result, Kind.XLSX, tmp_path / "tables")
     assert list(tmp_path.iterdir()) == []

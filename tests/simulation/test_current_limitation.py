@@ -107,9 +107,9 @@ def test_a_stall_at_low_voltage_names_the_limitation_that_keeps_the_force_from_t
     }
     result = run(changes)
     assert result.status == "stalled"
-    assert "machine and the rails give 0.9 kN at 10.75 kV" in result.summary["problem"]
-    assert "lets 1 % of the force through that it wants and could give" in result.summary["problem"]
-    assert result.summary["advice"].startswith("Ease the train's current_limitation")
+    assert "machine and adhesion give 0.9 kN at 10.75 kV" in result.summary["problem"]
+    assert "passes 1 % of the wanted force, " in result.summary["problem"]
+    assert result.summary["advice"].startswith("Relax the train's current_limitation")
 
 
 def test_a_stall_for_want_of_grip_does_not_blame_the_limitation():

@@ -12,7 +12,7 @@ def test_a_train_that_cannot_start_on_a_gradient_stalls_at_once():
     """1470 t on 15 per mille: 15.4 kN + 216.3 kN against less than 176 kN of the machine."""
     result = tpss.simulate(short_line({"line.gradients": [{"from_km": 0.0, "permille": 15.0}]}))
     assert result.status == "stalled"
-    assert "eastbound 1 stands and cannot start at 0.00 km" in result.summary["problem"]
+    assert "eastbound 1 cannot start at 0.00 km" in result.summary["problem"]
     assert "231.7 kN" in result.summary["problem"]
     assert result.audit["passed"]
 
@@ -25,7 +25,7 @@ def test_a_train_that_stalls_in_the_step_of_its_departure_is_in_the_result():
     }
     result = tpss.simulate(short_line(changes))
     assert result.status == "stalled"
-    assert "At 3.00 min eastbound 1 stands and cannot start" in result.summary["problem"]
+    assert "At 3.00 min eastbound 1 cannot start" in result.summary["problem"]
     assert result.trips.train.to_list() == ["eastbound 1"]
     assert float(result.dataset.position[-1, 0]) == 0.0
 

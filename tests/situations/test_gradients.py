@@ -71,7 +71,7 @@ def test_a_train_that_stopped_on_a_climb_cannot_start_again():
     result = tpss.simulate(short_line({**step(0.05), **stops((10.0, 2.0)), **hill}))
     assert result.status == "stalled"
     assert phases(result) == ["motoring", "braking", "dwelling"]
-    assert "stands and cannot start at 10.00 km" in result.summary["problem"]
+    assert "cannot start at 10.00 km" in result.summary["problem"]
     assert "188.4 kN" in result.summary["problem"]
     assert result.audit["passed"]
 

@@ -1,1 +1,1 @@
-"""TPSA, the Train Power System Approximator: what a study's simulations tell, learnt from its table."""
+"""TPSA, the Train Power System Approximator: predictions learnt from the table of a study."""

@@ -23,16 +23,16 @@ from tpss.errors import Finding, ScenarioError
 COLLAPSE = "collapse_probability"
 
 LIKELY = 0.5
-"""Probability of a collapse from which on no other figures are given: there are none."""
+"""Probability of a collapse from which no other figures are predicted: there are none."""
 
-MOST_TOLD = 10
-"""Rows outside the domain that are told in words."""
+MOST_REPORTED = 10
+"""Rows outside the domain that are reported one by one."""
 
 
 class Approximator:
-    """An approximator of what simulations lead to.
+    """An approximator of simulation results.
 
-    `tpss.train_approximator` makes one, `load_approximator` reads one.
+    `tpss.train_approximator` trains one, `load_approximator` reads one.
     """
 
     def __init__(self, file: ModelFile) -> None:
@@ -47,8 +47,8 @@ class Approximator:
     def neurons(self) -> str:
         """Neurons of a network, in words."""
         of_collapse = "" if self._collapse is None else f" and {self._collapse.neurons}"
-        told = f"{self._figures.neurons} neurons for the figures"
-        return f"{told}{of_collapse} for the collapse" if of_collapse else told
+        of_figures = f"{self._figures.neurons} neurons for the figures"
+        return f"{of_figures}{of_collapse} for the collapse" if of_collapse else of_figures
 
     @cached_property
     def _figures(self) -> Ensemble:
@@ -75,24 +75,24 @@ class Approximator:
         inputs : mapping of str to sequence, or DataFrame
             A column for each input, all of the same length.
         outside : str
-            What becomes of rows outside the trained region: the call is refused, or the column
-            ``outside`` says why they are.
+            How rows outside the trained region are treated: with an error, or with the reasons in
+            the column ``outside``.
         place : str
-            Where the inputs come from, for the words of an error.
+            Where the inputs come from, for error messages.
 
         Returns
         -------
         DataFrame
             For each output its value and the ends of its 90 % interval, ``NAME``, ``NAME.low`` and
-            ``NAME.high``, in the output's unit; NaN where the line more likely than not does not
-            carry its load.  ``collapse_probability`` is the probability of that, with the lowest
-            and the highest one of the ensemble's members; it is missing if no trained line
-            collapsed.  ``outside`` is empty within the trained region.
+            ``NAME.high``, in the output's unit; NaN where the line probably cannot
+            carry its load.  ``collapse_probability`` is the probability of that, with the lowest and
+            the highest one of the ensemble's members; it is missing if no trained line collapsed.
+            ``outside`` is empty within the trained region.
 
         Raises
         ------
         ScenarioError
-            An input is unknown, missing or no number, or lies outside the trained region.
+            An input is unknown, missing or not a number, or lies outside the trained region.
         """
         columns = {str(name): values for name, values in inputs.items()}
         given = self.file.inputs.read(columns, place)
@@ -112,13 +112,13 @@ class Approximator:
         mean = members.mean(axis=0)
         log_noise = self._noise.evaluate(x).mean(axis=0)
         spread = members.std(axis=0)
-        found = {}
+        figures = {}
         for k, output in enumerate(self.file.outputs):
             half = output.factor * deviation(log_noise[:, k], spread[:, k], output.usual)
-            found[output.name] = unscaled(mean[:, k], output)
-            found[f"{output.name}.low"] = unscaled(mean[:, k] - half, output)
-            found[f"{output.name}.high"] = unscaled(mean[:, k] + half, output)
-        return found
+            figures[output.name] = unscaled(mean[:, k], output)
+            figures[f"{output.name}.low"] = unscaled(mean[:, k] - half, output)
+            figures[f"{output.name}.high"] = unscaled(mean[:, k] + half, output)
+        return figures
 
     def collapse(self, x: Array) -> dict[str, Array]:
         """Probability of a collapse, lowest and highest of the members, of scaled inputs."""
@@ -151,22 +151,24 @@ def load_approximator(path: str | Path) -> Approximator:
     Raises
     ------
     ApproximatorError, ScenarioError
-        It cannot be read, is no such file, or is damaged.
+        It cannot be read, is not such a file, or is damaged.
     """
     return Approximator(read_model(Path(path)))
 
 
 def _refuse(objections: list[str], place: str) -> None:
-    told = [(row, words) for row, words in enumerate(objections) if words]
-    if not told:
+    refused = [(row, words) for row, words in enumerate(objections) if words]
+    if not refused:
         return
     findings = []
-    for row, words in told[:MOST_TOLD]:
+    for row, words in refused[:MOST_REPORTED]:
         key = f"row {row + 1}" if len(objections) > 1 else ""
         problem = f"outside the trained region: {words}"
-        remedy = "simulate it, train on a study that holds it, or predict it with a flag (--flag)"
+        remedy = (
+            "simulate it, train on a study that includes it, or predict it with a flag (--flag)"
+        )
         findings.append(Finding(place, key, "", problem, remedy))
-    if len(told) > MOST_TOLD:
-        rest = f"{len(told) - MOST_TOLD} more row(s) lie outside the trained region"
+    if len(refused) > MOST_REPORTED:
+        rest = f"{len(refused) - MOST_REPORTED} more row(s) lie outside the trained region"
         findings.append(Finding(place, "", "", rest, "predict them with a flag (--flag)"))
     raise ScenarioError(findings)

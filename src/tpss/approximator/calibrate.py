@@ -1,4 +1,4 @@
-"""Intervals that hold what they say: measured on cases that the members have not seen."""
+"""Prediction intervals, calibrated on cases that the members have not seen."""
 
 import math
 
@@ -7,16 +7,15 @@ import numpy as np
 from tpss.approximator.network import Array
 
 COVERED = 0.9
-"""Share of cases that shall lie inside their intervals."""
+"""Share of cases that are to lie inside their intervals."""
 
 LEAST_ERROR = 1e-5
-"""Errors below this, scaled, say nothing of those to come: their logarithms would run away."""
+"""Least scaled error: logarithms of smaller ones would dominate, and mean nothing."""
 
 
 def log_sizes(errors: Array) -> Array:
     """Logarithms of the sizes of errors, which the networks of the noise are fitted to."""
-    found: Array = np.log(np.maximum(np.abs(errors), LEAST_ERROR))
-    return found
+    return np.asarray(np.log(np.maximum(np.abs(errors), LEAST_ERROR)))
 
 
 USUAL = 0.9
@@ -29,14 +28,13 @@ def usual_spread(log_noise: Array, spread: Array) -> float:
 
 
 def deviation(log_noise: Array, spread: Array, usual: float) -> Array:
-    """How far predictions may be off, up to a factor.
+    """Expected deviation of predictions, up to a factor.
 
-    That is the size of the errors for cases not seen: what the inputs leave open, such as the order
-    of the gradients, which is more on some lines than on others.  Where the members of the ensemble
-    disagree more than usual, as they do where cases are few, it grows with their disagreement.
+    That is the size of the errors for cases not seen: the effect of what the inputs do not describe,
+    such as the order of the gradients, which is larger on some lines than on others.  Where the members
+    of the ensemble disagree more than usual, as where cases are few, it increases with the disagreement.
     """
-    found: Array = np.maximum(np.exp(log_noise), spread / usual)
-    return found
+    return np.asarray(np.maximum(np.exp(log_noise), spread / usual))
 
 
 def factor_of(errors: Array, deviations: Array) -> float:

@@ -1,4 +1,4 @@
-"""An approximator beside the table of a study: the one it was trained on, or another."""
+"""Comparison of an approximator with the table of a study: that of its training, or another."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,7 @@ from tpss.errors import ApproximatorError
 
 @dataclass(frozen=True)
 class Comparison:
-    """What came out."""
+    """Result of a comparison."""
 
     tested: int
     which: str
@@ -72,7 +72,7 @@ def cases_inside(model: Approximator, table: pd.DataFrame) -> tuple[Cases, int]:
     absent = [name for name in names if name not in table]
     if absent:
         raise ApproximatorError(
-            f"the table has no column {', '.join(absent)}: its lines are of another kind than "
+            f"the table has no column {', '.join(absent)}: its lines differ in kind from "
             "those that the approximator was trained on"
         )
     given = given_by(model, table)
@@ -84,6 +84,6 @@ def cases_inside(model: Approximator, table: pd.DataFrame) -> tuple[Cases, int]:
 
 
 def given_by(model: Approximator, table: pd.DataFrame) -> Given:
-    """What a study's table asks."""
+    """Inputs of an approximator from a study's table."""
     known = {str(name): table[name] for name in table if model.file.inputs.has(str(name))}
     return model.file.inputs.read(known, "the table")

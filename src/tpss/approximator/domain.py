@@ -1,4 +1,4 @@
-"""Where an approximator may be asked: the region of its inputs that the trained cases fill."""
+"""Domain of an approximator: the region of its inputs that the trained cases fill."""
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import StringConstraints
 
-from tpss.approximator.inputs import ChoiceInput, Conflict, Given, Inputs, NumberInput
+from tpss.approximator.inputs import ChoiceInput, Conflict, Given, Inputs, NumberInput, shown
 from tpss.scenario.fields import Part
 
 Cells = Annotated[str, StringConstraints(pattern=r"^[01]+(/[01]+)*$")]
@@ -21,24 +21,24 @@ class Domain(Part):
     """The range of every input, and for every two inputs the cells in which trained cases lie.
 
     Two inputs may each be in range and yet never have been seen together, such as an AT catenary
-    with a number of transformers that only BT lines had.  What three inputs do together is not known.
+    with a number of transformers that only BT lines had.  Combinations of three inputs are not checked.
     """
 
     pairs: tuple[Cells, ...]
     """For every two inputs, the first with each later one, then the second, and so on."""
 
     def objections(self, given: Given, inputs: Inputs) -> list[str]:
-        """Why each row lies outside, in words; empty where it does not."""
-        told: dict[int, list[str]] = {}
+        """Reasons why each row lies outside; empty where it does not."""
+        reasons: dict[int, list[str]] = {}
         for wrong, words in self._faults(given, inputs):
             for row in np.flatnonzero(wrong).tolist():
-                told.setdefault(row, []).append(words(row))
-        if not told:
+                reasons.setdefault(row, []).append(words(row))
+        if not reasons:
             return [""] * given.rows
-        return ["; ".join(told.get(row, ())) for row in range(given.rows)]
+        return ["; ".join(reasons.get(row, ())) for row in range(given.rows)]
 
     def _faults(self, given: Given, inputs: Inputs) -> Iterator[tuple[Any, Callable[[int], str]]]:
-        """What may be wrong: which rows are, and its words for a row."""
+        """Possible reasons: which rows they apply to, and their text for a row."""
         for each in inputs.varying:
             values = given.inputs[each.name]
             yield ~each.inside(values), partial(_out_of_range, each, values)
@@ -73,26 +73,22 @@ def domain_of(values: Mapping[str, Any], inputs: Inputs) -> Domain:
 def fits(domain: Domain, inputs: Inputs) -> bool:
     """Whether a domain has cells for the inputs."""
     shapes = [(a.cells, b.cells) for a, b in combinations(inputs.varying, 2)]
-    found = [[len(row) for row in pair.split("/")] for pair in domain.pairs]
-    return found == [[columns] * rows for rows, columns in shapes]
+    filled = [[len(row) for row in pair.split("/")] for pair in domain.pairs]
+    return filled == [[columns] * rows for rows, columns in shapes]
 
 
 def _table(pair: str) -> Any:
     return np.array([[cell == "1" for cell in row] for row in pair.split("/")])
 
 
-def _shown(value: Any) -> str:
-    return str(value) if isinstance(value, str) else f"{value:.6g}"
-
-
 def _out_of_range(each: _Input, values: Any, row: int) -> str:
-    return f"{each.name} = {_shown(values[row])}: trained at {each.range}"
+    return f"{each.name} = {shown(values[row])}: trained at {each.range}"
 
 
 def _in_conflict(conflict: Conflict, row: int) -> str:
-    return f"{conflict.name} = {_shown(conflict.values[row])}: {conflict.words}"
+    return f"{conflict.name} = {shown(conflict.values[row])}: {conflict.words}"
 
 
 def _never_together(one: _Input, other: _Input, values: Mapping[str, Any], row: int) -> str:
-    pair = " with ".join(f"{each.name} = {_shown(values[each.name][row])}" for each in (one, other))
+    pair = " with ".join(f"{each.name} = {shown(values[each.name][row])}" for each in (one, other))
     return f"{pair}: never seen together"

@@ -15,13 +15,13 @@ import numpy.typing as npt
 from tpss.approximator.network import Array, Ensemble
 
 FOLDS = 5
-"""Parts of the cases, each left out by one member a round."""
+"""Parts of the cases, each left out by one member per round."""
 
 ROUNDS = 2
-"""How often the cases are divided anew: so many members have not seen a given case."""
+"""How often the cases are divided: so many members have not seen a given case."""
 
 MOST_STEPS = 800
-"""Steps of L-BFGS; what comes later moves errors by less than the members differ."""
+"""Steps of L-BFGS; later ones change errors by less than the members differ."""
 
 PENALTY = {"figures": 1e-1, "noise": 1.0, "collapse": 1e-1}
 """Weight of the squared weights in what is minimised (alpha of scikit-learn)."""
@@ -34,19 +34,19 @@ Tick = Callable[[], None]
 Indices = npt.NDArray[np.int64]
 
 
-KNOWN_PER_WEIGHT = 5
-"""Numbers that the cases tell for each weight of a network, at least, unless it is the smallest one."""
+VALUES_PER_WEIGHT = 5
+"""Least number of output values for each weight of a network, unless it is the smallest one."""
 
 
 def tried(kind: str, x: Array, y: Array) -> tuple[int, ...]:
-    """Numbers of neurons that are tried on cases: no more than these can teach."""
+    """Numbers of neurons that are tried: no more than the cases can determine."""
     weights = x.shape[1] + 1 + y.shape[1]  # of a neuron
-    most = y.size // KNOWN_PER_WEIGHT // weights
+    most = y.size // VALUES_PER_WEIGHT // weights
     smallest, *others = NEURONS[kind]
     return (smallest, *(neurons for neurons in others if neurons <= most))
 
 
-def fits_of(kind: str, x: Array, y: Array) -> int:
+def number_of_fits(kind: str, x: Array, y: Array) -> int:
     """How many networks are fitted for an ensemble."""
     return len(tried(kind, x, y)) * FOLDS + (ROUNDS - 1) * FOLDS
 
@@ -63,7 +63,7 @@ class Member(NamedTuple):
 
 @dataclass(frozen=True)
 class Fitted:
-    """An ensemble, and what its members say of the cases that they have not seen."""
+    """An ensemble, and what its members predict for the cases that they have not seen."""
 
     ensemble: Ensemble
     unseen: Array
@@ -113,25 +113,25 @@ def _folds(kind: str, y: Array, seed: int) -> list[Indices]:
 def _fit_one(
     kind: str, neurons: int, x: Array, y: Array, left_out: Indices, seed: int, tick: Tick
 ) -> Member:
-    taken = np.setdiff1d(np.arange(len(x)), left_out)
+    used = np.setdiff1d(np.arange(len(x)), left_out)
     random_state = seed * 1000 + int(left_out[0])
     if kind == "collapse":
-        member = member_of(_trained(kind, neurons, x[taken], y[taken], random_state))
+        member = member_of(_trained(kind, neurons, x[used], y[used], random_state))
     else:
-        member = _beside_line(kind, neurons, x[taken], y[taken], random_state)
+        member = _beside_line(kind, neurons, x[used], y[used], random_state)
     tick()
     return member
 
 
 def _beside_line(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> Member:
-    """A network of what linear regression, its direct connections, leaves over."""
+    """A network for the residual of linear regression, which gives its direct connections."""
     with_one = np.column_stack([x, np.ones(len(x))])
     line: Array = np.asarray(np.linalg.lstsq(with_one, y)[0], dtype=np.float64)
     left = y - with_one @ line
     middle, half = (left.max(axis=0) + left.min(axis=0)) / 2.0, np.ptp(left, axis=0) / 2.0
     half[half == 0.0] = 1.0
-    found = member_of(_trained(kind, neurons, x, (left - middle) / half, random_state))
-    return found._replace(w0=line[:-1], w2=found.w2 * half, b2=found.b2 * half + middle + line[-1])
+    rest = member_of(_trained(kind, neurons, x, (left - middle) / half, random_state))
+    return rest._replace(w0=line[:-1], w2=rest.w2 * half, b2=rest.b2 * half + middle + line[-1])
 
 
 def _trained(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> Any:
@@ -152,7 +152,7 @@ def _trained(kind: str, neurons: int, x: Array, y: Array, random_state: int) -> 
     )
     # Threads cost more than they save on matrices of this size.
     with threadpool_limits(1), warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # to stop early is meant
+        warnings.simplefilter("ignore", ConvergenceWarning)  # stopping early is intended
         return network.fit(x, y if y.shape[1] > 1 else y[:, 0])
 
 
@@ -168,7 +168,7 @@ def ensemble_of(members: Sequence[Member]) -> Ensemble:
 
 
 def _unseen(ensemble: Ensemble, x: Array, folds: Sequence[Indices]) -> Array:
-    """Mean of what the members say of the cases that they have left out."""
+    """Mean of the predictions for the cases that the members have left out."""
     members = ensemble.evaluate(x)
     total, count = np.zeros(members.shape[1:]), np.zeros((len(x), 1))
     for member, left_out in zip(members, folds, strict=True):
@@ -180,5 +180,5 @@ def _unseen(ensemble: Ensemble, x: Array, folds: Sequence[Indices]) -> Array:
 def _error(kind: str, unseen: Array, y: Array) -> float:
     if kind != "collapse":
         return float(np.sqrt(np.mean((unseen - y) ** 2)))
-    # The logarithm of what the logistic function gives, without its overflow.
+    # Logarithm of the logistic function, without overflow.
     return float(np.mean(np.logaddexp(0.0, unseen) - y * unseen))

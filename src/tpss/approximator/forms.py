@@ -1,4 +1,4 @@
-"""What an approximator is asked, and what it answers, by the columns of a study's table."""
+"""Forms of an approximator: inputs and outputs, by the columns of a study's table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import pandas as pd
 
 TRAINS, TRAINS_SPEED = "trains", "trains_speed_kmh"
-"""Inputs of the original form that the table does not hold; see `with_traffic`."""
+"""Inputs of the original form that the table does not contain; see `with_traffic`."""
 
 _SUPPLY = ("converters_per_station", "converters", "converter_rating_mva", "transformers")
 _CATENARY = ("catenary_r_ohm_per_km", "catenary_x_ohm_per_km", "connection_x_ohm")
@@ -16,7 +16,7 @@ _PROFILE = (
     "gradient_trend_permille",
     "gradient_middle_permille",
 )
-"""What is told of where it is steep, beyond mean and standard deviation."""
+"""Statistics of where it is steep, beyond mean and standard deviation."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Form:
     choices: tuple[str, ...]
     outputs: tuple[str, ...]
     with_stations: bool
-    """Whether the energy of each station is put out too."""
+    """Whether the energy of each feeding station is an output too."""
 
     def outputs_of(self, columns: Sequence[str]) -> list[str]:
-        """Outputs that a table with these columns can teach."""
+        """Outputs for a table with these columns."""
         stations = [
             name
             for name in columns
@@ -84,8 +84,8 @@ FORMS = {
         with_stations=False,
     ),
 }
-"""``profile``: told where it is steep, too.  ``original``: what TPSA was first meant for, the highest
-mean speed of a train added to a line.
+"""``profile``: with statistics of where it is steep.  ``original``: what TPSA was first designed for,
+the highest mean speed of a train added to a line.
 """
 
 NAMED_CATENARY, OWN = "catenary", "own"
@@ -94,8 +94,8 @@ NAMED_CATENARY, OWN = "catenary", "own"
 def with_traffic(table: pd.DataFrame) -> pd.DataFrame:
     """The table with the number and the speed of the trains that run on the line.
 
-    Both follow from what is known beforehand: the trains of all services with a headway, as if each
-    kept to the speed limit on the way of the studied train.
+    Both are known before a simulation: the trains of all services with a headway, as if each ran at
+    the speed limit on the route of the studied train.
     """
     speed = table["mean_speed_limit_kmh"]
     trains = table["trains_per_h"] * table["route_km"] / speed

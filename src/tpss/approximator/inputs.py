@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
@@ -14,10 +15,10 @@ from tpss.errors import ApproximatorError, Finding, ScenarioError, suggest
 from tpss.scenario.fields import Name, Part, Real
 
 SAME = 1e-9
-"""Relative difference up to which two numbers count as the same: they went through files."""
+"""Relative difference up to which two numbers count as equal: files round them."""
 
 FEW = 8
-"""As many different values of a number are taken as levels, each with a cell of its own."""
+"""Up to so many different values of a number are levels, each with its own cell."""
 
 
 class NumberInput(Part):
@@ -26,11 +27,11 @@ class NumberInput(Part):
     kind: Literal["number"] = "number"
     name: Name
     scale: Literal["linear", "log"] = "linear"
-    """Whether the networks know the value or its logarithm."""
+    """Whether the networks use the value or its logarithm."""
     low: Real
     high: Real
     edges: tuple[Real, ...]
-    """Between the cells in which it is known what occurs together."""
+    """Limits between the cells of the domain."""
 
     @property
     def cells(self) -> int:
@@ -57,8 +58,7 @@ class NumberInput(Part):
         if self.scale == "log":
             values = np.log(np.where(values > 0.0, values, np.nan))
             low, high = math.log(low), math.log(high)
-        found: Array = 2.0 * (values - low) / (high - low) - 1.0
-        return found[:, None]
+        return np.asarray(2.0 * (values - low) / (high - low) - 1.0)[:, None]
 
     @property
     def range(self) -> str:
@@ -75,22 +75,22 @@ class ChoiceInput(Part):
 
     @property
     def cells(self) -> int:
-        """Number of cells, one a value."""
+        """Number of cells, one per value."""
         return len(self.values)
 
     def cell(self, values: Any) -> Any:
         """Place of each value, 0 if it is none of them."""
-        found = np.zeros(len(values), dtype=np.int64)
+        places = np.zeros(len(values), dtype=np.int64)
         for place, value in enumerate(self.values):
-            found[values == value] = place
-        return found
+            places[values == value] = place
+        return places
 
     def inside(self, values: Any) -> Any:
         """Whether each value is one of them."""
         return np.isin(values, self.values)
 
     def scaled(self, values: Any) -> Array:
-        """A column for each value but the first, 1 where it is taken and -1 elsewhere."""
+        """A column for each value but the first, 1 where it occurs and -1 elsewhere."""
         return np.column_stack([2.0 * (values == value) - 1.0 for value in self.values[1:]])
 
     @property
@@ -111,12 +111,12 @@ class Multiple(Part):
 
 
 class Inputs(Part):
-    """All that an approximator knows of a case."""
+    """All inputs of an approximator."""
 
     varying: Annotated[tuple[Input, ...], Field(min_length=1)]
     multiples: tuple[Multiple, ...]
     fixed: dict[Name, Real | Name]
-    """What was the same in all cases."""
+    """Inputs that were the same in all cases."""
 
     def read(self, table: Mapping[str, Any], place: str) -> "Given":
         """Values of the inputs from columns of a table; `place` is where they come from.
@@ -172,26 +172,25 @@ class Inputs(Part):
 
     def _unknown(self, name: str, values: Any, place: str) -> Finding:
         known = [each.name for each in (*self.varying, *self.multiples)] + list(self.fixed)
-        shown = str(next(iter(values), ""))
+        value = str(next(iter(values), ""))
         problem = "this approximator has no such input"
-        return Finding(place, name, shown, problem, suggest(name, known))
+        return Finding(place, name, value, problem, suggest(name, known))
 
     def conflicts(self, given: "Given") -> list["Conflict"]:
         """Columns whose values contradict what was always so in the trained cases."""
-        found = []
+        conflicts = []
         for name, value in self.fixed.items():
             if name in given.columns:
                 values = given.columns[name]
                 same = values == value if isinstance(value, str) else _same(values, value)
-                shown = value if isinstance(value, str) else f"{value:.6g}"
-                found.append(Conflict(name, values, ~same, f"trained at {shown} only"))
+                conflicts.append(Conflict(name, values, ~same, f"trained at {shown(value)} only"))
         for each in self.multiples:
             if each.name in given.columns:
                 values = given.columns[each.name]
                 same = _same(values, each.factor * given.inputs[each.of])
                 words = f"it was always {each.factor:.6g} times {each.of} where it was trained"
-                found.append(Conflict(each.name, values, ~same, words))
-        return found
+                conflicts.append(Conflict(each.name, values, ~same, words))
+        return conflicts
 
     def encode(self, inputs: Mapping[str, Any]) -> Array:
         """Numbers of the networks, shape (rows, numbers)."""
@@ -204,7 +203,7 @@ class Inputs(Part):
 
 
 class Given(NamedTuple):
-    """What an approximator is asked: values of its inputs, and all columns as they were given."""
+    """Values of the inputs to predict from, and all columns as they were given."""
 
     inputs: dict[str, Any]
     columns: dict[str, Any]
@@ -233,13 +232,11 @@ def _plain(column: Any, *, is_text: bool) -> Any:
         return np.where(values, "true", "false").astype(object)
     if is_text:
         return np.array([text_of(value) for value in values.tolist()], dtype=object)
-    try:
+    with suppress(TypeError, ValueError):
         numbers = values.astype(float)
-    except (TypeError, ValueError):
-        raise ValueError(repr(next(v for v in values.tolist() if not _is_number(v)))) from None
-    if values.dtype == bool or not np.isfinite(numbers).all():
-        raise ValueError(repr(next(v for v in values.tolist() if not _is_number(v))))
-    return numbers
+        if values.dtype != bool and np.isfinite(numbers).all():
+            return numbers
+    raise ValueError(repr(next(v for v in values.tolist() if not _is_number(v))))
 
 
 def _same(values: Any, expected: Any) -> Any:
@@ -253,6 +250,11 @@ def _is_number(value: Any) -> bool:
         return math.isfinite(float(value))
     except (TypeError, ValueError):
         return False
+
+
+def shown(value: Any) -> str:
+    """A number or a text as messages show it."""
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 def text_of(value: Any) -> str:
@@ -296,7 +298,7 @@ def inputs_of_table(table: pd.DataFrame, form: Form) -> Inputs:
 def _candidates(table: pd.DataFrame, form: Form) -> tuple[list[str], list[str]]:
     """Numbers and choices of which the table holds values.
 
-    Catenaries of the library are told apart by their names, others by their impedances.
+    Catenaries of the library are distinguished by their names, others by their impedances.
     """
     absent = [name for name in (*form.numbers, *form.choices) if name not in table]
     if absent:
@@ -310,10 +312,10 @@ def _candidates(table: pd.DataFrame, form: Form) -> tuple[list[str], list[str]]:
     choices = [name for name in form.choices if is_named or name != NAMED_CATENARY]
     known = [name for name in numbers if table[name].notna().any()]
     gaps = {name: int(table[name].isna().sum()) for name in known}
-    told = [f"{name} in {count} case(s)" for name, count in gaps.items() if count]
-    if told:
+    incomplete = [f"{name} in {count} case(s)" for name, count in gaps.items() if count]
+    if incomplete:
         raise ApproximatorError(
-            f"inputs without a value: {', '.join(told)}; split the study where the input does not exist"
+            f"inputs without a value: {', '.join(incomplete)}; split the study there"
         )
     return known, choices
 
@@ -333,7 +335,7 @@ def _multiple(
 
 def _number_input(name: str, column: Array) -> NumberInput:
     low, high = float(column.min()), float(column.max())
-    # Loads and impedances are products; gradients, though, are counted from the level.
+    # Effects of loads and impedances multiply; those of gradients do not.
     scale = "log" if low > 0.0 and not name.endswith("_permille") else "linear"
     levels = np.unique(column)
     if len(levels) <= FEW:

@@ -1,4 +1,4 @@
-"""The file of an approximator: JSON of numbers and words, which are checked and never run."""
+"""The file of an approximator: JSON of numbers and text, which is checked and never executed."""
 
 import json
 import tempfile
@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
-from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.errors import ApproximatorError, Finding, ScenarioError, shortened
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import write_file
 from tpss.scenario.fields import Name, Part, Real, Whole, fault
@@ -20,7 +20,7 @@ from tpss.scenario.fields import Name, Part, Real, Whole, fault
 FORMAT, VERSION = "tpss-approximator", 2
 
 MOST_BYTES = 200_000_000
-"""Longest file that is read: a hundred times as long as those that are written."""
+"""Largest file that is read: a hundred times as large as those that are written. [byte]"""
 
 
 class Weights(Part):
@@ -38,7 +38,7 @@ class Weights(Part):
             shapes = [np.array(each, dtype=float).shape for each in self._all()]
             (m0, i0, o0), (m, i, n), (m1, n1), (m2, n2, o), (m3, o3) = shapes
         except ValueError:
-            raise fault("weights that are no tables of numbers", REMEDY) from None
+            raise fault("weights that are not tables of numbers", REMEDY) from None
         if not (m and m == m0 == m1 == m2 == m3 and i == i0 and n == n1 == n2 and o == o0 == o3):
             raise fault(f"weights of shapes {shapes}, which do not fit together", REMEDY)
         return self
@@ -55,16 +55,16 @@ REMEDY = "train it again, or fetch the file again from where it came from"
 
 
 class Output(Part):
-    """What an approximator puts out, and how sure it is."""
+    """An output of an approximator, and its uncertainty."""
 
     name: Name
     scale: Literal["linear", "log", "drop"]
-    """Whether the networks know the value, its logarithm, or that of its distance below `reference`."""
+    """Whether the networks use the value, its logarithm, or that of its distance below `reference`."""
     reference: Real
-    """What drops are counted from."""
+    """Reference of drops."""
     low: Real
     high: Real
-    """What is scaled to -1 and 1, of what the networks know."""
+    """Transformed values that are scaled to -1 and 1."""
     usual: Annotated[Real, Field(gt=0)]
     """How far the members disagree at most in most cases, in sizes of the errors."""
     factor: Annotated[Real, Field(ge=0)]
@@ -90,7 +90,7 @@ class Score(Part):
 
 
 class CollapseScore(Part):
-    """How well it was told which lines do not carry their load, in cases that were held out."""
+    """How well collapses were predicted, in cases that were held out."""
 
     share: Real
     """Of the cases that collapsed or stalled."""
@@ -133,10 +133,10 @@ class ModelFile(Part):
     domain: Domain
     outputs: Annotated[tuple[Output, ...], Field(min_length=1)]
     tried: dict[Name, dict[Name, Real]]
-    """Errors for cases not seen, by what the networks tell and by their number of neurons."""
+    """Errors for cases not seen, by what the networks predict and by their number of neurons."""
     figures: Weights
     noise: Weights
-    """Networks that tell the logarithm of the size of the figures' errors."""
+    """Networks that predict the logarithm of the size of the figures' errors."""
     collapse: Weights | None
     """None if the line carried its load in every case."""
     scores: tuple[Score, ...]
@@ -148,7 +148,7 @@ class ModelFile(Part):
         if len(set(names)) < len(names):
             raise fault("an input that occurs twice", REMEDY)
         if not {each.of for each in self.inputs.multiples} <= set(names):
-            raise fault("a multiple of what is no input", REMEDY)
+            raise fault("a multiple of something that is not an input", REMEDY)
         if any(each.factor == 0.0 for each in self.inputs.multiples):
             raise fault("a multiple by 0", REMEDY)
         if any(each.kind == "number" and not each.low < each.high for each in self.inputs.varying):
@@ -157,7 +157,7 @@ class ModelFile(Part):
             each for each in self.inputs.varying if each.kind == "number" and each.scale == "log"
         ]
         if any(each.low <= 0.0 for each in logs):
-            raise fault("a logarithm of what is not positive", REMEDY)
+            raise fault("a logarithm of a number that is not positive", REMEDY)
         if not fits(self.domain, self.inputs):
             raise fault("a domain of other inputs", REMEDY)
         count = len(self.outputs)
@@ -174,7 +174,7 @@ def read_model(path: Path) -> ModelFile:
     Raises
     ------
     ApproximatorError
-        It cannot be read, or is no such file.
+        It cannot be read, or is not such a file.
     ScenarioError
         It is one, and damaged; all faults are listed.
     """
@@ -210,11 +210,8 @@ def _document(path: Path) -> Any:
 
 def _finding(detail: dict[str, Any], path: Path) -> Finding:
     key = ".".join(str(part) for part in detail["loc"])
-    shown = repr(detail["input"]) if detail["type"] != "missing" else ""
-    if len(shown) > 60:
-        shown = f"{shown[:57]}..."
-    problem = detail["msg"]
-    return Finding(str(path), key, shown, f"the file is damaged: {problem}", REMEDY)
+    value = shortened(repr(detail["input"])) if detail["type"] != "missing" else ""
+    return Finding(str(path), key, value, f"the file is damaged: {detail['msg']}", REMEDY)
 
 
 def check_target(path: Path, force: bool) -> None:
@@ -235,7 +232,7 @@ def check_target(path: Path, force: bool) -> None:
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file that is there whole or not at all.
+    """Write a file, whole or not at all.
 
     Raises
     ------
@@ -247,9 +244,9 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 def _unwritable(path: Path) -> AbstractContextManager[None]:
     """Raise an error of the system as one of an approximator's file."""
-    return explained(path, f"make room, or {ANOTHER}", ApproximatorError)
+    return explained(path, f"free space, or {ANOTHER}", ApproximatorError)
 
 
 def text_of_model(model: ModelFile) -> str:
-    """The file as text: numbers as they are, to the last digit."""
+    """The file as text, with all digits of its numbers."""
     return json.dumps(model.model_dump(mode="json"), indent=None, separators=(",", ":")) + "\n"

@@ -1,13 +1,13 @@
-r"""Ensembles of feed-forward networks with one hidden tanh layer beside direct connections.
+r"""Ensembles of feed-forward networks with one hidden tanh layer and direct connections.
 
 .. math::
 
     y_o = b^2_o + \sum_k w^0_{k,o} \hat x_k
         + \sum_l w^2_{l,o} \, \tanh\Big(b^1_l + \sum_k w^1_{k,l} \hat x_k\Big)
 
-Inputs and outputs are scaled to [-1, 1].  The direct connections, which the source does not have, take
-over what is linear, so that the neurons are there for the rest.  The members of an ensemble have the
-same shape and have seen different cases; how far they differ tells how much the answer depends on that.
+Inputs and outputs are scaled to [-1, 1].  The direct connections, which the source does not have,
+represent the linear part, and the neurons the rest.  The members of an ensemble have the same shape
+and have seen different cases; their spread shows how much the prediction depends on that.
 
 References
 ----------
@@ -53,13 +53,13 @@ class Ensemble:
     def evaluate(self, x: Array) -> Array:
         """Outputs of each member, shape (members, rows, outputs), of scaled inputs (rows, inputs).
 
-        In single precision, which is three times as fast: six digits are more than any case knows.
+        In single precision, which is three times as fast: the cases are less exact than its six digits.
 
         References
         ----------
         [Boullanger2009]_, eq. (B.1)-(B.3).
         """
-        found = np.empty((self.size, len(x), self.b2.shape[1]))
+        outputs = np.empty((self.size, len(x), self.b2.shape[1]))
         w0, w1, b1, w2 = (part.astype(np.float32) for part in (self.w0, self.w1, self.b1, self.w2))
         single = x.astype(np.float32)
         for first in range(0, len(x), BLOCK):
@@ -67,13 +67,13 @@ class Ensemble:
             neurons = single[rows] @ w1
             neurons += b1[:, None, :]
             np.tanh(neurons, out=neurons)
-            found[:, rows] = neurons @ w2 + single[rows] @ w0
-        found += self.b2[:, None, :]
-        return found
+            outputs[:, rows] = neurons @ w2 + single[rows] @ w0
+        outputs += self.b2[:, None, :]
+        return outputs
 
 
 def logistic(y: Array) -> Array:
-    """Probability of what a classifying network puts out, 1 / (1 + e^{-y}).
+    """Probability from the output of a classifying network, 1 / (1 + e^{-y}).
 
     References
     ----------

@@ -1,8 +1,8 @@
-"""How the networks know outputs: some by a logarithm, all scaled to [-1, 1].
+"""How the networks represent outputs: some by a logarithm, all scaled to [-1, 1].
 
 Most outputs are products of what they depend on, such as the energy of the traffic and the length: their
-logarithms are sums, and errors relative.  The lowest voltage is not, but its drop is, as it grows with
-the product of load and impedance.
+logarithms are sums, and errors relative.  The lowest voltage is not, but its drop is, as it increases
+with the product of load and impedance.
 """
 
 from typing import Any
@@ -14,11 +14,11 @@ from tpss.approximator.network import Array
 from tpss.errors import ApproximatorError
 
 ABOVE = 0.05
-"""How far above the highest trained voltage drops are counted from, in ranges of the trained ones."""
+"""Distance from the highest trained voltage up to the reference of drops, in trained ranges."""
 
 
 def output_of(name: str, values: Array) -> Output:
-    """How an output is scaled whose values in the trained cases are these.
+    """Scaling of an output with these values in the trained cases.
 
     Raises
     ------
@@ -39,12 +39,12 @@ def output_of(name: str, values: Array) -> Output:
         usual=1.0,
         factor=0.0,
     )
-    low, high = known(np.array([lowest, highest]), unscaled).tolist()
+    low, high = transformed(np.array([lowest, highest]), unscaled).tolist()
     return unscaled.model_copy(update={"low": low, "high": high})
 
 
-def known(values: Any, output: Output) -> Array:
-    """What the networks know of values: themselves, their logarithm, or that of the drop to them."""
+def transformed(values: Any, output: Output) -> Array:
+    """Values, their logarithms, or those of the drops to them, as the networks use them."""
     plain: Array = np.asarray(values, dtype=float)
     if output.scale == "log":
         plain = np.log(plain)
@@ -53,8 +53,8 @@ def known(values: Any, output: Output) -> Array:
     return plain
 
 
-def told(values: Array, output: Output) -> Array:
-    """Values from what the networks know of them."""
+def restored(values: Array, output: Output) -> Array:
+    """Inverse of `transformed`."""
     if output.scale == "log":
         return np.exp(values)
     if output.scale == "drop":
@@ -69,7 +69,7 @@ def scaled(values: Any, output: Output) -> Array:
     ----------
     [Boullanger2009]_, eq. (C.10).
     """
-    return 2.0 * (known(values, output) - output.low) / (output.high - output.low) - 1.0
+    return 2.0 * (transformed(values, output) - output.low) / (output.high - output.low) - 1.0
 
 
 def unscaled(values: Array, output: Output) -> Array:
@@ -79,4 +79,4 @@ def unscaled(values: Array, output: Output) -> Array:
     ----------
     [Boullanger2009]_, eq. (F.10).
     """
-    return told(output.low + (output.high - output.low) * (values + 1.0) / 2.0, output)
+    return restored(output.low + (output.high - output.low) * (values + 1.0) / 2.0, output)

@@ -1,4 +1,4 @@
-"""How well an approximator predicts cases that it has not seen, and how well simpler means do."""
+"""How well an approximator predicts cases that it has not seen, next to simpler methods."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -17,7 +17,7 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Cases:
-    """Cases with what came of them."""
+    """Cases with their outputs."""
 
     x: Array
     """Scaled inputs, shape (cases, numbers)."""
@@ -32,13 +32,13 @@ class Cases:
 
 
 def unit_of_error(scale: str) -> Literal["%", ""]:
-    """Errors of what is known by its logarithm are relative."""
+    """Errors of outputs with a logarithmic scale are relative."""
     return "%" if scale == "log" else ""
 
 
-def errors_of(true: Array, found: Array, scale: str) -> Array:
+def errors_of(true: Array, predicted: Array, scale: str) -> Array:
     """Size of the errors, in % or in the output's unit."""
-    size: Array = np.abs(found - true)
+    size: Array = np.abs(predicted - true)
     return 100.0 * size / true if scale == "log" else size
 
 
@@ -47,16 +47,14 @@ def score_figures(
 ) -> tuple[Score, ...]:
     """Scores of all outputs, in cases in which the line carried its load."""
     cases = tested.of(np.flatnonzero(tested.carried))
-    found = approximator.figures(cases.x)
+    predicted = approximator.figures(cases.x)
     linear, nearest = (simple.linear(cases.x), simple.nearest(cases.x)) if simple else (None, None)
     scores = []
     for k, output in enumerate(approximator.file.outputs):
         name, scale, true = output.name, output.scale, cases.y[output.name]
-        low, value, high = found[f"{name}.low"], found[name], found[f"{name}.high"]
-        errors, half = (
-            errors_of(true, value, scale),
-            errors_of(value, value + (high - low) / 2.0, scale),
-        )
+        low, value, high = (predicted[key] for key in (f"{name}.low", name, f"{name}.high"))
+        errors = errors_of(true, value, scale)
+        half = errors_of(value, value + (high - low) / 2.0, scale)
         scores.append(
             Score(
                 name=name,
@@ -72,22 +70,22 @@ def score_figures(
     return tuple(scores)
 
 
-def _ninetieth(true: Array, found: Array | None, k: int, scale: str) -> float | None:
-    return None if found is None else _percentile(errors_of(true, found[:, k], scale), 90)
+def _ninetieth(true: Array, simple: Array | None, k: int, scale: str) -> float | None:
+    return None if simple is None else _percentile(errors_of(true, simple[:, k], scale), 90)
 
 
 def score_collapse(
     approximator: Approximator, tested: Cases, simple: "Simple | None" = None
 ) -> CollapseScore | None:
     """Scores of the probability of a collapse."""
-    found = approximator.collapse(tested.x)
-    if not found:
+    prediction = approximator.collapse(tested.x)
+    if not prediction:
         return None
     collapsed = ~tested.carried
-    probability = found[COLLAPSE]
+    probability = prediction[COLLAPSE]
 
-    def accuracy(told: Flags) -> float:
-        return float(np.mean(told == collapsed))
+    def accuracy(predicted: Flags) -> float:
+        return float(np.mean(predicted == collapsed))
 
     return CollapseScore(
         share=float(np.mean(collapsed)),
@@ -103,7 +101,7 @@ def _percentile(values: Array, percent: float) -> float:
 
 
 class Simple:
-    """What simpler means make of the same cases: linear regression, and the nearest case."""
+    """Simpler methods for the same cases: linear regression, and the nearest case."""
 
     def __init__(self, approximator: Approximator, trained: Cases) -> None:
         from sklearn.linear_model import LinearRegression, LogisticRegression
@@ -128,13 +126,11 @@ class Simple:
 
     def linear_collapse(self, x: Array) -> Flags:
         """Whether the line collapses, by logistic regression."""
-        found: Flags = self._line.predict(x)
-        return found
+        return np.asarray(self._line.predict(x))
 
     def nearest_collapse(self, x: Array) -> Flags:
         """Whether the nearest trained case collapsed."""
-        found: Flags = self._neighbour.predict(x)
-        return found
+        return np.asarray(self._neighbour.predict(x))
 
     def _plain(self, y: Array) -> Array:
         return np.column_stack([unscaled(y[:, k], each) for k, each in enumerate(self._outputs)])

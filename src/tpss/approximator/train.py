@@ -1,4 +1,4 @@
-"""From the table of a study to an approximator."""
+"""Training of an approximator on the table of a study."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ import pandas as pd
 from tpss.approximator import fit as fitting
 from tpss.approximator.approximator import Approximator
 from tpss.approximator.calibrate import deviation, factor_of, log_sizes, usual_spread
-from tpss.approximator.domain import Domain, domain_of
+from tpss.approximator.domain import domain_of
 from tpss.approximator.forms import FORMS, with_traffic
-from tpss.approximator.inputs import Inputs, inputs_of_table
+from tpss.approximator.inputs import inputs_of_table
 from tpss.approximator.model_file import VERSION, Data, ModelFile, Output, Weights
 from tpss.approximator.network import Array, Ensemble
 from tpss.approximator.scales import output_of, scaled
@@ -22,13 +22,13 @@ from tpss.approximator.scores import Cases, Simple, score_collapse, score_figure
 from tpss.errors import ApproximatorError
 
 HELD_OUT = 0.2
-"""Share of the cases that are not trained on, but predicted to see how well that goes."""
+"""Share of the cases that are not trained on, but used to score the predictions."""
 
 FEWEST = 100
-"""Cases, with lines that carry their load, that an approximator can be trained on."""
+"""Least number of cases with lines that carry their load."""
 
 FEWEST_COLLAPSES = 10
-"""Cases with lines that do not, if there are any."""
+"""Least number of cases with lines that do not, if there are any."""
 
 
 def train_approximator(
@@ -45,12 +45,12 @@ def train_approximator(
     folder : str or Path
         Folder that `tpss.run_study` has written; the study need not be finished.
     form : str
-        ``aggregated``; ``profile``: told more of the gradients than their mean and standard deviation;
-        or ``original``: the highest mean speed of a train added to a line.
+        ``aggregated``; ``profile``: with more statistics of the gradients than mean and standard
+        deviation; or ``original``: the highest mean speed of a train added to a line.
     seed : int
-        What all draws follow from.
+        Seed of the random numbers.
     report : callable, optional
-        Called with the number of networks that are fitted, and how many there will be.
+        Called with the number of networks that are fitted so far, and their total number.
 
     Returns
     -------
@@ -65,11 +65,7 @@ def train_approximator(
         The table has too few cases, or nothing varies in it.
     """
     table, origin = read_table(Path(folder))
-    return _train(table, origin, form, seed, report or _no_report)
-
-
-def _no_report(_done: int, _whole: int) -> None:
-    pass
+    return _train(table, origin, form, seed, report or (lambda *_: None))
 
 
 @dataclass(frozen=True)
@@ -97,7 +93,7 @@ def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
     if table["time_step_min"].nunique() > 1:
         steps = ", ".join(f"{step:g}" for step in sorted(table["time_step_min"].unique()))
         raise ApproximatorError(
-            f"{folder} mixes time steps ({steps} min), which tell different things of the same line; "
+            f"{folder} mixes time steps ({steps} min), which give different results for the same line; "
             "run the study with one of them"
         )
     origin = Origin(
@@ -111,7 +107,7 @@ def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
 
 
 def demand_packages() -> None:
-    """Refuse to go on without what training needs.
+    """Demand the packages that training needs.
 
     Raises
     ------
@@ -121,7 +117,7 @@ def demand_packages() -> None:
     absent = [name for module, name in packages.items() if find_spec(module) is None]
     if absent:
         raise ApproximatorError(
-            f'to train an approximator needs {", ".join(absent)}: pip install "tpss[study]"'
+            f'training an approximator needs {", ".join(absent)}: pip install "tpss[study]"'
         )
 
 
@@ -150,7 +146,9 @@ def _train(
     tasks = {"figures": (carried.x, y), "noise": (carried.x, y)}
     if not trained.carried.all():
         tasks["collapse"] = (trained.x, classes)
-    tick = _counter(sum(fitting.fits_of(kind, *task) for kind, task in tasks.items()), report)
+    tick = _counter(
+        sum(fitting.number_of_fits(kind, *task) for kind, task in tasks.items()), report
+    )
     figures = fitting.fit("figures", carried.x, y, seed, tick)
     errors = figures.unseen - y
     noise = fitting.fit("noise", carried.x, log_sizes(errors), seed, tick)
@@ -164,12 +162,15 @@ def _train(
         form=form,
         data=_data(table, used, held_out, seed, origin),
         inputs=inputs,
-        domain=_domain(inputs, given.inputs, kept),
+        domain=domain_of({name: each[kept] for name, each in given.inputs.items()}, inputs),
         outputs=tuple(
             _calibrated(output, errors[:, k], noise.unseen[:, k], figures.spread[:, k])
             for k, output in enumerate(outputs)
         ),
-        tried={kind: _by_neurons(each.errors) for kind, each in fitted.items()},
+        tried={
+            kind: {str(neurons): error for neurons, error in each.errors.items()}
+            for kind, each in fitted.items()
+        },
         figures=_weights(figures.ensemble),
         noise=_weights(noise.ensemble),
         collapse=_weights(fitted["collapse"].ensemble) if "collapse" in fitted else None,
@@ -183,10 +184,6 @@ def _calibrated(output: Output, errors: Array, log_noise: Array, spread: Array) 
     usual = usual_spread(log_noise, spread)
     factor = factor_of(errors, deviation(log_noise, spread, usual))
     return output.model_copy(update={"usual": usual, "factor": factor})
-
-
-def _by_neurons(errors: dict[int, float]) -> dict[str, float]:
-    return {str(neurons): error for neurons, error in errors.items()}
 
 
 def _scored(file: ModelFile, trained: Cases, tested: Cases) -> Approximator:
@@ -227,13 +224,8 @@ def cases_of(table: pd.DataFrame, x: Array, names: list[str]) -> Cases:
     return Cases(x, {k: np.where(carried, v, np.nan) for k, v in y.items()}, carried)
 
 
-def _domain(inputs: Inputs, values: dict[str, Array], kept: fitting.Indices) -> Domain:
-    return domain_of({name: each[kept] for name, each in values.items()}, inputs)
-
-
 def _weights(ensemble: Ensemble) -> Weights:
-    parts = {name: getattr(ensemble, name).tolist() for name in ("w0", "w1", "b1", "w2", "b2")}
-    return Weights.model_validate(parts)
+    return Weights.model_validate({name: part.tolist() for name, part in vars(ensemble).items()})
 
 
 def _counter(whole: int, report: Callable[[int, int], None]) -> Callable[[], None]:
@@ -253,14 +245,11 @@ def _data(
     table: pd.DataFrame, used: pd.DataFrame, held_out: fitting.Indices, seed: int, origin: Origin
 ) -> Data:
     return Data(
-        study=origin.study,
-        study_hash=origin.study_hash,
+        **vars(origin),
         cases=len(table),
         used=len(used),
         carried=int((used["status"] == "finished").sum()),
         held_out=tuple(used["case"].to_numpy()[held_out].tolist()),
         time_step_min=float(used["time_step_min"].iloc[0]),
         seed=seed,
-        tpss_version=origin.tpss_version,
-        kernel_hash=origin.kernel_hash,
     )

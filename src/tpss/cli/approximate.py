@@ -77,7 +77,7 @@ def predict_lines(
     out: Path | None,
     force: bool,
 ) -> int:
-    """Predict, print, and write what is asked for; return the exit code."""
+    """Predict, print, and write what is requested; return the exit code."""
     from tpss.approximator.approximator import load_approximator
     from tpss.approximator.model_file import check_target
 
@@ -229,6 +229,8 @@ def check_model(file: Path, folder: Path | None) -> int:
 
 
 def _print_model(model: "Approximator", console: Console) -> None:
+    from tpss.approximator.inputs import shown
+
     data, inputs = model.file.data, model.file.inputs
     description = [
         f"Trained on {data.used - len(data.held_out):,} cases of the study {data.study} "
@@ -245,8 +247,9 @@ def _print_model(model: "Approximator", console: Console) -> None:
         others = ", ".join(other.name for other in inputs.multiples if other.of == each.name)
         table.add_row(*map(escape, (each.name, each.range, units.label(each.name), others)))
     for name, value in inputs.fixed.items():
-        shown = value if isinstance(value, str) else f"{value:.6g}"
-        table.add_row(*map(escape, (name, f"{shown} only", units.label(name), "or left out")))
+        table.add_row(
+            *map(escape, (name, f"{shown(value)} only", units.label(name), "or left out"))
+        )
     console.print(table)
     _print_scores(model.file.scores, model.file.collapse_score, console)
 

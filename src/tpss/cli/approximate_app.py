@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Quiet
+from tpss.cli.arguments import Force, Quiet, argument, option
 
 app = typer.Typer(
     help="TPSA, the approximator: learn from the simulations of a study, and predict further ones.",
@@ -24,10 +24,7 @@ class FormName(StrEnum):
 
 
 ModelFile = Annotated[
-    Path,
-    typer.Argument(
-        metavar="MODEL", help="File written by tpss approximate train.", show_default=False
-    ),
+    Path, argument(metavar="MODEL", help="File written by tpss approximate train.")
 ]
 
 
@@ -37,10 +34,7 @@ ModelFile = Annotated[
 )
 def train(
     folder: Annotated[
-        Path,
-        typer.Argument(
-            metavar="DIR", help="Folder of a study, written by tpss sweep.", show_default=False
-        ),
+        Path, argument(metavar="DIR", help="Folder of a study, written by tpss sweep.")
     ],
     out: Annotated[Path, typer.Option(help="File to write (JSON).")] = Path("model.json"),
     form: Annotated[
@@ -53,7 +47,7 @@ def train(
         ),
     ] = FormName.AGGREGATED,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random numbers.")] = 0,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    force: Force = False,
     quiet: Quiet = False,
 ) -> None:
     """Train an approximator on the table of a study.
@@ -77,26 +71,21 @@ def predict(
     model: ModelFile,
     set_: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--set",
             metavar="INPUT=VALUE",
             help="An input; tpss approximate check MODEL lists them; repeatable.",
-            show_default=False,
         ),
     ] = None,
     table: Annotated[
         Path | None,
-        typer.Option(
-            help="Lines to predict, one row per line and one column per input (.csv or .parquet).",
-            show_default=False,
+        option(
+            help="Lines to predict, one row per line and one column per input (.csv or .parquet)."
         ),
     ] = None,
     scenario: Annotated[
         Path | None,
-        typer.Option(
-            help="Scenario file (TOML) to compute the inputs from; --set changes them.",
-            show_default=False,
-        ),
+        option(help="Scenario file (TOML) to compute the inputs from; --set changes them."),
     ] = None,
     flag: Annotated[
         bool,
@@ -106,12 +95,9 @@ def predict(
         ),
     ] = False,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Write inputs and figures into this file (.csv or .parquet).", show_default=False
-        ),
+        Path | None, option(help="Write inputs and figures into this file (.csv or .parquet).")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    force: Force = False,
 ) -> None:
     """Predict figures of lines that were not simulated, each with an interval.
 
@@ -136,10 +122,7 @@ def predict(
 def check(
     model: ModelFile,
     folder: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[DIR]", help="Folder of a study to predict and compare.", show_default=False
-        ),
+        Path | None, argument(metavar="[DIR]", help="Folder of a study to predict and compare.")
     ] = None,
 ) -> None:
     """Print what an approximator was trained on, its inputs and outputs, and how accurate it is.

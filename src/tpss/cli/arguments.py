@@ -1,5 +1,6 @@
 """Arguments and options that several commands take."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -7,26 +8,24 @@ import typer
 
 from tpss.cli import complete
 
+option = partial(typer.Option, show_default=False)
+argument = partial(typer.Argument, show_default=False)
+
+Force = Annotated[bool, typer.Option("--force", help="Replace existing files.")]
+
 ScenarioFile = Annotated[
-    Path,
-    typer.Argument(
-        help="Scenario file (TOML).", show_default=False, autocompletion=complete.scenario_files
-    ),
+    Path, argument(help="Scenario file (TOML).", autocompletion=complete.scenario_files)
 ]
 
 Assignments = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
         "--set",
         metavar="KEY=VALUE",
         help="Set one value of the scenario, such as traffic.0.headway_min=12; repeatable.",
-        show_default=False,
     ),
 ]
 
-ResultFolder = Annotated[
-    Path,
-    typer.Argument(metavar="RESULT", help="Folder written by tpss run.", show_default=False),
-]
+ResultFolder = Annotated[Path, argument(metavar="RESULT", help="Folder written by tpss run.")]
 
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]

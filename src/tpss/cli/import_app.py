@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from tpss.cli.arguments import Force, argument, option
+
 app = typer.Typer(help="Make scenario files from files of other formats.", no_args_is_help=True)
 
 
@@ -18,12 +20,9 @@ def _imports() -> None:
     "--out vasteras"
 )
 def ttobench(
-    files: Annotated[
-        list[Path],
-        typer.Argument(metavar="FILE...", help="Tracks and trains (JSON).", show_default=False),
-    ],
-    out: Annotated[Path, typer.Option(help="Folder for the files.", show_default=False)],
-    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+    files: Annotated[list[Path], argument(metavar="FILE...", help="Tracks and trains (JSON).")],
+    out: Annotated[Path, option(help="Folder for the files.")],
+    force: Force = False,
 ) -> None:
     """Turn tracks and trains of TTOBench into lines and trains, and each pair into a scenario.
 

@@ -15,7 +15,15 @@ from typing import Annotated
 import typer
 
 from tpss.cli import approximate_app, complete, import_app
-from tpss.cli.arguments import Assignments, Quiet, ResultFolder, ScenarioFile
+from tpss.cli.arguments import (
+    Assignments,
+    Force,
+    Quiet,
+    ResultFolder,
+    ScenarioFile,
+    argument,
+    option,
+)
 from tpss.results.contents import FIGURE_NAMES
 from tpss.results.file_kinds import Kind
 
@@ -61,10 +69,7 @@ def _options(
 def run(
     file: ScenarioFile,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Folder for the result; by default results/NAME-NNN.", show_default=False
-        ),
+        Path | None, option(help="Folder for the result; by default results/NAME-NNN.")
     ] = None,
     set_: Assignments = None,
     force: Annotated[
@@ -73,11 +78,10 @@ def run(
     quiet: Quiet = False,
     show: Annotated[
         str | None,
-        typer.Option(
+        option(
             metavar="TRAIN",
             help="Print a train's motion, voltage, forces and current at every step, such as "
             "--show 'eastbound 1'.",
-            show_default=False,
         ),
     ] = None,
     report: Annotated[
@@ -100,21 +104,19 @@ def run(
 def report(
     results: Annotated[
         list[Path],
-        typer.Argument(
+        argument(
             metavar="RESULT...",
             help="Folder written by tpss run; several are compared side by side.",
-            show_default=False,
         ),
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
+        option(
             help="HTML file to write; by default report.html in the result folder, or for several "
-            "results comparison.html here.",
-            show_default=False,
+            "results comparison.html here."
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing report.")] = False,
+    force: Force = False,
 ) -> None:
     """Write a report of a result, or a comparison of several, into one HTML file.
 
@@ -142,23 +144,19 @@ def plot(
     ] = "all",
     train: Annotated[
         str | None,
-        typer.Option(
-            help="Train of journey, train-voltage and effort; by default the studied one.",
-            show_default=False,
-        ),
+        option(help="Train of journey, train-voltage and effort; by default the studied one."),
     ] = None,
     against: Annotated[
         Against, typer.Option(metavar="AXIS", help="time or distance, of the journey.")
     ] = Against.DISTANCE,
     out: Annotated[
         Path | None,
-        typer.Option(
+        option(
             help="File to write, .png, .svg or .pdf, or a folder for all; by default "
-            "RESULT/figures/NAME.png.",
-            show_default=False,
+            "RESULT/figures/NAME.png."
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+    force: Force = False,
 ) -> None:
     """Draw figures of a result, one file per figure, for print and presentations.
 
@@ -187,10 +185,9 @@ def export(
     result: ResultFolder,
     to: Annotated[Kind, typer.Option(metavar="KIND", help="csv, xlsx or parquet.")] = Kind.CSV,
     out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for the files; by default RESULT/tables.", show_default=False),
+        Path | None, option(help="Folder for the files; by default RESULT/tables.")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+    force: Force = False,
 ) -> None:
     """Write the tables of a result as files for other programs; all files are written or none.
 
@@ -209,32 +206,20 @@ def export(
     "tpss sweep --summary converters"
 )
 def sweep(
-    study: Annotated[
-        Path | None,
-        typer.Argument(help="Study file (TOML).", show_default=False),
-    ] = None,
+    study: Annotated[Path | None, argument(help="Study file (TOML).")] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for the table; a study that it holds in part is continued.",
-            show_default=False,
-        ),
+        option(help="Folder for the table; a study that it holds in part is continued."),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(
+        option(
             metavar="ADDRESS",
             help="Dask scheduler, such as tcp://10.0.0.1:8786; by default a local cluster.",
-            show_default=False,
         ),
     ] = None,
     workers: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            help="Processes of the local cluster; by default one per core.",
-            show_default=False,
-        ),
+        int | None, option(min=1, help="Processes of the local cluster; by default one per core.")
     ] = None,
     dry_run: Annotated[
         bool,
@@ -244,10 +229,7 @@ def sweep(
         ),
     ] = False,
     summary: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="Print key figures of a study's folder.", show_default=False
-        ),
+        Path | None, option(metavar="DIR", help="Print key figures of a study's folder.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -272,9 +254,7 @@ def sweep(
 
 @app.command(epilog="Example:  tpss new my-line")
 def new(
-    folder: Annotated[
-        Path, typer.Argument(help="Folder to write; existing files are kept.", show_default=False)
-    ],
+    folder: Annotated[Path, argument(help="Folder to write; existing files are kept.")],
 ) -> None:
     """Write a small, commented scenario to start from.
 
@@ -289,18 +269,16 @@ def new(
 def library(
     kind: Annotated[
         str | None,
-        typer.Argument(
+        argument(
             help="locomotives, catenaries, converters, transformers, high_voltage_lines, "
             "voltage_limits or systems.",
-            show_default=False,
             autocompletion=complete.library_kinds,
         ),
     ] = None,
     name: Annotated[
         str | None,
-        typer.Argument(
+        argument(
             help="An entry, to see all its values, their meaning and how a scenario uses it.",
-            show_default=False,
             autocompletion=complete.library_names,
         ),
     ] = None,
@@ -317,8 +295,7 @@ def library(
 @app.command(epilog="Example:  tpss schema --out scenario.schema.json")
 def schema(
     out: Annotated[
-        Path | None,
-        typer.Option(help="File to write; by default the schema is printed.", show_default=False),
+        Path | None, option(help="File to write; by default the schema is printed.")
     ] = None,
 ) -> None:
     """Print the JSON Schema of scenario files, which editors use to complete and check them.

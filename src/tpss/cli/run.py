@@ -50,7 +50,7 @@ def run_scenario(
         return _report(ended, quiet, show, report)
     except KeyboardInterrupt:
         if not ended.fault:
-            print(f"Interrupted.  The result lies in {ended.folder}", file=sys.stderr)
+            print(f"Interrupted.  The result is in {ended.folder}", file=sys.stderr)
         return INTERRUPTED
     finally:
         if ended.fault:
@@ -64,7 +64,7 @@ class _Ended:
     result: "Result"
     folder: Path | None
     fault: str
-    """Why the result could not be saved as asked; empty if it was."""
+    """Why the result could not be saved as requested; empty if it was."""
     interrupted: bool
 
 

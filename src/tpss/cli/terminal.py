@@ -30,7 +30,7 @@ def progress_bar(
     Parameters
     ----------
     name, detail : str
-        What stands before and after the bar.
+        Texts before and after the bar.
     state_of : callable
         Turns what is reported into fields of a task.
     console : Console

@@ -63,7 +63,7 @@ def folder_beside(target: Path) -> Iterator[Path]:
 
 
 def try_out(target: Path) -> None:
-    """Write a little beside a folder to be made, as nothing else proves that it can be."""
+    """Write a trial file next to a folder to be made, to prove that it can be made."""
     with folder_beside(target) as work:
         (work / "trial").write_bytes(bytes(TRIAL_BYTES))
 

@@ -1,1 +1,1 @@
-"""Scenario parts from the files of others: what was taken, left out and assumed is stated in them."""
+"""Scenario parts from files of other formats, which state what was read, left out and assumed."""

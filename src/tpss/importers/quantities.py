@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, ScenarioError, shortened
 from tpss.scenario.files import read_text, shown_line
 
 Units = Mapping[str, float]
@@ -29,7 +29,7 @@ M_S2: Units = {"m/s^2": 1.0, "m/s²": 1.0}
 SHARE: Units = {"-": 1.0, "%": 0.01}
 
 DIGITS = 9
-"""Decimals that are written: enough for a micrometre of a line, too few for a rounding to show."""
+"""Decimals that are written: a micrometre of a line, without digits from rounding."""
 
 
 class Quantities:
@@ -38,8 +38,8 @@ class Quantities:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.findings: list[Finding] = []
-        self.taken: set[str] = set()
-        """Names of the quantities that were asked for."""
+        self.used: set[str] = set()
+        """Names of the quantities that were read."""
         self.given: dict[str, str] = {}
         """Values by their keys as they stand in the file, each with its unit."""
         text = read_text(path)
@@ -48,7 +48,7 @@ class Quantities:
         except (ValueError, RecursionError) as error:
             number = getattr(error, "lineno", None)  # of errors of the format alone
             place, value = shown_line(text, number) if number else ("", "")
-            remedy = "mend the file at that place, or name another file"
+            remedy = "correct the file at that place, or name another file"
             raise ScenarioError(
                 [Finding(str(path), place, value, f"not JSON: {error}", remedy)]
             ) from error
@@ -62,17 +62,16 @@ class Quantities:
 
     def blame(self, key: str, value: object, problem: str, remedy: str) -> None:
         """Note a fault."""
-        shown = "" if value is None else repr(value)
-        shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
+        shown = "" if value is None else shortened(repr(value))
         self.findings.append(Finding(str(self.path), key, shown, problem, remedy))
 
-    def untaken(self) -> list[str]:
-        """Names in the document that nobody has asked for."""
-        return [name for name in self.document if name not in self.taken]
+    def unused(self) -> list[str]:
+        """Names of the quantities in the document that were not read."""
+        return [name for name in self.document if name not in self.used]
 
     def number(self, name: str, units: Units) -> float:
         """Value of ``{"unit": ..., "value": ...}``; NaN, with a finding, if it is at fault."""
-        self.taken.add(name)
+        self.used.add(name)
         if name not in self:
             self.blame(name, None, "it is missing", "add it, with its unit and value")
             return math.nan
@@ -82,7 +81,7 @@ class Quantities:
 
     def column(self, name: str, units: Units) -> list[float]:
         """Values of ``{"unit": ..., "values": [...]}``."""
-        self.taken.add(name)
+        self.used.add(name)
         entry = self._entry(name)
         scale = self._scale(f"{name}.unit", entry.get("unit"), units)
         rows = self._rows(name, entry)
@@ -91,7 +90,7 @@ class Quantities:
 
     def pairs(self, name: str, columns: Mapping[str, Units]) -> list[tuple[float, ...]]:
         """Rows of ``{"units": {...}, "values": [[...], ...]}``, a value for each of the columns."""
-        self.taken.add(name)
+        self.used.add(name)
         entry = self._entry(name)
         units = entry.get("units")
         units = units if isinstance(units, dict) else {}
@@ -99,28 +98,28 @@ class Quantities:
             self._scale(f"{name}.units.{column}", units.get(column), known)
             for column, known in columns.items()
         ]
-        found: list[tuple[float, ...]] = []
+        rows: list[tuple[float, ...]] = []
         for i, row in enumerate(self._rows(name, entry)):
             key = f"{name}.values.{i}"
             if not isinstance(row, list) or len(row) != len(columns):
                 self.blame(key, row, f"not a list of {', '.join(columns)}", "give these values")
-                found.append((math.nan,) * len(columns))
+                rows.append((math.nan,) * len(columns))
                 continue
-            found.append(
+            rows.append(
                 tuple(
                     self._converted(f"{key}.{k}", value, scale)
                     for k, (value, scale) in enumerate(zip(row, scales, strict=True))
                 )
             )
-        return found
+        return rows
 
     def demand_ascending(self, name: str, values: Sequence[float]) -> None:
-        """Note a fault if the values, positions of a quantity's rows, do not grow."""
+        """Note a fault if the values, positions of a quantity's rows, do not increase."""
         for i, (before, after) in enumerate(zip(values, values[1:], strict=False), 1):
             if after <= before:
                 key = f"{name}.values.{i}"
                 key = key if key in self.given else f"{key}.0"
-                problem = f"the position does not grow: {after:g} km follows {before:g} km"
+                problem = f"the position does not increase: {after:g} km follows {before:g} km"
                 remedy = "put the rows in ascending order"
                 self.findings.append(Finding(str(self.path), key, self.given[key], problem, remedy))
 

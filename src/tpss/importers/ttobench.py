@@ -1,6 +1,6 @@
 """Tracks and trains of TTOBench, the open library of train trajectory optimization problems.
 
-A track's gradients and speed limits hold from their positions on, and gradients are positive uphill,
+A track's gradients and speed limits apply from their positions on, and gradients are positive uphill,
 as here.  A train is a highest force and power, a rotating mass ρ as a share of its mass, and a running
 resistance; it runs by m (1 + ρ) a = F - R(v) - m g α, power at the pantograph is F v / η.
 
@@ -34,12 +34,12 @@ from tpss.scenario.scenario import Scenario
 
 EFFICIENCY = 0.8
 RETARDATION_M_S2 = 0.85
-"""Taken where a train states none."""
+"""Used where a train states none."""
 
 _WHY_LEFT_OUT = {
     "altitude": "only differences of altitude count, which the gradients give",
     "curvatures": "curve resistance is not modelled",
-    "ETCS braking data": "braking is at the highest retardation, without a supervision curve",
+    "ETCS braking data": "braking is at the highest deceleration, without a supervision curve",
     "tunnel resistance": "resistance in tunnels is not modelled",
     "num seats": "it does not act on the train's motion",
     "num coaches": "it does not act on the train's motion",
@@ -48,7 +48,7 @@ _WHY_LEFT_OUT = {
     "max reg braking force": "trains do not feed power back",
     "efficiency traction": "a map of losses over load and speed is not modelled",
     "efficiency reg brake": "trains do not feed power back",
-    "max pn braking force": "the highest retardation alone limits the brakes",
+    "max pn braking force": "the brakes are limited by the highest deceleration only",
 }
 
 
@@ -71,12 +71,12 @@ _ORIGIN = {
     r"trains\.t\.tractive_effort\.max_force_kn": "max traction force.value",
     r"trains\.t\.tractive_effort\.max_power_kw": "max traction power.value",
 }
-"""Where the values of a scenario stand in the files."""
+"""Places of a scenario's values in the files."""
 
 
 @dataclass(frozen=True)
 class Imported:
-    """A part of a scenario, and what became of the file that it was made from."""
+    """A part of a scenario, and how the file that it was made from was used."""
 
     name: str
     source: Path
@@ -121,7 +121,7 @@ def track(data: Quantities) -> Imported:
     Raises
     ------
     ScenarioError
-        Values are missing, of unknown units, or make no line.
+        Values are missing, of unknown units, or not valid for a line.
     """
     name = _name(data)
     stops_km = data.column("stops", KM)
@@ -153,9 +153,9 @@ def track(data: Quantities) -> Imported:
     if not assumed:
         taken.append(f"gradients: {len(gradients)}, positive uphill, from their positions on")
     assumed.append(f"names of the stations: {', '.join(names)}, from the file's id")
-    found = Imported(name, data.path, line, taken, _left_out(data), assumed)
-    _check(found, data, line=line)
-    return found
+    imported = Imported(name, data.path, line, taken, _left_out(data), assumed)
+    _check(imported, data, line=line)
+    return imported
 
 
 def train(data: Quantities) -> Imported:
@@ -164,7 +164,7 @@ def train(data: Quantities) -> Imported:
     Raises
     ------
     ScenarioError
-        Values are missing, of unknown units, or make no train.
+        Values are missing, of unknown units, or not valid for a train.
     """
     assumed: list[str] = []
     mass_t = data.number("mass", TONNES)
@@ -189,20 +189,20 @@ def train(data: Quantities) -> Imported:
     if "max acceleration" in data:
         document["max_acceleration_m_s2"] = data.number("max acceleration", M_S2)
     assumed += [
-        "adhesive_mass_t is the whole mass: the stated force alone limits, not the rails; the format "
-        "has no adhesive mass",
-        "motor_inertia_kg is all of the rotating mass ρ m; it is accelerated by the motors, and left "
-        "out of account when they are off",
+        "adhesive_mass_t is the whole mass: only the stated force limits, not adhesion; the format has "
+        "no adhesive mass",
+        "motor_inertia_kg is all of the rotating mass ρ m; it is accelerated by the motors, and "
+        "neglected when they are off",
         "power_factor is 1, as of a four-quadrant converter; the format has none",
         "auxiliary_power_kw is 0; the format has none",
         "force and power do not depend on the line voltage (see full_voltage_kv and zero_voltage_kv)",
     ]
     if data.findings:
         raise ScenarioError(data.findings)
-    taken = [name for name in data.document if name in data.taken]
-    found = Imported(_name(data), data.path, document, taken, _left_out(data), assumed)
-    _check(found, data, train=document)
-    return found
+    taken = [name for name in data.document if name in data.used]
+    imported = Imported(_name(data), data.path, document, taken, _left_out(data), assumed)
+    _check(imported, data, train=document)
+    return imported
 
 
 def _rotating_share(data: Quantities, assumed: list[str]) -> float:
@@ -234,7 +234,7 @@ def _efficiency(data: Quantities, assumed: list[str]) -> float:
 
 def _name(data: Quantities) -> str:
     """Id of a file in letters, digits, hyphens and underscores; the file's own name without one."""
-    data.taken.add("metadata")
+    data.used.add("metadata")
     metadata = data.document.get("metadata")
     given = metadata.get("id") if isinstance(metadata, dict) else None
     text = given if isinstance(given, str) and given.strip() else data.path.stem
@@ -256,7 +256,7 @@ def station_names(name: str, count: int) -> list[str]:
 
 def _left_out(data: Quantities) -> list[str]:
     unknown = "not known to this importer"
-    return [f"{name}: {_WHY_LEFT_OUT.get(name, unknown)}" for name in data.untaken()]
+    return [f"{name}: {_WHY_LEFT_OUT.get(name, unknown)}" for name in data.unused()]
 
 
 def _check(
@@ -265,7 +265,7 @@ def _check(
     line: dict[str, Any] | None = None,
     train: dict[str, Any] | None = None,
 ) -> None:
-    """Validate a part in a scenario whose other parts stand in for those to come.
+    """Validate a part in a scenario whose other parts are placeholders.
 
     Raises
     ------
@@ -301,12 +301,12 @@ def _check(
         Scenario.from_document(document, part.source)
     except ScenarioError as error:
         own = [finding for finding in error.findings if not finding.key.startswith("traffic")]
-        found = dict.fromkeys(_at_its_origin(finding, data) for finding in own)
-        raise ScenarioError(list(found)) from error
+        findings = dict.fromkeys(_at_its_origin(finding, data) for finding in own)
+        raise ScenarioError(list(findings)) from error
 
 
 def _at_its_origin(finding: Finding, data: Quantities) -> Finding:
-    """A finding of a scenario's value, with the place and the value that it was made from."""
+    """A finding of a scenario's value, traced to the imported value."""
     key = finding.key
     if key == "line.length_km":
         key = f"line.stations.{len(data.document['stops']['values']) - 1}.position_km"

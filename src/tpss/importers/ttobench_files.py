@@ -1,4 +1,4 @@
-"""Files of a scenario from tracks and trains of TTOBench, with comments that say what was done."""
+"""Files of a scenario from tracks and trains of TTOBench, with comments on the import."""
 
 from pathlib import Path
 from textwrap import wrap
@@ -13,7 +13,7 @@ from tpss.scenario.files import PROFILE_COLUMNS
 WIDTH = 100
 
 _SCENARIO = """\
-# {track} with {train}, imported from TTOBench.  Track and train stand in files of their own.
+# {track} with {train}, imported from TTOBench.  Track and train are in separate files.
 format = 1
 name = "{name}"
 description = "{train} on {track}"
@@ -87,7 +87,7 @@ def _line_files(track: Imported) -> dict[str, str]:
     line = {key: value for key, value in track.document.items() if key != "gradients"}
     rows = [f"{row['from_km']:.10g},{row['permille']:.10g}" for row in track.document["gradients"]]
     head = [
-        "# Gradients hold from their positions on, positive uphill.",
+        "# Gradients apply from their positions on, positive uphill.",
         ",".join(PROFILE_COLUMNS.values()),
     ]
     return {
@@ -107,7 +107,7 @@ def _source(part: Imported) -> str:
 
 
 def _comments(part: Imported) -> str:
-    """What was taken from a file, left out and assumed, as comments."""
+    """What was read from a file, left out and assumed, as comments."""
     lines = [f"# Imported from {part.source.name} of TTOBench."]
     for title, items in sections(part):
         lines.append(f"# {title}:")
@@ -117,7 +117,7 @@ def _comments(part: Imported) -> str:
 
 
 def sections(part: Imported) -> list[tuple[str, list[str]]]:
-    """Headings and items of what was done with a file, empty ones left out."""
+    """Headings and items of the report on a file, empty ones left out."""
     every = [
         ("Taken", part.taken),
         ("Left out", part.left_out),
@@ -151,11 +151,11 @@ def write(texts: dict[str, str], folder: Path, force: bool) -> list[Path]:
         Files exist and may not be replaced, or cannot be written.
     """
     targets = [folder / name for name in texts]
-    there = [target for target in targets if target.exists() and not force]
-    if there:
+    existing = [target for target in targets if target.exists() and not force]
+    if existing:
         remedy = "give another --out, or --force to replace it"
         raise ScenarioError(
-            [Finding(str(target), "", "", "it exists already", remedy) for target in there]
+            [Finding(str(target), "", "", "it exists already", remedy) for target in existing]
         )
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What ships as data: locomotives, catenaries, converters, transformers, lines, limits.
+"""Data that ship with the package: locomotives, catenaries, converters, transformers, lines, limits.
 
 Each kind is a TOML file of this folder, each entry a table with units in its keys and a ``source``.
 """

@@ -1,7 +1,7 @@
 """A report of results: one HTML file that needs nothing else, to be read, printed and passed on.
 
 Jinja2 fills the page, because it escapes every name and text of a scenario; plotly draws, and its
-program is part of the file.  The page forbids itself all access to the network.
+script is part of the file.  The page blocks all access to the network.
 """
 
 import json
@@ -38,7 +38,7 @@ from tpss.results.result import Result
 STATUS_IN_WORDS = {
     "finished": "The run finished.",
     "collapsed": "The line cannot carry its load: the run collapsed.",
-    "stalled": "A train stalled, and ended the run.",
+    "stalled": "A train stalled, which ended the run.",
     "interrupted": "The run was interrupted.",
 }
 
@@ -50,7 +50,7 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
 """Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
 
 OF_A_JOURNEY = ("speed [km/h]", "voltage [kV]", "gradient [‰]")
-"""Panels of a journey; the page fills them anew when another train is chosen."""
+"""Panels of a journey; the page refills them when another train is chosen."""
 
 
 def write_report(
@@ -100,7 +100,7 @@ def report(result: Result) -> str:
     figures, data = _figures(result, voltage) if voltage else ({}, {})
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
-        tables.of_frame("stations", "Converter stations", result.stations),
+        tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_standards(result),
     ]
     return _page(
@@ -117,8 +117,8 @@ def report(result: Result) -> str:
 def comparison(results: Mapping[str, Result]) -> str:
     """Page that compares results side by side; curves of results whose audit failed are left out."""
     trusted = {label: result for label, result in results.items() if result.audit["passed"]}
-    found = {label: (result, line_voltage(result.dataset)) for label, result in trusted.items()}
-    drawn = {label: (result, line) for label, (result, line) in found.items() if line is not None}
+    voltages = {label: line_voltage(result.dataset) for label, result in trusted.items()}
+    drawn = {label: (trusted[label], line) for label, line in voltages.items() if line is not None}
     runs = {label: result for label, (result, _) in drawn.items()}
     figures, data = {}, {}
     if drawn:
@@ -159,14 +159,14 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
 
 
 def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
-    """What the page needs to move the trains of all runs in a plot; time goes in the finest steps."""
+    """Data to move the trains of all runs in a plot; time advances in the finest steps."""
     most = sampling.MOST_OF_TRAINS // len(runs)
-    found, thinned = [], False
+    moving, thinned = [], False
     for label, result in runs.items():
         samples = sampling.sample_trains(result.dataset, most)
         thinned = thinned or samples.thinned
         limits, gradients = result.scenario.standards.voltage_limits, result.scenario.line.gradients
-        found.append(
+        moving.append(
             {
                 "label": label,
                 "step_min": result.dataset.attrs["time_step_s"] / 60.0,
@@ -177,12 +177,12 @@ def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
                 "gradients": [[each.from_km, each.permille] for each in gradients],
             }
         )
-    finest = min(run["step_min"] for run in found)
+    finest = min(run["step_min"] for run in moving)
     return {
         "plot": plot,
         "step_min": finest,
-        "steps": max(round(run["steps"] * run["step_min"] / finest) for run in found),
-        "runs": found,
+        "steps": max(round(run["steps"] * run["step_min"] / finest) for run in moving),
+        "runs": moving,
         "chosen": None,
         "thinned": thinned,
     }
@@ -204,19 +204,19 @@ def _notes(result: Result, voltage: LineVoltage | None, data: Mapping[str, Any])
 
 
 def _about_samples(data: Mapping[str, Any], runs: Mapping[str, Result]) -> list[str]:
-    """What trains and curves are drawn from, where that is not every time step."""
+    """Notes on trains and curves that are not drawn from every time step."""
     notes = []
     if data and data["thinned"]:
         notes.append(
             "the journeys and the moving trains are drawn from a part of the time steps, which holds "
-            "the lowest and highest speeds and voltages; between them trains move evenly"
+            "the lowest and highest speeds and voltages; between them the motion is interpolated"
         )
     curves = 2 * sum(run.dataset.sizes["station"] for run in runs.values())
     most = sampling.share(sampling.MOST_OF_CURVES, curves)
     if any(run.dataset.sizes["time"] > most for run in runs.values()):
         notes.append(
             "the curves over time are drawn from a part of the time steps, which holds the lowest and "
-            "highest value of each stretch; the saved result has them all"
+            "highest value of each interval; the saved result has them all"
         )
     return notes
 
@@ -255,7 +255,7 @@ def _page(
         limits=usual_limits(system_of(first.scenario.supply).base_power_va),
         validity=limits_of_validity(results.values()),
         violations=_violations(results),
-        scenarios={label: _as_toml(result) for label, result in results.items()},
+        scenarios={key: tomli_w.dumps(run.scenario.as_document()) for key, run in results.items()},
         style=_part("report.css"),
         script=_part("report.js"),
         plotly=get_plotlyjs() if figures else "",
@@ -264,7 +264,7 @@ def _page(
 
 
 def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:
-    """What stands above everything: runs that failed their audit or ended early."""
+    """Banners above everything: runs that failed their audit or ended early."""
     troubles = []
     for label, result in results.items():
         failures = result.audit["failures"]
@@ -284,16 +284,12 @@ def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:
 
 
 def _violations(results: Mapping[str, Result]) -> dict[str, list[str]]:
-    """Violations of limits in words, the worst first, of the runs that say anything about them."""
+    """Violations of limits in words, the worst first, of the runs that have a voltage."""
     return {
         label: [str(words) for words in result.standards.violations.words]
         for label, result in results.items()
         if result.audit["passed"] and result.dataset.sizes["time"] > 1
     }
-
-
-def _as_toml(result: Result) -> str:
-    return tomli_w.dumps(result.scenario.as_document())
 
 
 def _part(name: str) -> str:

@@ -1,7 +1,7 @@
 """Colours of static and interactive figures."""
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000")
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
 
 BLACK = 5
 """Number of that colour."""
@@ -19,7 +19,7 @@ LINE_SCALE: Stops = (
     (0.0, "#07051B"), (0.125, "#290B55"), (0.25, "#540F6D"), (0.375, "#7A1D6D"), (0.5, "#A22B62"),
     (0.625, "#C73E4C"), (0.75, "#E45A31"), (0.875, "#F78212"), (1.0, "#FCAE12"),
 )  # fmt: skip
-"""The same for lines and points: inferno without its palest colours, which are not seen on white."""
+"""The same for lines and points: inferno without its palest colours, which are not visible on white."""
 
 
 def colour(k: int) -> str:

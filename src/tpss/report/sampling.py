@@ -1,4 +1,4 @@
-"""What is drawn of a long run: fewer values, but never without the lowest and the highest."""
+"""Samples of a long run to draw: fewer values, but always the lowest and the highest."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ FEWEST = 16
 def kept(columns: Sequence[Floats], most: int) -> Indices:
     """Indices of the values to draw, about `most` of them.
 
-    The values are cut into stretches of equal length; of each stretch, the lowest and the highest of
+    The values are cut into intervals of equal length; of each interval, the lowest and the highest of
     every column stay, and so do the first and the last value of all.
 
     Parameters
@@ -73,7 +73,7 @@ class TrainSamples:
 
 
 def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> TrainSamples:
-    """Samples of all trains of a run that were on the line, about so many of all of them."""
+    """Samples of all trains of a run that were on the line, about `most_of_all` in total."""
     km, kmh = dataset.position.to_numpy() / 1e3, dataset.speed.to_numpy() * 3.6
     kv = dataset.pantograph_voltage.to_numpy() / 1e3
     on_line = np.isfinite(km)

@@ -1,4 +1,4 @@
-"""Tables of a report: headings with units, cells with what is shown and what is downloaded."""
+"""Tables of a report: headings with units, cells with text to show and value to download."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ DIGITS = {"MWh": 3, "Mvarh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
 
 @dataclass(frozen=True)
 class Cell:
-    """What a cell shows, and its value to seven digits, by which it is sorted and downloaded."""
+    """Text of a cell, and its value to seven digits for sorting and download."""
 
     text: str
     value: str
@@ -71,14 +71,14 @@ def of_standards(result: Result) -> list[Table]:
             "EN 50388: mean useful voltage of trains",
             evidence.useful_voltage_trains,
         ),
-        "station-power": ("Highest mean power of stations", evidence.station_power),
+        "station-power": ("Highest mean power of feeding stations", evidence.station_power),
         "losses-by-kind": ("Losses by kind of branch", evidence.losses),
     }
     return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
 
 
 def of_figures(results: Mapping[str, Result]) -> Table:
-    """Key figures of runs, a row a figure and a column a run."""
+    """Key figures of runs, one row per figure and one column per run."""
     columns = [
         {(name, unit): value for name, unit, value in key_figures(r)} for r in results.values()
     ]
@@ -94,7 +94,7 @@ def of_figures(results: Mapping[str, Result]) -> Table:
 
 
 def key_figures(result: Result) -> list[tuple[str, str, Any]]:
-    """Name, unit and value of what a reader asks for first."""
+    """Name, unit and value of the most important figures."""
     summary, stations, evidence = result.summary, result.stations, result.standards
     lowest = summary["lowest_voltage"] or {}
     total, lost = summary["total_energy_mwh"], summary["losses_mwh"]

@@ -1,4 +1,4 @@
-"""Which trains of a run there are to draw."""
+"""Trains of a run that can be drawn."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from tpss.results.result import Result
 
 
 class NothingToDrawError(ResultError):
-    """A sound result holds nothing of what a figure shows."""
+    """A valid result holds nothing that a figure could show."""
 
 
 def seen_trains(result: Result) -> list[str]:

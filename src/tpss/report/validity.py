@@ -1,4 +1,4 @@
-"""How far figures of a run can be trusted: the limits of validity of what it was made of."""
+"""Limits of validity of the figures of a run."""
 
 from collections.abc import Iterable, Iterator
 
@@ -10,12 +10,12 @@ ALWAYS = (
     "Quasi-stationary: voltages and currents are phasors, forces and powers constant within a time "
     "step, or means of it. No transients, no harmonics, no protection.",
     "Results depend on the time step; run the scenario with half of it to see by how much.",
-    "One track. Trains see no signals and no other trains; drivers hold the speed limit and do not "
-    "err. No regenerative braking.",
+    "One track. Trains see no signals and no other trains; drivers hold the speed limit and make "
+    "no mistakes. No regenerative braking.",
 )
 
 SUPPLY = (
-    "Converters have no limit but are shown with their loading: above 100 % the model goes on, a "
+    "Converters have no limit but are shown with their loading: above 100 % the model continues, a "
     "converter would not.",
     "Between trains and feeding points the voltage is interpolated, which leaves out the contact "
     "line's capacitance. Voltages are judged at the pantograph.",
@@ -24,13 +24,13 @@ SUPPLY = (
 
 def limits_of_validity(results: Iterable[Result]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
-    said = [
+    sentences = [
         sentence
         for result in results
         for name in dict.fromkeys(entry.train for entry in result.scenario.traffic)
         for sentence in _of_train(name, result.scenario.trains[name])
     ]
-    return [*ALWAYS, *dict.fromkeys(said), *SUPPLY]
+    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY]
 
 
 def _of_train(name: str, train: Train) -> Iterator[str]:
@@ -43,7 +43,7 @@ def _of_train(name: str, train: Train) -> Iterator[str]:
             volts = f" and {effort.voltage_kv[0]:g} to {effort.voltage_kv[-1]:g} kV"
         yield (
             f"The tractive effort of {name} is a table for {low:g} to {high:g} km/h{volts}; beyond it "
-            "the outer values hold, and steps there are counted in the notes above."
+            "the outer values apply, and steps there are counted in the notes above."
         )
     elif isinstance(effort, EffortLimits):
         falls = effort.full_voltage_kv is not None or train.current_limitation is not None
@@ -55,7 +55,7 @@ def _of_train(name: str, train: Train) -> Iterator[str]:
         yield (
             "Machine curves of the Rc4 locomotive hold at 10.5 to 16.5 kV; steps outside are counted "
             "in the notes above. Its motors may carry their highest current for a limited time only, "
-            "which is not watched."
+            "which is not monitored."
         )
     if train.current_limitation is not None:
         yield (

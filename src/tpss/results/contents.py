@@ -1,4 +1,4 @@
-"""What TPSS writes into a result folder, and what others have put there."""
+"""Files that TPSS writes into a result folder, and files that others have put there."""
 
 from pathlib import Path
 
@@ -7,14 +7,14 @@ from tpss.results.file_kinds import Kind
 DATASET, SUMMARY, SCENARIO = "result.nc", "summary.json", "scenario.toml"
 
 FORMAT_KEY, FORMAT = "result_format", 2
-"""Name and value of what a result says of how it is written.
+"""Key and number of the format in which a result is written.
 
-It grows when something is renamed, taken away or newly relied upon, not when something is added.
+It increases when something is renamed, removed or newly required, not when something is added.
 """
 
 REPORT = "report.html"
 REPORT_MARK, HEAD_BYTES = "TPSS report", 2_000
-"""What a report says of itself, within so many first bytes."""
+"""Text that identifies a report, and the number of first bytes that contain it."""
 
 TABLES = "tables"
 """Folder of exported tables, within that of the result."""
@@ -43,7 +43,7 @@ FIGURE_NAMES = (
 
 
 def carry_over(old: Path, new: Path) -> None:
-    """Move what others have put into a replaced result folder into the one in its place."""
+    """Move what others have put into a replaced result folder into its successor."""
     for path in sorted(old.iterdir()):
         if path.name in (TABLES, FIGURES) and path.is_dir() and not path.is_symlink():
             for file in sorted(path.iterdir()):
@@ -67,7 +67,7 @@ def is_ours(path: Path, folder: str = "") -> bool:
 
 
 def is_report(file: Path) -> bool:
-    """Whether a file says of itself that it is a report."""
+    """Whether a file is a report."""
     try:
         with file.open("rb") as opened:
             return REPORT_MARK.encode() in opened.read(HEAD_BYTES)

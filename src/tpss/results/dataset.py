@@ -18,7 +18,7 @@ from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
 
 NODE_KIND = {"units": "", "long_name": "what the node is"}
-"""Attributes of the nodes' kinds."""
+"""Attributes of the variable with the kinds of nodes."""
 
 
 def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
@@ -51,7 +51,7 @@ def _indexed(coordinates: dict[str, Any]) -> xr.Coordinates:
 
 @lru_cache(maxsize=64)
 def _index(dimension: str, names: tuple[str, ...]) -> PandasIndex:
-    """Index of names, shared by runs of the same line: to make one takes as long as twenty steps."""
+    """Index of names, shared by runs of the same line: creating one takes as long as twenty steps."""
     return _new_index(dimension, xr.Variable(dimension, list(names)))
 
 
@@ -69,7 +69,7 @@ def _described(each: Recorded) -> dict[str, Any]:
 
 
 def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
-    """Values of the variables by name; what is of nodes and branches is at their own level."""
+    """Values of the variables by name; those of nodes and branches are at their own voltage levels."""
     recording, plan = outcome.recording, layout.supply
     rows = {
         "train": np.asarray(recording.trains),
@@ -95,7 +95,7 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
 
 
 def _polar(rows: Any, place: str, there: Any) -> tuple[Floats, Floats]:
-    """Magnitude and angle of recorded phasors; NaN but `there`, as reading takes most of the time."""
+    """Magnitude and angle of recorded phasors, only where they are `there`: reading takes most time."""
     _, offset = rows.dtype.fields[f"{place}_real"]
     phasors = rows.getfield(np.complex128, offset)[there]
     magnitude, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
@@ -105,7 +105,7 @@ def _polar(rows: Any, place: str, there: Any) -> tuple[Floats, Floats]:
 
 
 def attributes(summary: dict[str, Any], step_s: float) -> dict[str, Any]:
-    """What a dataset says of itself, from the summary of its run."""
+    """Attributes of a dataset, from the summary of its run."""
     trip_min, energy = summary["trip_time_min"], summary["station_energy_mwh"]
     return {
         FORMAT_KEY: FORMAT,

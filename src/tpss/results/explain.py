@@ -1,4 +1,4 @@
-"""What a run met, in words: why it ended early, what would help, what was limited."""
+"""Explanations of a run: why it ended early, what would help, what was limited."""
 
 from typing import Any
 
@@ -12,15 +12,15 @@ from tpss.vehicle.terms import Demand
 from tpss.vehicle.train_type import TrainType
 
 ALMOST = 0.99
-"""Of the highest plausible voltage: from here on, the voltages ended the search by being too high."""
+"""Share of the highest plausible voltage above which the voltages count as too high."""
 
 _STRENGTHEN = (
-    "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or converter "
-    "stations), or lighten the traffic (longer headway, lower speed or current limit)."
+    "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or feeding "
+    "stations), or reduce the traffic (longer headway, lower speed or current limit)."
 )
 _FEED_LESS = (
-    "Let less reactive power be fed into the line: by the trains' filters (a filter_reactance_ohm "
-    "further from zero) or the catenary's capacitance."
+    "Reduce the reactive power that is fed into the line by the trains' filters (a "
+    "filter_reactance_ohm further from zero) or by the catenary's capacitance."
 )
 
 _HELP_THE_TRAIN = (
@@ -29,7 +29,7 @@ _HELP_THE_TRAIN = (
     "try a shorter one."
 )
 _LIMIT_LESS = (
-    "Ease the train's current_limitation (a higher max_current_a, a lower umin2_kv or knee_factor)."
+    "Relax the train's current_limitation (higher max_current_a, lower umin2_kv or knee_factor)."
 )
 
 _LIMITED = {
@@ -41,7 +41,7 @@ _LIMITED = {
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
-    "current_limited": "the current limitation at low voltage kept a train below the force it wanted",
+    "current_limited": "the current limitation at low voltage kept a train below the wanted force",
     "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 
@@ -55,7 +55,7 @@ def explain(outcome: Outcome, model: Model) -> dict[str, str]:
         return _stall(outcome, model, time_min)
     if outcome.status == INTERRUPTED:
         problem = f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
-        return {"problem": problem, "advice": "Run it again for the whole."}
+        return {"problem": problem, "advice": "Run it again to the end."}
     return {}
 
 
@@ -69,7 +69,7 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
     system = model.network.system
     lowest_kv, highest_kv = system.lowest_voltage_v / 1e3, system.highest_voltage_v / 1e3
     problem = (
-        f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains ask for "
+        f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains demand "
         f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and beyond {100 * share:.1f} % of that the "
         f"load flow has no stable solution with all voltages between {lowest_kv:.2f} and "
         f"{highest_kv:.2f} kV."
@@ -97,12 +97,10 @@ def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
     train = outcome.state.trains[clock.stalled_train]
     name = outcome.trains[clock.stalled_train].name
     motion, demand = train.motion, train.demand
-    doing = (
-        "stands and cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
-    )
+    doing = "cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
     problem = (
         f"At {time_min:.2f} min {name} {doing} at {motion.position_m / 1e3:.2f} km: resistance and "
-        f"gradient ask for {clock.force_needed_n / 1e3:.1f} kN, its machine and the rails give "
+        f"gradient demand {clock.force_needed_n / 1e3:.1f} kN, its machine and adhesion give "
         f"{clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
         f"{motion.speed_m_s * 3.6:.1f} km/h."
     )
@@ -113,24 +111,24 @@ def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
     if demand.wheel_force_n < unlimited_n:
         share = 100.0 * demand.wheel_force_n / unlimited_n
         problem += (
-            f" At this voltage its current limitation lets {share:.0f} % of the force through that it "
-            f"wants and could give otherwise, {unlimited_n / 1e3:.1f} kN."
+            f" At this voltage its current limitation passes {share:.0f} % of the wanted force, "
+            f"{unlimited_n / 1e3:.1f} kN."
         )
         return {"problem": problem, "advice": f"{_LIMIT_LESS} {_STRENGTHEN}"}
     return {"problem": problem, "advice": _HELP_THE_TRAIN}
 
 
-def _force_without_current_limitation(demand: Demand, kind: TrainType) -> float:
-    """Force at the wheel rim that driver, rails and machine would give at the train's voltage. [N]"""
+def _force_without_current_limitation(demand: Demand, train_type: TrainType) -> float:
+    """Force at the wheel rim that driver, adhesion and machine allow at the train's voltage. [N]"""
     motors_n = max(0.0, float(demand.machine_force_n))
     machine_n = plain(machine_force)(
-        motors_n, demand.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
+        motors_n, demand.resistance_n, train_type.rotor_mass_kg, train_type.inertia_kg
     )
     return float(min(demand.force_cap_n, max(0.0, machine_n)))
 
 
 def warnings(summary: dict[str, Any]) -> list[str]:
-    """What was limited or left its range, in words."""
+    """Sentences on what was limited or left its range."""
     return [
         f"{_LIMITED[name]}, in {count} train-steps"
         for name, count in summary["limited"].items()

@@ -32,7 +32,7 @@ WIDEST = 40
 
 
 NEEDS = {Kind.XLSX: ("openpyxl", "openpyxl"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
-"""Package that a kind needs, and what to install for it."""
+"""Package that a file type needs, and what to install for it."""
 
 
 def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> list[Path]:
@@ -42,9 +42,9 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
     ----------
     result : Result
     kind : Kind
-        Excel gets one file with a sheet a table, the others a file a table.
+        Excel gets one file with one sheet per table, the others one file per table.
     folder : Path
-        Made if it is not there.
+        Made if it does not exist.
     force : bool
         Whether files of these names may be replaced.
 
@@ -69,7 +69,7 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:
-    """A table with headings for people: words, and the unit in brackets."""
+    """A table with readable headings: words, and the unit in brackets."""
     return table.rename(columns=units.heading)
 
 
@@ -78,7 +78,7 @@ def _demand_package(kind: Kind) -> None:
     if package and find_spec(package) is None:
         raise ResultError(
             f'{kind} files need {package}, which is not installed: pip install "{to_install}", or '
-            "choose another kind"
+            "choose another file type"
         )
 
 
@@ -89,7 +89,7 @@ def _bytes(table: pd.DataFrame, kind: Kind) -> bytes:
 
 
 def _cell(value: Any, sheet: Any) -> Any:
-    """A value as it is: of a name that begins with "=" openpyxl would make a formula."""
+    """A value as it is: openpyxl would turn a name that begins with "=" into a formula."""
     if not (isinstance(value, str) and value.startswith("=")):
         return value
     from openpyxl.cell import WriteOnlyCell
@@ -100,13 +100,13 @@ def _cell(value: Any, sheet: Any) -> Any:
 
 
 def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
-    """A workbook with a sheet a table; headings stay in sight."""
+    """A workbook with one sheet per table; headings stay visible."""
     import openpyxl  # a tenth of a second to load
 
     for name, table in tables.items():
         if len(table) >= MOST_ROWS:
             raise ResultError(
-                f"the table {name} has {len(table)} rows, a sheet of Excel has room for "
+                f"the table {name} has {len(table)} rows, a sheet of Excel has at most "
                 f"{MOST_ROWS - 1}: choose csv or parquet"
             )
     book = openpyxl.Workbook(write_only=True)

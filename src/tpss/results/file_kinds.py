@@ -1,10 +1,10 @@
-"""Kinds of files that tables are exported to."""
+"""Types of files to which tables are exported."""
 
 from enum import StrEnum
 
 
 class Kind(StrEnum):
-    """A kind of file, by its suffix."""
+    """A type of file, by its suffix."""
 
     CSV = "csv"
     XLSX = "xlsx"

@@ -1,4 +1,4 @@
-"""The key figures of a run, from its recording: no dataset, no tables, a few hundred bytes."""
+"""The key figures of a run, a few hundred bytes, from its recording without dataset or tables."""
 
 import math
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class ServiceFigures:
 
 @dataclass(frozen=True)
 class StationFigures:
-    """Key figures of a converter station; peaks and means are NaN of a run without a step."""
+    """Key figures of a feeding station; peaks and means are NaN for a run without a step."""
 
     name: str
     energy_mwh: float
@@ -62,7 +62,7 @@ class LowestVoltage:
 
 @dataclass(frozen=True)
 class KeyFigures:
-    """Key figures of a run.  What there is not is NaN or None.
+    """Key figures of a run.  Missing ones are NaN or None.
 
     Attributes
     ----------
@@ -116,13 +116,13 @@ class KeyFigures:
 
     @cached_property
     def total_energy_mwh(self) -> float:
-        """Energy of all converter stations."""
+        """Energy of all feeding stations."""
         return math.fsum(station.energy_mwh for station in self.stations)
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What the key figures of a scenario's runs are measured by."""
+    """Parameters of a scenario by which the key figures of its runs are computed."""
 
     name: str
     peak_from_min: float
@@ -138,7 +138,7 @@ class Frame:
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
-    """What the key figures of a scenario's runs are measured by."""
+    """Parameters of a scenario by which the key figures of its runs are computed."""
     return Frame(
         name=scenario.name,
         peak_from_min=scenario.standards.peak_from_min,
@@ -152,7 +152,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
 
 
 def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) -> KeyFigures:
-    """Run from a start, and keep nothing but its key figures.
+    """Run from a start, and keep only the key figures.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
     clock : callable
         Runs the steps.
     memory : callable
-        What gives room for the recording.
+        Allocates the recording.
 
     Raises
     ------
@@ -270,7 +270,7 @@ def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures,
 
 
 def _number(value: float) -> float:
-    """NaN in place of an extreme of nothing."""
+    """A number; NaN for an infinite one, which is the extreme of an empty set."""
     return value if math.isfinite(value) else math.nan
 
 
@@ -307,9 +307,11 @@ def _dimensioning_train_kv(figures: Figures, step_s: float) -> float:
 
 
 def _audit(run: Run, figures: Figures, whole: dict[str, Any], frame: Frame) -> Audit:
-    found = dict(zip(Balances.dtype.names or (), figures.audit.balances.tolist()[0], strict=True))
-    found["stop_error_m"] = float(run.state.clock[0].stop_error_m)
-    audited = {name: found[name] for name in JUDGED}
+    measured = dict(
+        zip(Balances.dtype.names or (), figures.audit.balances.tolist()[0], strict=True)
+    )
+    measured["stop_error_m"] = float(run.state.clock[0].stop_error_m)
+    audited = {name: measured[name] for name in JUDGED}
     lowest = min(whole["lowest_voltage_v"], whole["lowest_node_v"])
     if not math.isfinite(lowest):
         return judge(audited, None, None, frame.limits, frame.system)

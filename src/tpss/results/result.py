@@ -1,4 +1,4 @@
-"""The result of a simulation."""
+"""Result of a simulation, with tables, evidence for standards, and saving."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,12 +14,12 @@ from tpss.results.standards.evidence import Evidence, gather
 from tpss.scenario.scenario import Scenario
 
 STANDARDS = "standards"
-"""Part of the summary that takes as long as all else, so it is made when it is asked for."""
+"""Part of the summary that takes as long as all else, and is computed on demand."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """What a simulation gave.
+    """The result of a simulation.
 
     Attributes
     ----------
@@ -55,17 +55,17 @@ class Result:
 
     @cached_property
     def trips(self) -> pd.DataFrame:
-        """One row a train: times, distance, energy, lowest voltage."""
+        """One row per train: times, distance, energy, lowest voltage."""
         return tables.trips(self.dataset)
 
     @cached_property
     def stations(self) -> pd.DataFrame:
-        """One row a converter station: energy, peaks, loading, converters."""
+        """One row per feeding station: energy, peaks, loading, converters."""
         return tables.stations(self.dataset)
 
     @cached_property
     def train_steps(self) -> pd.DataFrame:
-        """One row a train and instant: motion, forces, voltage, powers."""
+        """One row per train and instant: motion, forces, voltage, powers."""
         return tables.train_steps(self.dataset)
 
     @cached_property
@@ -74,13 +74,13 @@ class Result:
         return gather(self.dataset, self.scenario)
 
     def with_standards(self, changes: Mapping[str, Any]) -> "Result":
-        """The same run, judged otherwise.
+        """The same run, judged by other criteria.
 
         Parameters
         ----------
         changes : mapping of str to value
             Key paths below the scenario's ``standards``, such as ``"peak_from_min"`` or
-            ``"voltage_limits.umin1_kv"``, and their new values; None takes a key out.
+            ``"voltage_limits.umin1_kv"``, and their new values; None removes a key.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Result:
 
 
 def load_result(folder: str | Path) -> Result:
-    """Load a result that `Result.save` or ``tpss run`` has written.
+    """Load a result written by `Result.save` or ``tpss run``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Result folders: written whole or not at all, and read with clear words where they are damaged."""
+"""Result folders: written whole or not at all, and read with clear messages on damage."""
 
 import json
 import os
@@ -20,16 +20,16 @@ from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
 
 FIRST_BYTES = 2**16
-"""Room for a dataset at first; it grows."""
+"""Initial size of a dataset in memory; it grows."""
 
 ONE_AT_A_TIME = threading.Lock()
 """The netCDF library is not safe in several threads at once."""
 
 DAMAGE = (OSError, ValueError, KeyError, RuntimeError, AttributeError)
-"""What netCDF raises where a file is damaged, an attribute's by the last one."""
+"""Exceptions of netCDF on a damaged file, the last one on a damaged attribute."""
 
 PARENT = Path("results")
-"""Folder of results that nobody has named."""
+"""Folder of results without a folder of their own."""
 
 
 def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
@@ -38,7 +38,7 @@ def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
     Raises
     ------
     ResultError
-        It exists and may not be replaced, or it cannot be made, or the disk is full.
+        It exists and may not be replaced, it cannot be made, or the disk is full.
     """
     with explained(folder or PARENT):
         _refuse(folder, force)
@@ -60,7 +60,7 @@ def save(
         with whole.folder_beside(target) as work:
             new = work / "new"
             new.mkdir()
-            # In memory first: on a full disk HDF5 cannot close its file, and brings the process down.
+            # In memory first: on a full disk HDF5 cannot close its file, and aborts the process.
             # The simulation has needed more memory than this.
             whole.write_new(new / DATASET, _as_netcdf(dataset))
             whole.write_new(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
@@ -75,7 +75,7 @@ def save(
 
 
 def _refuse(folder: Path | None, force: bool) -> None:
-    """Refuse to replace a folder that somebody has named."""
+    """Refuse to replace a named folder."""
     if folder is not None and os.path.lexists(whole.real(folder)):
         refuse_to_replace(folder, force, "a result folder", _is_replaceable)
 
@@ -145,7 +145,7 @@ def _read_netcdf(path: Path) -> xr.Dataset:
 
 
 def _with_node_kinds(dataset: xr.Dataset) -> xr.Dataset:
-    """A dataset with the kinds of its nodes: earlier ones have them in the nodes' names only."""
+    """A dataset with the kinds of its nodes: earlier files have them in the nodes' names only."""
     if "node" not in dataset.coords or "node_kind" in dataset.coords:
         return dataset
     kinds = [name.rpartition(" at ")[0] for name in dataset.node.to_numpy().tolist()]
@@ -168,7 +168,7 @@ def _demand_this_format(folder: Path, summary: Any) -> None:
 
 
 def _demand_a_result(dataset: xr.Dataset) -> None:
-    """Raise a `ValueError` if a dataset is sound, but not that of a result."""
+    """Raise a `ValueError` if a dataset is not that of a result."""
     if not {"position", "pantograph_voltage", "station_active_power"} <= set(dataset.data_vars):
         raise ValueError(f"{DATASET} is not the dataset of a run")
     if dataset.attrs.get(FORMAT_KEY) != FORMAT:

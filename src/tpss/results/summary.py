@@ -1,4 +1,4 @@
-"""The summary of a run: the figures that a reader asks for first."""
+"""The summary of a run: its most important figures."""
 
 import datetime as dt
 import math
@@ -45,7 +45,7 @@ def provenance() -> dict[str, str]:
 
 @cache
 def _versions() -> dict[str, str]:
-    """What stays the same as long as the program runs, and takes as long to find out as a short run."""
+    """Versions and platform, which take as long to determine as a short run."""
     packages = ("tpss", "numpy", "numba", "xarray")
     return {
         **{f"{name}_version": version(name) for name in packages},

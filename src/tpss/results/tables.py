@@ -1,4 +1,4 @@
-"""Tables that a traction engineer reads: a row a train, a row a station."""
+"""Tables of trains and feeding stations: one row per train, one row per station."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ J_PER_MWH = 3.6e9
 
 
 def trips(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row a train: times, distance, energy, and where its voltage was lowest.
+    """One row per train: times, distance, energy, and where its voltage was lowest.
 
     Trains that were on the line at the start have no departure, those still on it no arrival.
     """
@@ -47,7 +47,7 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
 
 
 def stations(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row a converter station: energy, peaks, loading, converters."""
+    """One row per feeding station: energy, peaks, loading, converters."""
     h = step_s(dataset)
     active = dataset.station_active_power.to_numpy()
     reactive = dataset.station_reactive_power.to_numpy()
@@ -77,9 +77,9 @@ TRAIN_STEPS = {each.column: each.name for each in RECORDED if each.column}
 
 
 def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row a train and instant at which it is there, train by train.
+    """One row per train and instant at which it is on the line, train by train.
 
-    Position and speed hold at the instant, all else from there to the next one.
+    Position and speed are those at the instant, all else applies from there to the next one.
     """
     there = np.isfinite(dataset.position.to_numpy().T)
     train, instant = np.nonzero(there)
@@ -100,7 +100,7 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
 
 
 def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
-    """Distance that each train goes within the run. [km]"""
+    """Distance that each train covers within the run. [km]"""
     position_m = dataset.position.to_numpy()
     distance_m = np.nanmax(position_m, axis=0) - np.nanmin(position_m, axis=0)
     return np.asarray(np.nan_to_num(distance_m) / 1e3)

@@ -1,4 +1,4 @@
-"""What the user writes: one file a noun, validated and frozen."""
+"""What the user writes: one file per noun, validated and frozen."""
 
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario

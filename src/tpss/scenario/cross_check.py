@@ -88,7 +88,7 @@ def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     begin = _number(first, "from_km")
     if begin is not None and begin > 0.0:
         problem = "no speed limit applies at the beginning of the line"
-        yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "let the first limit begin at 0"
+        yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "set it to 0"
 
 
 def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
@@ -109,7 +109,7 @@ def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[_Fau
     named = limits.get("system", system)
     if isinstance(named, str) and named != system and named in library.entries("voltage_limits"):
         problem = f"the limits of another system than that of the supply, {system}"
-        remedy = "leave it out, or choose supply.system; single limits can be overridden beside it"
+        remedy = "leave it out, or choose supply.system; single limits can be overridden next to it"
         yield "standards.voltage_limits.system", repr(named), problem, remedy
     nominal_kv = system_named(system).nominal_kv
     for name, train in _table(document, "trains").items():

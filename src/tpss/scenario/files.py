@@ -13,7 +13,7 @@ PROFILE_COLUMNS = {"from_km": "position_km", "permille": "gradient_permille"}
 
 
 class Profile(NamedTuple):
-    """Gradients of a CSV file, as they would stand in a scenario, and where they came from."""
+    """Gradients of a CSV file, as in a scenario, and where they came from."""
 
     path: Path
     rows: list[dict[str, float]]

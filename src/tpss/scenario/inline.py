@@ -3,7 +3,7 @@
 A name that ends in ``.toml`` stands for the table in that file, next to the scenario: of a train's
 model, of the line, of anything that the library has entries for.  ``gradients_file`` stands for a
 profile in CSV.  A scenario then holds everything that it says, and its faults are traced back to the
-files in which they stand.
+files that contain them.
 """
 
 from collections.abc import Iterator

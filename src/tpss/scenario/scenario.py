@@ -119,6 +119,10 @@ class Scenario(Part):
         document = override(self._document, changes, self._source)
         return type(self).from_own_document(document, self._source)
 
+    def trains_by_service(self) -> dict[str, Train]:
+        """Type of train of each service, by its name."""
+        return {entry.name: self.trains[entry.train] for entry in self.traffic}
+
     def __eq__(self, other: object) -> bool:
         """Whether two scenarios say the same, wherever they were read from."""
         return isinstance(other, Scenario) and self.as_document() == other.as_document()

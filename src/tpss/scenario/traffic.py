@@ -27,7 +27,7 @@ class Stop(Part):
     """An intermediate stop."""
 
     station: Name = Field(description="Station of the line.")
-    dwell_min: Real = Field(ge=0, le=100_000, description="Time that the train stands.")
+    dwell_min: Real = Field(ge=0, le=100_000, description="Duration of the stop.")
 
 
 class InitialTrain(Part):

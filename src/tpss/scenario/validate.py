@@ -102,7 +102,7 @@ def _follows_from_another(
 
 
 def _traced(finding: Finding, inlined: Inlined) -> Finding:
-    """A finding of a key path, with the file in which it stands."""
+    """A finding of a key path, traced to its file."""
     file, place = inlined.origin(tuple(finding.key.split(".")))
     return replace(finding, file=str(file), key=".".join(str(name) for name in place))
 

@@ -57,8 +57,8 @@ def _build(design: Design, case: int) -> Prepared:
 
 
 def _spread(cases: int, most: int) -> Iterator[int]:
-    """Some of the cases, the first one among them, drawn: every so many of a Sobol sequence lie in one
-    slice of its space.
+    """Some of the cases, the first one among them, drawn at random: cases at equal distances in a Sobol
+    sequence would be in one slice of its space.
     """
     drawn = random.Random(cases).sample(range(1, cases), min(cases, most) - 1)
     yield from (0, *sorted(drawn))

@@ -1,1 +1,1 @@
-"""What each figure shows, one file a figure: functions of results that describe drawings."""
+"""What each figure shows, one file per figure: functions of results that describe drawings."""

@@ -14,9 +14,9 @@ SPEEDS = 120
 
 
 def effort(result: Result, train: str | None = None) -> Drawing:
-    """Tractive force of a train over its speed, a point a step, coloured by the voltage.
+    """Tractive force of a train over its speed, one point per step, coloured by the voltage.
 
-    The curves are the machine's limit at the highest and lowest voltage that the train met, adhesion,
+    The curves are the machine's limit at the highest and lowest voltage of the train, adhesion,
     and running resistance on level track.
 
     Parameters
@@ -26,18 +26,17 @@ def effort(result: Result, train: str | None = None) -> Drawing:
         Name of the train; the studied train by default.
     """
     data = result.dataset.sel(train=chosen_train(result, train))
-    kind_of = {entry.name: entry.train for entry in result.scenario.traffic}
-    kind = result.scenario.trains[kind_of[str(data.service.item())]]
+    train_type = result.scenario.trains_by_service()[str(data.service.item())]
     kmh, kn = data.speed.to_numpy() * 3.6, data.tractive_force.to_numpy() / 1e3
     kv = data.pantograph_voltage.to_numpy() / 1e3
     speeds = np.linspace(0.0, max(float(np.nanmax(kmh)) * 1.1, 10.0), SPEEDS)
     simulation, motoring = result.scenario.simulation, kn > 0.0
     curves = []
     for dash, volts in enumerate((float(np.nanmax(kv)), float(np.nanmin(kv)))):
-        limit = machine_limit(kind, speeds / 3.6, volts * 1e3) / 1e3
+        limit = machine_limit(train_type, speeds / 3.6, volts * 1e3) / 1e3
         curves.append(Curve(speeds, limit, f"machine at {volts:.2f} kV", BLACK, dash))
-    rails = adhesion(kind, speeds / 3.6, simulation) / 1e3
-    rolling = level_resistance(kind, speeds / 3.6) / 1e3
+    rails = adhesion(train_type, speeds / 3.6, simulation) / 1e3
+    rolling = level_resistance(train_type, speeds / 3.6) / 1e3
     curves.append(Curve(speeds, rails, f"adhesion, {simulation.rail}", 2, DASH_DOTTED))
     curves.append(Curve(speeds, rolling, "running resistance", 3, DOTTED, width=1.5))
     colours = Colours(kv[motoring], "voltage at the pantograph [kV]", *colour_range(kv))

@@ -9,19 +9,19 @@ from tpss.report.drawings.parts import Bar, Drawing, Panel
 from tpss.report.palette import COLOURS, tint
 from tpss.report.sampling import Floats
 from tpss.results.result import Result
-from tpss.results.tables import J_PER_MWH
+from tpss.results.tables import J_PER_MWH, step_s
 
 Parts = dict[str, tuple[float, str]]
 """Energy of the parts of a bar [MWh], and their colours."""
 
 NARROWEST = 0.06
-"""Share of the whole width from which a part of a bar has room for its figure."""
+"""Share of the whole width from which a part of a bar is wide enough for its figure."""
 
 SMALLEST = 0.0005
-"""Share of the whole width below which a part is not to be seen, and is left out."""
+"""Share of the whole width below which a part is not visible, and left out."""
 
 TINTS = (1.0, 0.72, 0.5, 0.34)
-"""Strengths of a colour that tell stations apart, and kinds of losses."""
+"""Strengths of a colour that distinguish stations, and kinds of losses."""
 
 USES = {
     "auxiliaries": "#E69F00",
@@ -31,14 +31,14 @@ USES = {
     "brakes": "#444444",
     "kinetic energy": "#F0E442",
 }
-"""Colours of what trains do; with those of stations and losses, the palette of Okabe and Ito."""
+"""Colours of the uses by trains; with those of stations and losses, the palette of Okabe and Ito."""
 
 
 def energy_flow(result: Result) -> Drawing:
-    """Three bars of one length: what is fed, what the network loses and trains draw, what trains do.
+    """Three bars of equal length: energy fed, network losses and trains, and use by the trains.
 
-    A part of what trains do that is negative on balance, such as the climb of trains that run
-    downhill, is fed in the first bar.  Parts that are too small to be seen are left out.
+    A use that is negative in total, such as the climb of trains that run downhill, is a part of the
+    first bar.  Parts that are too small to be visible are left out.
 
     Parameters
     ----------
@@ -47,13 +47,13 @@ def energy_flow(result: Result) -> Drawing:
     losses, stations, used = result.standards.losses, result.stations, used_by_trains(result)
     fed = _tinted(stations.station, stations.energy_mwh, COLOURS[0])
     fed |= {name: (-mwh, USES[name]) for name, mwh in used.items() if mwh < 0.0}
-    taken = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
+    drawn = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
     kinds = [f"{kind} losses" for kind in losses.branch_kind]
     network = _tinted(kinds, losses.energy_mwh, COLOURS[1])
-    lost, to_trains = (sum(mwh for mwh, _ in each.values()) for each in (network, taken))
+    lost, to_trains = (sum(mwh for mwh, _ in each.values()) for each in (network, drawn))
     network["trains"] = (to_trains, "#AAAAAA")
     width = max(lost + to_trains, 1e-9)
-    bars = [*_bar(0, 0.0, fed, width), *_bar(1, 0.0, network, width), *_bar(2, lost, taken, width)]
+    bars = [*_bar(0, 0.0, fed, width), *_bar(1, 0.0, network, width), *_bar(2, lost, drawn, width)]
     panel = Panel("", bars, rows=("fed", "network", "trains"))
     return Drawing("energy [MWh]", [panel], (0.0, width), panel_inch=4.2)
 
@@ -67,15 +67,15 @@ def _tinted(names: Iterable[str], mwh: Iterable[float], colour: str) -> Parts:
 
 
 def used_by_trains(result: Result) -> dict[str, float]:
-    """What became of the energy that all trains have drawn. [MWh]
+    """Use of the energy that all trains have drawn. [MWh]
 
-    Motors and gears have what is left of it between pantograph and wheel, spinning rotors included;
-    with power that is billed at the start of the step, the step's error too.
+    Motors and gears have the difference between pantograph and wheel, rotating rotors included; with
+    power that is computed at the start of the step, the error of the step too.
     """
     data, scenario = result.dataset, result.scenario
-    h = float(data.attrs["time_step_s"])
-    kind_of = {entry.name: scenario.trains[entry.train] for entry in scenario.traffic}
-    auxiliary_w = [1e3 * kind_of[str(s)].auxiliary_power_kw for s in data.service.to_numpy()]
+    h = step_s(data)
+    trains = scenario.trains_by_service()
+    auxiliary_w = [1e3 * trains[str(s)].auxiliary_power_kw for s in data.service.to_numpy()]
     active_w = data.active_power.to_numpy()[:-1]
     auxiliaries = float((np.isfinite(active_w) * np.array(auxiliary_w)).sum()) * h
     wheel, running, climb, brakes = (float(np.nansum(work_j)) for work_j in work_of_forces(data))
@@ -93,12 +93,12 @@ def used_by_trains(result: Result) -> dict[str, float]:
 def work_of_forces(data: xr.Dataset) -> tuple[Floats, Floats, Floats, Floats]:
     """Work of motors, running resistance, gradients and brakes. [J], shape (steps, trains) each
 
-    Recorded forces are means over time.  In a step of constant acceleration they work along its way.
-    A step that holds the speed v for τ and then brakes over β to v' has its motors at work at v; the
-    resistances are the same all along; the brakes hold the train on a descent, then slow it down.
-    From its way x, β = 2 (x - v τ)/(v + v').
+    Recorded forces are means over time.  In a step of constant acceleration they act over its distance.
+    A step that holds the speed v for τ and then brakes over β to v' has its motors in traction at v; the
+    resistances are constant; the brakes hold the train on a descent, then slow it down.
+    With its distance x, β = 2 (x - v τ)/(v + v').
     """
-    h = float(data.attrs["time_step_s"])
+    h = step_s(data)
     force = {
         name: data[name].to_numpy()[:-1]
         for name in ("tractive_force", "running_resistance", "gradient_force", "braking_force")
@@ -106,11 +106,11 @@ def work_of_forces(data: xr.Dataset) -> tuple[Floats, Floats, Floats, Floats]:
     traction, running, climb, brakes = force.values()
     speed, hold_s = data.speed.to_numpy(), data.holding_time.to_numpy()[:-1]
     v, mean = speed[:-1], (speed[:-1] + speed[1:]) / 2.0
-    way_m = np.diff(data.position.to_numpy(), axis=0)
+    distance_m = np.diff(data.position.to_numpy(), axis=0)
     held = hold_s > 0.0
     moving_s = np.where(held, hold_s, np.nan)
-    moving_s = moving_s + np.divide(way_m - v * hold_s, mean, where=held, out=np.zeros_like(v))
-    along_m = np.where(held, way_m * h / moving_s, mean * h)
+    moving_s = moving_s + np.divide(distance_m - v * hold_s, mean, where=held, out=np.zeros_like(v))
+    along_m = np.where(held, distance_m * h / moving_s, mean * h)
     holding_ns = np.where(held, np.maximum(0.0, -(running + climb)) * h * hold_s / moving_s, 0.0)
     return (
         traction * np.where(held, v, mean) * h,

@@ -29,7 +29,7 @@ def journey(
     against: Literal["position", "distance", "time"] = "position",
     shown: Iterable[str] = tuple(PRINTED),
 ) -> Drawing:
-    """What a train meets and does: inclination, speed, powers, voltage and angle.
+    """A train's journey: inclination, speed, powers, voltage and angle.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def journey(
     train : str, optional
         Train of that name in every run; each run's studied train by default.
     against : {"position", "distance", "time"}
-        What the horizontal axis carries; distance is position.
+        Quantity of the horizontal axis; distance is position.
     shown : iterable of str
         Labels of the panels, of `PRINTED`.
 
@@ -52,7 +52,7 @@ def journey(
         x = (data.time / 60.0 if against == "time" else data.position / 1e3).to_numpy()
         values = _values(result, data)
         for label, drawn in curves.items():
-            held = label != "speed [km/h]"  # which alone changes evenly in a step
+            held = label != "speed [km/h]"  # the only one that changes linearly in a step
             drawn.append(Curve(x, values[label], name, k, k, held=held))
     panels = [Panel(label, drawn, PRINTED[label]) for label, drawn in curves.items()]
     return Drawing(TIME if against == "time" else POSITION, panels)

@@ -1,4 +1,4 @@
-"""What the network loses."""
+"""Losses of the network over time."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What a drawing consists of: plain data that knows no plotting library.
+"""Parts of a drawing: plain data, independent of a plotting library.
 
 `tpss.report.render` makes figures of it, for print or for a page.  Colours and dashes are numbers, which
 it looks up; labels end with their units in brackets; only what is printed may hold formulae.
@@ -31,8 +31,8 @@ class Colours:
 class Curve:
     """A line through points, which NaN interrupts, or points alone if they are not joined.
 
-    Values that are held stay until the next instant, rather than change evenly.  Points may have
-    words of their own, to be read by pointing at them.
+    Values that are held stay constant until the next instant, rather than change linearly.  Points may
+    have words, which are shown on hovering.
     """
 
     x: Floats

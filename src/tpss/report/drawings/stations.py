@@ -1,4 +1,4 @@
-"""What the converter stations feed, how loaded they are, and how many converters run."""
+"""Powers of the feeding stations, their loading, and the number of running converters."""
 
 from collections.abc import Callable, Mapping
 
@@ -10,9 +10,9 @@ from tpss.results.result import Result
 
 
 def station_powers(runs: Mapping[str, Result]) -> Drawing:
-    """Active and reactive power that each converter station feeds into the railway, over time.
+    """Active and reactive power that each feeding station feeds into the railway, over time.
 
-    A colour is a station, a line style a run.
+    A colour is a station, a line style for each run.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def station_loading(runs: Result | Mapping[str, Result]) -> Drawing:
 def _curves(
     runs: Mapping[str, Result], values: Callable[[xr.Dataset], xr.DataArray]
 ) -> list[Curve]:
-    """A curve a station and run; stations of a single run differ by their line styles too."""
+    """One curve per station and run; stations of a single run differ by their line styles too."""
     curves, several = [], len(runs) > 1
     for k, (label, result) in enumerate(runs.items()):
         minutes, drawn = result.dataset.time.to_numpy() / 60.0, values(result.dataset).to_numpy()

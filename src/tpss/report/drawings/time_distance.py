@@ -9,8 +9,7 @@ from tpss.report.sampling import Floats
 from tpss.results.result import Result
 
 LEAST_SPAN_KV = 2.0
-"""Span of a scale of voltages at least, so that a voltage that hardly falls does not look like one that
-does."""
+"""Span of a scale of voltages at least, so that a small drop does not look like a large one."""
 
 
 def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.Drawing:
@@ -49,6 +48,6 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
 
 
 def colour_range(kv: Floats) -> tuple[float, float]:
-    """Lowest and highest of the voltages that colours tell apart. [kV]"""
+    """Lowest and highest voltage of the colour scale. [kV]"""
     highest = float(np.nanmax(kv))
     return min(float(np.nanmin(kv)), highest - LEAST_SPAN_KV), highest

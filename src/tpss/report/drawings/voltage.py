@@ -14,7 +14,7 @@ from tpss.scenario.standards import VoltageLimits
 
 
 def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> parts.Drawing:
-    """Voltage that a train meets along the line; feeding points are marked.
+    """Voltage of a train along the line; feeding points are marked.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def voltage_envelope(result: Result) -> parts.Drawing:
 def envelopes(
     runs: Mapping[str, tuple[Result, LineVoltage]], *, with_trains: bool = False
 ) -> parts.Drawing:
-    """Voltage along the line over a run, or the lowest of each of several, with the limits.
+    """Voltage along the line over a run, or the lowest voltage of each of several runs, with the limits.
 
     Parameters
     ----------

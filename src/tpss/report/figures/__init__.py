@@ -1,6 +1,6 @@
-"""Figures of results for print, one function a figure.
+"""Figures of results for print, one function per figure.
 
-Those of one train or of stations take runs by their labels and overlay them: the first solid, the next
+Those of one train or of stations accept runs by their labels and overlay them: the first solid, the next
 dashed, then dash-dotted.  All return a matplotlib figure, which is neither shown nor saved:
 ``journey({"as built": result}).savefig("journey.png")``.  `draw` makes one by its name.
 """

@@ -1,4 +1,4 @@
-"""All figures by their names, with what stands above them."""
+"""All figures by their names, with their titles."""
 
 from collections.abc import Callable
 from typing import Literal
@@ -33,7 +33,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }
-"""Figures by their names: of what they are, so that it must be there, and what describes them."""
+"""Figures by their names: what they need, and the function that describes them."""
 
 OF_A_TRAIN = [name for name, (of, _) in FIGURES.items() if of == "train"]
 """Figures for which a train can be chosen."""
@@ -48,7 +48,7 @@ ENDED = {
 def draw(
     name: str, result: Result, train: str | None = None, against: Against = "distance"
 ) -> Figure:
-    """Draw a figure with its title, which says too if the run ended early.
+    """Draw a figure with its title, which also says if the run ended early.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def draw(
     train : str, optional
         The train of those of one train; the studied one, or the first on the line, by default.
     against : {"time", "distance"}
-        What the horizontal axis of a journey carries.
+        Quantity of the horizontal axis of a journey.
 
     Raises
     ------

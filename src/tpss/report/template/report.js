@@ -111,7 +111,7 @@
     };
   }
 
-  // The last traces of the plot hold the trains, one a run; plotly changes what they say.
+  // The last traces of the plot hold the trains, one per run; plotly changes what they say.
   const traces = slider ? plots[run.plot].data.length - run.runs.length : 0;
   const marks = slider ? plots[run.plot].data.slice(traces).map(({ marker }) => ({ ...marker })) : [];
 

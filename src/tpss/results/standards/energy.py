@@ -1,6 +1,6 @@
-"""Energy of trains as an energy meter on board bills it: in blocks, each direction apart.
+"""Energy of trains as metered on board for billing: in blocks, each direction separately.
 
-Energy that a train draws is consumed, energy that it feeds back is regenerated; both are not negative.
+Energy that a train draws is consumed, energy that it feeds back is regenerated; neither is negative.
 
 References
 ----------
@@ -19,7 +19,7 @@ BLOCK_MIN = 5.0
 
 
 def energy_table(dataset: xr.Dataset, mass_t: Floats) -> pd.DataFrame:
-    """A row a train: energies over the run, and what is consumed less what is regenerated a kilometre.
+    """One row per train: energies over the run, and consumed less regenerated energy per kilometre.
 
     Parameters
     ----------
@@ -28,13 +28,13 @@ def energy_table(dataset: xr.Dataset, mass_t: Floats) -> pd.DataFrame:
         Mass of each whole train. [t]
     """
     energy = {name: powers.sum(axis=0) for name, powers in _energies(dataset).items()}
-    way_km = distance_km(dataset)
+    travelled_km = distance_km(dataset)
     net_kwh = 1e3 * (energy["consumed_mwh"] - energy["regenerated_mwh"])
-    per_km = net_kwh / np.where(way_km > 0.0, way_km, np.nan)
+    per_km = net_kwh / np.where(travelled_km > 0.0, travelled_km, np.nan)
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),
-            "distance_km": way_km,
+            "distance_km": travelled_km,
             "mass_t": mass_t,
             **energy,
             "energy_kwh_per_km": per_km,
@@ -44,10 +44,10 @@ def energy_table(dataset: xr.Dataset, mass_t: Floats) -> pd.DataFrame:
 
 
 def energy_blocks(dataset: xr.Dataset, block_min: float = BLOCK_MIN) -> pd.DataFrame:
-    """A row a train and block in which it is on the line: its energies.
+    """One row per train and block in which it is on the line: its energies.
 
     Blocks are counted from the start of the run; the last one ends with the run. A time step that
-    goes over the end of a block is shared out.
+    extends over the end of a block is divided.
     """
     steps, h = dataset.sizes["time"] - 1, step_s(dataset) / 60.0
     edges = np.append(np.arange(0.0, steps * (1.0 - 1e-12), block_min / h), float(steps))

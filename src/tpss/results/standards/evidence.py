@@ -24,7 +24,7 @@ from tpss.scenario.scenario import Scenario
 from tpss.scenario.standards import Standards
 
 MOST_WORDS = 10
-"""Violations that a summary tells in words."""
+"""Highest number of violations that a summary lists in words."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +32,8 @@ class Evidence:
     """Key figures of a run by the definitions of EN 50163, EN 50388 and EN 50463.
 
     They are evidence for an assessment, which is more than a simulation: limits, durations and
-    minima come from the scenario's ``standards`` and are to be checked against the edition that
-    holds. All tables are of pandas; a figure that the run is too short for is NaN, and `notes` says
+    minima come from the scenario's ``standards`` and are to be checked against the edition in
+    force. All tables are of pandas; a figure that the run is too short for is NaN, and `notes` says
     so.
 
     Attributes
@@ -55,35 +55,35 @@ class Evidence:
 
     @cached_property
     def voltage(self) -> pd.DataFrame:
-        """EN 50163, a row a train: time beyond each limit, longest stretch, verdict."""
+        """EN 50163, one row per train: time beyond each limit, longest time, verdict."""
         limits = self.standards.voltage_limits
         return voltage_limits.voltage_table(self.dataset, self._excursions, limits)
 
     @cached_property
     def excursions(self) -> pd.DataFrame:
-        """EN 50163, a row for each stretch of time of a train beyond a limit: when, where, how far."""
+        """EN 50163, one row per uninterrupted time of a train beyond a limit: when, where, how far."""
         return table_of(self._excursions, Excursion)
 
     @cached_property
     def useful_voltage_zones(self) -> pd.DataFrame:
-        """EN 50388, a row a zone: mean useful voltage in the peak window."""
+        """EN 50388, one row per zone: mean useful voltage in the peak window."""
         zones: Iterable[Any] = self.standards.zones
-        stretches = [useful_voltage.Stretch(z.name, z.from_km, z.to_km) for z in zones]
-        stretches = stretches or useful_voltage.feeding_sections(self.dataset)
+        sections = [useful_voltage.Section(z.name, z.from_km, z.to_km) for z in zones]
+        sections = sections or useful_voltage.feeding_sections(self.dataset)
         return useful_voltage.zone_table(
-            self.dataset, stretches, self._window, self.least_useful_voltage_kv
+            self.dataset, sections, self._window, self.least_useful_voltage_kv
         )
 
     @cached_property
     def useful_voltage_trains(self) -> pd.DataFrame:
-        """EN 50388, a row a train: mean useful voltage in the peak window."""
+        """EN 50388, one row per train: mean useful voltage in the peak window."""
         return useful_voltage.train_table(self.dataset, self._window, self.least_useful_voltage_kv)
 
     @property
     def dimensioning_train(self) -> str | None:
         """EN 50388, the train with the lowest mean useful voltage of those present for 60 s."""
-        found = useful_voltage.dimensioning_train(self.useful_voltage_trains)
-        return None if found is None else found[0]
+        train = useful_voltage.dimensioning_train(self.useful_voltage_trains)
+        return None if train is None else train[0]
 
     @property
     def least_useful_voltage_kv(self) -> float | None:
@@ -94,7 +94,7 @@ class Evidence:
 
     @cached_property
     def energy(self) -> pd.DataFrame:
-        """EN 50463, a row a train: energy consumed and regenerated, active and reactive."""
+        """EN 50463, one row per train: energy consumed and regenerated, active and reactive."""
         return energy.energy_table(self.dataset, self.mass_t)
 
     @cached_property
@@ -104,7 +104,7 @@ class Evidence:
 
     @cached_property
     def station_power(self) -> pd.DataFrame:
-        """A row a station and window: highest mean power; the window of a time step gives the peak."""
+        """One row per station and window: highest mean power; that of a time step is the peak."""
         return station_load.power_table(self.dataset)
 
     @cached_property
@@ -114,17 +114,17 @@ class Evidence:
 
     @cached_property
     def converters(self) -> pd.DataFrame:
-        """A row a station and number of converters: how long so many were running."""
+        """One row per station and number of converters: how long that number was running."""
         return station_load.converter_table(self.dataset)
 
     @cached_property
     def losses(self) -> pd.DataFrame:
-        """A row a kind of branch (contact line, transformer and so on): energy lost in it."""
+        """One row per kind of branch (contact line, transformer and so on): energy lost in it."""
         return network_load.losses_table(self.dataset)
 
     @cached_property
     def branch_current(self) -> pd.DataFrame:
-        """A row a branch and window: highest RMS current; the window of a time step gives the peak."""
+        """One row per branch and window: highest RMS current; that of a time step is the peak."""
         return network_load.current_table(self.dataset)
 
     @cached_property
@@ -134,9 +134,9 @@ class Evidence:
 
     @property
     def voltage_in_words(self) -> str:
-        """That no train passed a permanent limit, or for how long one did that was allowed to.
+        """That no train was beyond a permanent limit, or for how long one was, within the allowed time.
 
-        Empty if one was not allowed to, which `violations` tells, or if no voltage was recorded.
+        Empty if there is a violation, see `violations`, or if no voltage was recorded.
         """
         seen = np.isfinite(self.dataset.pantograph_voltage.to_numpy()).any()
         if not seen or any(each.violation for each in self._excursions):
@@ -145,7 +145,7 @@ class Evidence:
 
     @property
     def notes(self) -> list[str]:
-        """What the figures lack, in words."""
+        """Notes on missing figures."""
         run_min = (self.dataset.sizes["time"] - 1) * step_s(self.dataset) / 60.0
         notes = []
         longer = [f"{window:g}" for window in WINDOWS_MIN if window > run_min * (1.0 + 1e-9)]
@@ -166,7 +166,7 @@ class Evidence:
         return notes
 
     def as_dict(self) -> dict[str, Any]:
-        """The figures that fit into a summary, of plain types only."""
+        """The figures for a summary, of plain types only."""
         return {
             "voltage": self._voltage_figures(),
             "mean_useful_voltage": self._useful_voltage_figures(),
@@ -197,11 +197,12 @@ class Evidence:
 
     def _useful_voltage_figures(self) -> dict[str, Any]:
         zones = self.useful_voltage_zones
-        found = useful_voltage.dimensioning_train(self.useful_voltage_trains)
+        train = useful_voltage.dimensioning_train(self.useful_voltage_trains)
+        name, mean_kv = train or (None, None)
         return {
             "zones_kv": _plain(zones.zone, zones.mean_useful_kv),
-            "dimensioning_train": None if found is None else found[0],
-            "dimensioning_train_kv": None if found is None else found[1],
+            "dimensioning_train": name,
+            "dimensioning_train_kv": mean_kv,
             "minimum_kv": self.least_useful_voltage_kv,
         }
 
@@ -235,12 +236,10 @@ def _plain(names: Iterable[Any], values: Iterable[float]) -> dict[str, float | N
 
 def gather(dataset: xr.Dataset, scenario: Scenario) -> Evidence:
     """Evidence of a run."""
-    train_of = {entry.name: scenario.trains[entry.train] for entry in scenario.traffic}
+    trains = scenario.trains_by_service()
     return Evidence(
         dataset=dataset,
         standards=scenario.standards,
         line_speed_kmh=max(limit.speed_kmh for limit in scenario.line.speed_limits),
-        mass_t=np.array(
-            [train_of[name].mass_t for name in dataset.service.to_numpy()], dtype=float
-        ),
+        mass_t=np.array([trains[name].mass_t for name in dataset.service.to_numpy()], dtype=float),
     )

@@ -1,4 +1,4 @@
-"""Where the network's losses arise, and what its branches carry."""
+"""Losses of the network by kind of branch, and currents of branches."""
 
 from collections.abc import Iterable
 
@@ -11,10 +11,10 @@ from tpss.results.tables import J_PER_MWH, step_s
 
 
 def losses_table(dataset: xr.Dataset) -> pd.DataFrame:
-    """A row a kind of branch: energy lost in all of that kind, and its share of all losses.
+    """One row per kind of branch: energy lost in all of that kind, and its share of all losses.
 
     Losses of lumped branches are R I². The contact line, whose current changes from train to train, has
-    what is left of the recorded losses.
+    the remainder of the recorded losses.
     """
     resistance, kinds = dataset.branch_resistance.to_numpy(), dataset.branch_kind.to_numpy()
     is_lumped = np.isfinite(resistance)
@@ -35,7 +35,7 @@ def losses_table(dataset: xr.Dataset) -> pd.DataFrame:
 
 
 def current_table(dataset: xr.Dataset, windows_min: Iterable[float] = WINDOWS_MIN) -> pd.DataFrame:
-    """A row a branch and window: highest RMS current, and when. The time step gives the peak."""
+    """One row per branch and window: highest RMS current, and when; of a time step, the peak."""
     squares = step_values(dataset, "branch_current") ** 2
     names = {
         "branch": dataset.branch.to_numpy(),

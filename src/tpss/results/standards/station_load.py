@@ -1,4 +1,4 @@
-"""What converter stations carry: mean powers, the load duration curve, converters running."""
+"""Load of feeding stations: mean powers, the load duration curve, converters running."""
 
 from collections.abc import Iterable
 
@@ -11,7 +11,7 @@ from tpss.results.tables import step_s
 
 
 def power_table(dataset: xr.Dataset, windows_min: Iterable[float] = WINDOWS_MIN) -> pd.DataFrame:
-    """A row a station and window: highest mean active power, and when. The time step gives the peak."""
+    """One row per station and window: highest mean active power, and when; of a time step, the peak."""
     power_mw = step_values(dataset, "station_active_power") / 1e6
     names = {"station": dataset.station.to_numpy()}
     table = highest_mean_table(power_mw, names, step_s(dataset), windows_min)
@@ -32,7 +32,7 @@ def load_duration_table(dataset: xr.Dataset) -> pd.DataFrame:
 
 
 def converter_table(dataset: xr.Dataset) -> pd.DataFrame:
-    """A row a station and number of converters: how long so many were running."""
+    """One row per station and number of converters: how long that number was running."""
     running, h = step_values(dataset, "active_converters"), step_s(dataset) / 60.0
     rows = [
         (str(station), int(number), int(steps) * h)

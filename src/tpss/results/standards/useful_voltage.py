@@ -2,8 +2,8 @@
 
 The mean useful voltage of a zone is the mean of the voltage at the pantograph over all trains and time
 steps in that zone, whatever the trains do.  That of a train is the mean over the steps in which its
-tractive effort is positive.  The train with the lowest one is the dimensioning train.  All of it is
-taken in the peak window.
+tractive effort is positive.  The train with the lowest one is the dimensioning train.  All of them are
+evaluated in the peak window.
 
 References
 ----------
@@ -30,7 +30,7 @@ FAST_KMH = 200.0
 REACHED, MISSED = "reached", "below the minimum"
 
 
-class Stretch(NamedTuple):
+class Section(NamedTuple):
     """A zone of the line."""
 
     name: str
@@ -38,8 +38,8 @@ class Stretch(NamedTuple):
     to_km: float
 
 
-def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
-    """Stretches of line between converter stations, and from the outer ones to the line's ends."""
+def feeding_sections(dataset: xr.Dataset) -> list[Section]:
+    """Sections of line between feeding stations, and from the outer ones to the line's ends."""
     ends_km = (0.0, _length_km(dataset))
     named = dict.fromkeys(ends_km, "") | dict(
         zip(dataset.station_position.to_numpy() / 1e3, dataset.station.to_numpy(), strict=True)
@@ -47,7 +47,7 @@ def feeding_sections(dataset: xr.Dataset) -> list[Stretch]:
     points = sorted(named)
     label = {km: str(named[km]) or f"{km:g} km" for km in points}
     return [
-        Stretch(f"{label[begin]}-{label[end]}", float(begin), float(end))
+        Section(f"{label[begin]}-{label[end]}", float(begin), float(end))
         for begin, end in zip(points, points[1:], strict=False)
     ]
 
@@ -62,7 +62,7 @@ def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) 
 
 
 def window_steps(steps: int, step_s: float, from_min: float, to_min: float | None) -> slice | None:
-    """Steps of a run of so many that begin within a window; None if the run does not cover it."""
+    """Steps of a run that begin within a window; None if the run does not cover it."""
     h = step_s / 60.0
     begin = math.ceil(from_min / h - TOLERANCE)
     end = steps if to_min is None else math.ceil(to_min / h - TOLERANCE)
@@ -70,9 +70,9 @@ def window_steps(steps: int, step_s: float, from_min: float, to_min: float | Non
 
 
 def zone_table(
-    dataset: xr.Dataset, zones: Iterable[Stretch], window: slice | None, least_kv: float | None
+    dataset: xr.Dataset, zones: Iterable[Section], window: slice | None, least_kv: float | None
 ) -> pd.DataFrame:
-    """A row a zone: its mean useful voltage, from how many trains, against the minimum.
+    """One row per zone: its mean useful voltage, from how many trains, against the minimum.
 
     A zone includes its beginning, and the line's end belongs to the last zone before it.
     """
@@ -92,7 +92,7 @@ def zone_table(
 
 
 def train_table(dataset: xr.Dataset, window: slice | None, least_kv: float | None) -> pd.DataFrame:
-    """A row a train: how long it is present and pulls, its mean useful voltage, against the minimum."""
+    """One row per train: time present and in traction, mean useful voltage, against the minimum."""
     chosen, h = slice(0) if window is None else window, step_s(dataset) / 60.0
     voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
     present = np.isfinite(voltage)
@@ -120,7 +120,7 @@ def _judged(means_kv: Floats, least_kv: float | None) -> dict[str, Any]:
 
 
 def dimensioning_train(trains: pd.DataFrame) -> tuple[str, float] | None:
-    """The train with the lowest mean useful voltage [kV] of those that count, if any pulls."""
+    """The train with the lowest mean useful voltage [kV] of those that count, if any is in traction."""
     means = np.where(trains.counts.to_numpy(), trains.mean_useful_kv.to_numpy(), np.nan)
     if not np.isfinite(means).any():
         return None

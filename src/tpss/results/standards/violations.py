@@ -1,4 +1,4 @@
-"""What passes a limit, in words, the worst first."""
+"""Violations of limits, the worst first."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -14,7 +14,7 @@ from tpss.scenario.standards import VoltageLimits
 
 
 class Violation(NamedTuple):
-    """A limit that was passed, by whom, how far, and in words."""
+    """A violated limit: by which train or zone, how far, and in words."""
 
     standard: str
     rule: str
@@ -28,20 +28,23 @@ class Violation(NamedTuple):
 
 
 def find_violations(
-    found: Iterable[Excursion], zones: pd.DataFrame, trains: pd.DataFrame, limits: VoltageLimits
+    excursions: Iterable[Excursion],
+    zones: pd.DataFrame,
+    trains: pd.DataFrame,
+    limits: VoltageLimits,
 ) -> list[Violation]:
     """All violations, those of the gravest rule first, and within a rule the worst.
 
     Parameters
     ----------
-    found : iterable of Excursion
+    excursions : iterable of Excursion
         As of `find_excursions`.
     zones, trains : DataFrame
         As of `zone_table` and `train_table`.
     limits : VoltageLimits
     """
     listed = []
-    grave = [each for each in found if each.violation]
+    grave = [each for each in excursions if each.violation]
     for bound in bounds(limits):
         sign = 1.0 if bound.side == "below" else -1.0
         own = sorted(
@@ -76,12 +79,12 @@ def _too_low(what: str, table: pd.DataFrame, counts: npt.NDArray[np.bool_]) -> I
         )  # fmt: skip
 
 
-def voltage_in_words(found: Sequence[Excursion], limits: VoltageLimits) -> str:
-    """What there is to say of excursions that break no rule: the longest, or that there are none."""
-    if not found:
+def voltage_in_words(excursions: Sequence[Excursion], limits: VoltageLimits) -> str:
+    """Sentence on excursions without a violation: the longest, or that there are none."""
+    if not excursions:
         low, high = kilovolts(limits.umin1_kv), kilovolts(limits.umax1_kv)
         return f"no train below {low} or above {high}"
-    longest = max(found, key=lambda each: each.duration_min)
+    longest = max(excursions, key=lambda each: each.duration_min)
     return f"{excursion_in_words(longest)}; {longest.allowed_min:g} min are allowed"
 
 

@@ -1,7 +1,7 @@
 """Voltages at the pantograph against the limits of EN 50163.
 
-Below Umin1 a train may be for two minutes at a stretch, above Umax1 for five; below Umin2 and above
-Umax2 never.  Time is counted in time steps, as the voltage is one number a step.
+A train may be below Umin1 for two minutes without interruption, above Umax1 for five; never below
+Umin2 or above Umax2.  Time is counted in time steps, as the voltage is one number a step.
 
 References
 ----------
@@ -29,7 +29,7 @@ class Bound(NamedTuple):
     name: str
     limit_kv: float
     side: str
-    """Where a train is that keeps to it not: "below" or "above"."""
+    """Side of a violation: "below" or "above"."""
     allowed_min: float
 
     def is_beyond(self, voltage_v: Floats) -> npt.NDArray[np.bool_]:
@@ -45,7 +45,7 @@ class Bound(NamedTuple):
 
 
 def bounds(limits: VoltageLimits) -> tuple[Bound, ...]:
-    """The four limits, those that no train may pass first."""
+    """The four limits, the absolute ones first."""
     return (
         Bound("Umin2", limits.umin2_kv, "below", 0.0),
         Bound("Umax2", limits.umax2_kv, "above", 0.0),
@@ -55,7 +55,7 @@ def bounds(limits: VoltageLimits) -> tuple[Bound, ...]:
 
 
 class Excursion(NamedTuple):
-    """A stretch of time that a train was beyond a limit."""
+    """An uninterrupted time in which a train was beyond a limit."""
 
     train: str
     limit: str
@@ -80,7 +80,7 @@ class Excursion(NamedTuple):
 
 
 def find_excursions(dataset: xr.Dataset, limits: VoltageLimits) -> list[Excursion]:
-    """Every stretch of time that a train was beyond a limit: how long, where, and how far."""
+    """All times in which a train was beyond a limit: how long, where, and how far."""
     return [each for bound in bounds(limits) for each in _of_bound(dataset, bound)]
 
 
@@ -125,9 +125,9 @@ def _is_too_long(steps: int, bound: Bound, step_min: float) -> bool:
 
 
 def voltage_table(
-    dataset: xr.Dataset, found: Iterable[Excursion], limits: VoltageLimits
+    dataset: xr.Dataset, excursions: Iterable[Excursion], limits: VoltageLimits
 ) -> pd.DataFrame:
-    """A row a train: lowest and highest voltage, time beyond each limit, longest stretch, verdict."""
+    """One row per train: lowest and highest voltage, time beyond each limit, longest time, verdict."""
     voltage = step_values(dataset, "pantograph_voltage")
     known = np.isfinite(voltage)
     names = dataset.train.to_numpy()
@@ -138,7 +138,7 @@ def voltage_table(
         key = f"{bound.side}_{bound.name.lower()}_min"
         total = times[key] = np.zeros(len(names))
         longest = times[f"longest_{key}"] = np.zeros(len(names))
-        for each in (each for each in found if each.limit == bound.name):
+        for each in (each for each in excursions if each.limit == bound.name):
             i = place[each.train]
             total[i] += each.duration_min
             longest[i] = max(longest[i], each.duration_min)

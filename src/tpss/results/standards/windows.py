@@ -1,4 +1,4 @@
-"""Means over windows of time, of values that hold from an instant to the next.
+"""Means over windows of time, of values that apply from an instant to the next.
 
 The integral of such values is a straight line between two instants, so every mean here is exact, whether
 or not a window is a whole number of time steps.
@@ -27,7 +27,7 @@ def step_values(dataset: xr.Dataset, name: str) -> Floats:
 
 
 def table_of(rows: Sequence[tuple[Any, ...]], kind: type[Any]) -> pd.DataFrame:
-    """Table of rows that are named tuples of a kind, its columns of their types even without a row."""
+    """Table of rows that are named tuples of a kind, its columns typed even without a row."""
     types = {"str": object, "float": float, "bool": bool}
     return pd.DataFrame(
         {
@@ -53,7 +53,7 @@ def between_instants(integral: Floats, steps: Floats) -> Floats:
 def highest_means(values: Floats, width: float) -> tuple[Floats, Floats]:
     """Highest mean of each column over a moving window, and where that window begins.
 
-    The mean over a window is a straight line between the places where an end of the window meets an
+    The mean over a window is a straight line between the positions where an end of the window meets an
     instant, so it is highest at one of them.
 
     Parameters
@@ -89,26 +89,26 @@ def highest_means(values: Floats, width: float) -> tuple[Floats, Floats]:
 def highest_mean_table(
     values: Floats, names: dict[str, Sequence[str]], step_s: float, windows_min: Iterable[float]
 ) -> pd.DataFrame:
-    """Highest mean of each column over a step and over windows: a row a column and window.
+    """Highest mean of each column over a step and over windows: one row per column and window.
 
     Parameters
     ----------
     values : Floats, shape (steps, columns)
     names : dict of str to sequence
-        Columns of the table that say what the columns of the values are.
+        Columns of the table that name the columns of the values.
     step_s : float
         Length of a time step. [s]
     windows_min : iterable of float
-        Windows beside the time step itself. [min]
+        Windows in addition to the time step itself. [min]
     """
     widths = sorted({step_s / 60.0, *windows_min})
-    found = [highest_means(values, width * 60.0 / step_s) for width in widths]
+    highest = [highest_means(values, width * 60.0 / step_s) for width in widths]
     table = {key: np.repeat(list(column), len(widths)) for key, column in names.items()}
     return pd.DataFrame(
         {
             **table,
             "window_min": np.tile(widths, values.shape[1]),
-            "highest": np.array([means for means, _ in found]).T.ravel(),
-            "from_min": np.array([begins for _, begins in found]).T.ravel() * step_s / 60.0,
+            "highest": np.array([means for means, _ in highest]).T.ravel(),
+            "from_min": np.array([begins for _, begins in highest]).T.ravel() * step_s / 60.0,
         }
     )

@@ -1,4 +1,4 @@
-"""The power supply, one file a noun."""
+"""The power supply, one file per noun."""
 
 from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType

@@ -32,7 +32,7 @@ class StationTransformer(Part):
     def _losses_fit_the_impedance(self) -> Self:
         if self.r_pu > self.z_pu:
             raise fault(
-                f"load_loss_kw ({self.load_loss_kw:g} kW) asks for more than the whole impedance of "
+                f"load_loss_kw ({self.load_loss_kw:g} kW) needs more than the whole impedance of "
                 f"short_circuit_percent ({self.short_circuit_percent:g} %)",
                 "lower load_loss_kw, or raise short_circuit_percent",
             )
