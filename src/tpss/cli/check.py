@@ -24,7 +24,7 @@ from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
-from tpss.scenario.supply import ConverterStation, HighVoltageLine, Supply, TransformerStation
+from tpss.scenario.supply import HighVoltageLine, Supply
 from tpss.scenario.traffic import Traffic
 
 MOST_LISTED = 8
@@ -92,10 +92,8 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     impedance = f"{catenary.r_ohm_per_km:g} + j{catenary.x_ohm_per_km:g} Ω/km"
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
-    for station in supply.converter_stations:
-        yield "converters", _converter_station(station)
-    for transformers in supply.transformer_stations:
-        yield "transformers", _transformer_station(transformers)
+    for station in supply.stations:
+        yield "feeding", f"{station.name} {station.position_km:g} km: {station.in_words}"
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
@@ -108,25 +106,6 @@ def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
     conductors = library_name("high_voltage_lines", line.type)
     return (
         f"{conductors}, {line.base_kv:g} kV; transformers: {placed}, {at_stations} at the stations"
-    )
-
-
-def _converter_station(station: ConverterStation) -> str:
-    converter = library_name("converters", station.type)
-    return (
-        f"{station.name} {station.position_km:g} km: {station.converters} x {converter} of "
-        f"{station.type.rating_mva:g} MVA, control {station.control}"
-    )
-
-
-def _transformer_station(station: TransformerStation) -> str:
-    grid = "an infinite grid"
-    if station.grid_short_circuit_mva is not None:
-        grid = f"a grid of {station.grid_short_circuit_mva:g} MVA"
-    unit = station.transformer
-    return (
-        f"{station.name} {station.position_km:g} km: {station.transformers} x {unit.rated_mva:g} MVA, "
-        f"{unit.short_circuit_percent:g} %, {station.no_load_voltage_kv:g} kV without load, at {grid}"
     )
 
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from tpss.scenario.fields import FromLibrary, Name, Part, Position, Real, Whole
+from tpss.scenario.fields import FromLibrary, Name, Part, Position, Real, Whole, library_name
 
 
 class ConverterType(Part):
@@ -67,3 +67,9 @@ class ConverterStation(Part):
     def unit_mva(self) -> float:
         """Rated power of one unit. [MVA]"""
         return self.type.rating_mva
+
+    @property
+    def in_words(self) -> str:
+        """What stands there."""
+        converter = library_name("converters", self.type)
+        return f"{self.converters} x {converter} of {self.unit_mva:g} MVA, control {self.control}"

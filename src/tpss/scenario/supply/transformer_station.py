@@ -70,3 +70,13 @@ class TransformerStation(Part):
     def unit_mva(self) -> float:
         """Rated power of one unit. [MVA]"""
         return self.transformer.rated_mva
+
+    @property
+    def in_words(self) -> str:
+        """What stands there."""
+        power, percent = self.grid_short_circuit_mva, self.transformer.short_circuit_percent
+        grid = "an infinite grid" if power is None else f"a grid of {power:g} MVA"
+        return (
+            f"{self.transformers} x {self.unit_mva:g} MVA, {percent:g} %, "
+            f"{self.no_load_voltage_kv:g} kV without load, at {grid}"
+        )
