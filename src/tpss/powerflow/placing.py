@@ -1,6 +1,6 @@
 """Where the trains stand under the sections of the contact line, in order, and how far apart."""
 
-from tpss.kernel import at, inlined
+from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Network, Section, Standing
 from tpss.record import Records
 from tpss.vehicle.train import Train
@@ -39,26 +39,35 @@ def stands_behind(section: int, place_m: float, train: int, other: Standing) -> 
 def locate_trains(count: int, trains: Records[Train], network: Network, flow: Flow) -> None:
     """Find section and place of the first `count` trains of `flow.standing`, and sort them by these.
 
-    The order is that of the step before, and trains hardly ever pass each other: an insertion sort
-    visits each of them once.
+    The order is that of the step before, and trains hardly ever pass each other: of an insertion sort
+    hardly more is left than to compare each train with the one before it.
     """
     section = 0
     for k in range(count):
-        train = flow.standing[at(k)].train
+        standing = flow.standing[at(k)]
+        train = standing.train
         place_m = trains[at(train)].motion.position_m
         section = section_at(place_m, section, network.sections)
-        place = k
-        while place > 0:
-            other = flow.standing[at(place - 1)]
-            if stands_behind(section, place_m, train, other):
-                break
-            flow.standing[at(place)].train = other.train
-            flow.standing[at(place)].section = other.section
-            flow.standing[at(place)].place_m = other.place_m
-            place -= 1
-        flow.standing[at(place)].train = train
-        flow.standing[at(place)].section = section
-        flow.standing[at(place)].place_m = place_m
+        standing.section = section
+        standing.place_m = place_m
+        if k > 0 and not stands_behind(section, place_m, train, flow.standing[at(k - 1)]):
+            _move_forward(k, flow.standing)
+
+
+@kernel
+def _move_forward(k: int, standing: Records[Standing]) -> None:
+    """Move the `k`-th train to its place among those before it, which are in order."""
+    train, section, place_m = (
+        standing[at(k)].train,
+        standing[at(k)].section,
+        standing[at(k)].place_m,
+    )
+    while k > 0 and not stands_behind(section, place_m, train, standing[at(k - 1)]):
+        before, here = standing[at(k - 1)], standing[at(k)]
+        here.train, here.section, here.place_m = before.train, before.section, before.place_m
+        k -= 1
+    here = standing[at(k)]
+    here.train, here.section, here.place_m = train, section, place_m
 
 
 @inlined

@@ -36,7 +36,7 @@ class Networks(Record):
 
 
 class TrainType(Record):
-    """A type of train, in SI units."""
+    """A type of train, in SI units; what every evaluation reads comes first."""
 
     mass_kg: float
     """Mass of the whole train. [kg]"""
@@ -50,10 +50,24 @@ class TrainType(Record):
     """Inertia of the motors as a mass at the wheel rim, c = 4 K_J (κ + 1). [kg]"""
     slip_factor: float
     """Circumferential speed of the driven wheels over speed, κ + 1. [1]"""
-    resistance: DavisCoefficients
-    """Running resistance on straight level track."""
-    effort: TractiveEffort
-    """What the motors give at most."""
+    auxiliary_power_w: float
+    """Active power of the auxiliaries. [W]"""
+    auxiliary_reactive_power_var: float
+    """Their reactive power. [var]"""
+    filter_susceptance_s: float
+    """Susceptance of the filter at the pantograph's side, negative; 0: no filter. [S]"""
+    transformer_ratio: float
+    """Secondary voltage of the locomotive's transformer over the voltage at the pantograph. [1]"""
+    reactive_model: ReactiveModel
+    """What the reactive power of the motors follows from."""
+    voltage_model: MotorModel
+    """Model of the motor voltage."""
+    current_model: MotorModel
+    """Model of the motor current."""
+    base_speed_m_s: float
+    """Speed from which the motor voltage is at its highest; NaN: not known. [m/s]"""
+    highest_motor_voltage_v: float
+    """Highest voltage of one motor; NaN: not known. [V]"""
     line_current: LineCurrentLimit
     """Limit of the current at the pantograph."""
     highest_acceleration_m_s2: float
@@ -62,27 +76,13 @@ class TrainType(Record):
     """Highest retardation, positive. [m/s²]"""
     highest_speed_m_s: float
     """Highest speed of the train. [m/s]"""
+    resistance: DavisCoefficients
+    """Running resistance on straight level track."""
     efficiency: Curve
     """Efficiency over speed, from pantograph to motor shaft. [1]"""
     power_factor: Curve
     """Power factor over speed, where it is not the network's. [1]"""
-    auxiliary_power_w: float
-    """Active power of the auxiliaries. [W]"""
-    auxiliary_reactive_power_var: float
-    """Their reactive power. [var]"""
-    base_speed_m_s: float
-    """Speed from which the motor voltage is at its highest; NaN: not known. [m/s]"""
-    highest_motor_voltage_v: float
-    """Highest voltage of one motor; NaN: not known. [V]"""
-    transformer_ratio: float
-    """Secondary voltage of the locomotive's transformer over the voltage at the pantograph. [1]"""
-    filter_susceptance_s: float
-    """Susceptance of the filter at the pantograph's side, negative; 0: no filter. [S]"""
-    reactive_model: ReactiveModel
-    """What the reactive power of the motors follows from."""
-    voltage_model: MotorModel
-    """Model of the motor voltage."""
-    current_model: MotorModel
-    """Model of the motor current."""
+    effort: TractiveEffort
+    """What the motors give at most."""
     networks: Networks
     """Networks of the machine; zero where nothing asks for them."""
