@@ -149,7 +149,7 @@ def test_an_interruption_of_the_printing_says_where_the_result_lies(
     monkeypatch.setattr("tpss.cli.tables.print_result", interrupted)
     said = tpss_command("run", short_file)
     assert said.code == 130
-    assert said.err.endswith("Interrupted. The result lies in results/short-line-001")
+    assert said.err.endswith("Interrupted. The result is in results/short-line-001")
 
 
 def test_a_failed_run_keeps_its_exit_code_when_its_saving_is_interrupted(tpss_command, monkeypatch):

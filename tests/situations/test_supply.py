@@ -151,7 +151,7 @@ def test_wet_rails_may_stall_a_train_that_dry_rails_carry():
     assert run(hill).status == "finished"
     wet = run({**hill, "simulation.rail": "wet"})
     assert wet.status == "stalled"
-    assert "the rails give 124.1 kN" in wet.summary["problem"]
+    assert "adhesion give 124.1 kN" in wet.summary["problem"]
 
 
 def test_slip_is_paid_for_by_the_motors():

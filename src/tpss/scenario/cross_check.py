@@ -88,7 +88,8 @@ def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
     begin = _number(first, "from_km")
     if begin is not None and begin > 0.0:
         problem = "no speed limit applies at the beginning of the line"
-        yield "line.speed_limits.0.from_km", f"{begin:g}", problem, "set it to 0"
+        remedy = "make the first limit begin at 0"
+        yield "line.speed_limits.0.from_km", f"{begin:g}", problem, remedy
 
 
 def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:

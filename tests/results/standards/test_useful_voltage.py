@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from tpss.results.standards.useful_voltage import (
-    Stretch,
+    Section,
     dimensioning_train,
     feeding_sections,
     steps_in_window,
@@ -42,7 +42,7 @@ DATASET = made_up(
         "c": [nan, 9.0, 10.0, 10.0, nan],
     },
 )
-ZONES = [Stretch("first", 0.0, 5.0), Stretch("second", 5.0, 10.0)]
+ZONES = [Section("first", 0.0, 5.0), Section("second", 5.0, 10.0)]
 WHOLE = steps_in_window(DATASET, 0.0, None)
 
 
