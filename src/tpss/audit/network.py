@@ -146,6 +146,6 @@ def audit_sources(step: int, model: Model, recording: Recording, scratch: Scratc
         voltage = complex(node.node_real, node.node_imag)
         power = complex(row.station_active_power, row.station_reactive_power)
         current = (power / voltage).conjugate()
-        off, _, _ = residual(voltage, current, row.active_converters, source)
+        off, _, _ = residual(voltage, current, row.active_converters, source, False)
         per_unit = magnitude(off) / network.system.base_voltage_v
         figures.converter_residual = worst(figures.converter_residual, per_unit)

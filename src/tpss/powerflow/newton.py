@@ -148,10 +148,11 @@ def _evaluate_node(n: int, start: Pass, network: Network, flow: Flow) -> float:
     if s < 0:
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
+    derivatives, running = start != CHECK, flow.sources[at(s)].running
     value, by_voltage, by_current = residual(
-        node.voltage_v, node.leaving_current_a, flow.sources[at(s)].running, network.sources[at(s)]
+        node.voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
     )
-    if start != CHECK:
+    if derivatives:
         _turn_source_row(n, value, by_voltage, by_current, network, flow)
     return squared(value) * network.system.per_square_volt
 

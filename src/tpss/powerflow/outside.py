@@ -59,7 +59,7 @@ def find_residuals(
     """
     for s in range(sources.size):
         value, (v_p, v_q), (j_p, j_q) = residual(
-            voltage_v[s], current_a[s], flow_sources[s].running, sources[s]
+            voltage_v[s], current_a[s], flow_sources[s].running, sources[s], True
         )
         residuals[s, 0] = value
         residuals[s, 1] = v_p

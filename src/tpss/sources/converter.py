@@ -117,7 +117,7 @@ def terminal_voltage(
 
 @inlined
 def converter_residual(
-    voltage: complex, current: complex, converters: float, law: ConverterLaw
+    voltage: complex, current: complex, converters: float, law: ConverterLaw, derivatives: bool
 ) -> tuple[complex, Pair, Pair]:
     """Voltage less what the law asks for, and its derivatives over voltage and current, as pairs.
 
@@ -133,6 +133,8 @@ def converter_residual(
         power.real, power.imag, converters, law
     )
     asked = scaled(direction, magnitude)
+    if not derivatives:
+        return voltage - asked, (0j, 0j), (0j, 0j)
     turned = complex(-asked.imag, asked.real)
     f_p = scaled(turned, 0.5 * angle_by_p)
     f_q = scaled(direction, 0.5 * by_q) + scaled(turned, 0.5 * angle_by_q)

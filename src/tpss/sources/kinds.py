@@ -40,7 +40,7 @@ class Source(Record):
 
 @inlined
 def residual(
-    voltage: complex, current: complex, running: float, source: Source
+    voltage: complex, current: complex, running: float, source: Source, derivatives: bool
 ) -> tuple[complex, Pair, Pair]:
     """Voltage of a source less what its law asks for, and the derivatives of that difference. [V]
 
@@ -53,6 +53,8 @@ def residual(
     running : float
         Number of units that run, at least 1.
     source : Source
+    derivatives : bool
+        Whether the derivatives are asked for, which take as long as the rest; otherwise they may be 0.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def residual(
     """
     if source.kind == SourceKind.GRID:
         return grid_residual(voltage, current, running, source.grid)
-    return converter_residual(voltage, current, running, source.converter)
+    return converter_residual(voltage, current, running, source.converter, derivatives)
 
 
 @inlined

@@ -111,7 +111,7 @@ POINTS = [(16.3e3 - 2.1e3j, 520.0 - 310.0j), (15.9e3 + 0.4e3j, -200.0 + 90.0j)]
 def test_residual_is_what_voltage_and_angle_of_the_powers_leave(as_run, law, voltage, current):
     power = voltage * current.conjugate()
     size, direction, *_ = as_run(terminal_voltage)(power.real, power.imag, 2.0, law)
-    off, _, _ = as_run(converter_residual)(voltage, current, 2.0, law)
+    off, _, _ = as_run(converter_residual)(voltage, current, 2.0, law, False)
     assert off == pytest.approx(voltage - size * direction, abs=1e-9)
 
 
@@ -120,9 +120,9 @@ def test_residual_is_what_voltage_and_angle_of_the_powers_leave(as_run, law, vol
 @pytest.mark.parametrize(("voltage", "current"), POINTS)
 def test_pairs_are_the_derivatives_of_the_residual(as_run, law, converters, voltage, current):
     def off(v, j):
-        return as_run(converter_residual)(v, j, converters, law)[0]
+        return as_run(converter_residual)(v, j, converters, law, False)[0]
 
-    _, by_voltage, by_current = as_run(converter_residual)(voltage, current, converters, law)
+    _, by_voltage, by_current = as_run(converter_residual)(voltage, current, converters, law, True)
     assert by_voltage == pytest.approx(
         pair_by_differences(lambda v: off(v, current), voltage, 1.0), rel=1e-6, abs=1e-9
     )

@@ -35,11 +35,17 @@ TRANSFORMERS = source(SourceKind.GRID, grid=GridLaw.row(**GRID))
 
 def test_the_law_of_its_kind_is_asked(as_run):
     """What the other kinds' parameters are is left open: not a number."""
-    for own, law, found in (
-        (converter_residual, CONVERTERS.converter, as_run(residual)(*STATE, CONVERTERS)),
-        (grid_residual, TRANSFORMERS.grid, as_run(residual)(*STATE, TRANSFORMERS)),
+    for asked, found in (
+        (
+            as_run(converter_residual)(*STATE, CONVERTERS.converter, True),
+            as_run(residual)(*STATE, CONVERTERS, True),
+        ),
+        (
+            as_run(grid_residual)(*STATE, TRANSFORMERS.grid),
+            as_run(residual)(*STATE, TRANSFORMERS, True),
+        ),
     ):
-        off, by_voltage, by_current = as_run(own)(*STATE, law)
+        off, by_voltage, by_current = asked
         assert found[0] == pytest.approx(off, rel=1e-12)
         assert found[1] == pytest.approx(by_voltage, rel=1e-12)
         assert found[2] == pytest.approx(by_current, rel=1e-12)
