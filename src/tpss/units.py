@@ -93,6 +93,12 @@ def si_of_each(items: Iterable[object], name: str) -> list[float]:
     return [getattr(item, name) * factor for item in items]
 
 
+def kilometres(km: float) -> str:
+    """A position or a length [km] as it is shown: in six digits, beyond 1000 km to the metre."""
+    digits = len(str(int(min(abs(km), 1e9)))) + 3
+    return f"{km:.{max(6, digits)}g}"
+
+
 def si_list(source: object, name: str) -> list[float]:
     """Values of the field `name` of `source`, a list of numbers, in SI units."""
     factor = si_factor(name)

@@ -175,3 +175,25 @@ def test_nothing_is_compiled_and_no_results_are_imported(tmp_path):
         env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}, check=True, capture_output=True,
     )  # fmt: skip
     assert not list(tmp_path.rglob("*.nbi"))
+
+
+def test_a_dead_stretch_of_line_is_noted(tpss_command, short_file):
+    """20 km at km 438, as a line from 0 on: nothing runs on its first 438 km."""
+    places = [
+        "line.length_km=458", "line.begins_at_km=0", "line.stations.0.position_km=438",
+        "line.stations.1.position_km=448", "line.stations.2.position_km=458",
+        "supply.converter_stations.0.position_km=438",
+        "supply.converter_stations.1.position_km=458",
+    ]  # fmt: skip
+    said = check(tpss_command, short_file, *places)
+    assert (
+        "Note: line: 438 km of contact line before its first station, from 0 to 438 km, have no "
+        "train; if there is no such line, give begins_at_km = 438 and length_km = 20" in said.out
+    )
+    cut = [*places, "line.length_km=20", "line.begins_at_km=438", "line.speed_limits.0.from_km=438"]
+    said = check(tpss_command, short_file, *cut)
+    assert "20 km, from 438 to 458 km" in said.out
+    assert "contact line" not in said.out
+    said = check(tpss_command, short_file, "line.length_km=120")
+    assert "100 km of contact line behind its last station, from 20 to 120 km" in said.out
+    assert "give length_km = 20" in said.out

@@ -112,6 +112,23 @@ def test_a_track_becomes_a_line_in_kilometres(folder):
     assert [tuple(row.values()) for row in line["gradients"]] == [(0, 5), (2.0003, -12.5), (5, 0)]
 
 
+def test_a_track_keeps_its_kilometres(folder, monkeypatch):
+    """From 438.2 to 444.4005 km: the line begins there, and so does the supply that is assumed."""
+    places = {
+        "stops/values": [438200.0, 444400.5],
+        "speed limits/values": [[438200.0, 80], [439700.0, 140], [442200.0, 100]],
+        "gradients": None,
+    }
+    write(folder / "track.json", changed(TRACK, places))
+    assert call(monkeypatch, "import", "ttobench", "track.json", "train.json", "--out", "far") == 0
+    scenario = tpss.load_scenario(folder / "far" / "XX_Alpha_Beta-XX_Unit.toml")
+    line, supply = scenario.line, scenario.supply
+    assert (line.begins_at_km, line.length_km, line.end_km) == (438.2, 6.2005, 444.4005)
+    assert [gradient.from_km for gradient in line.gradients] == [438.2]
+    assert [station.position_km for station in supply.stations] == [438.2, 444.4005]
+    assert tpss.simulate(scenario).status == "finished"
+
+
 def test_a_train_becomes_a_train(folder):
     """ρ = 8 % of 100 t: 8000 kg; r1 = 10 N/(km/h) = 36 N s/m; r2 = 1 N/(km/h)² = 12.96 N s²/m²."""
     document = imported(folder, TRAIN).document
@@ -330,8 +347,11 @@ FAULTS = [
                  "ascending order", id="a stop twice"),
     pytest.param(TRACK, {"stops/values": [0.0, 6e6]}, "stops.values.1", "6000000.0 m",
                  "less than or equal to 2000 km", id="a line around the world"),
-    pytest.param(TRACK, {"stops/values": [-5.0, 6000.0]}, "stops.values.0", "-5.0 m",
-                 "greater than or equal to 0 km", id="a stop before the line"),
+    pytest.param(TRACK, {"stops/values": [-5.0, 6000.0]}, "speed limits.values.0.0",
+                 "0.0 m", "begin at -0.005", id="a stop before the limits"),
+    pytest.param(TRACK, {"stops/values": [6200.5, 0.0], "gradients": None,
+                         "speed limits/values": [[6200.5, 80], [1500.0, 140]]}, "stops.values.1",
+                 "0.0 m", "minus sign before every position", id="falling kilometres"),
     pytest.param(TRACK, {"stops/values": 6200.5}, "stops.values", "6200.5", "give a list",
                  id="a number for a list"),
     pytest.param(TRACK, {"stops": [0.0, 6200.5]}, "stops", "[0.0, 6200.5]", "with its unit",

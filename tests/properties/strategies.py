@@ -11,6 +11,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from .kilometres import moved
+
 Draw = Any
 Document = dict[str, Any]
 Path = tuple[str | int, ...]
@@ -291,7 +293,10 @@ def on_25_kv(draw: Draw, document: Document) -> Document:
 
 @st.composite
 def sound_scenarios(draw: Draw) -> Document:
-    """A scenario without faults, but for trains that may be placed too fast to stop."""
+    """A scenario without faults, but for trains that may be placed too fast to stop.
+
+    A fifth of the lines begin elsewhere than at 0.
+    """
     line = draw(lines())
     document: Document = {
         "format": 1,
@@ -313,7 +318,9 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
-    return document
+    return (
+        moved(document, draw(numbers(-300.0, 1500.0))) if draw(st.integers(0, 4)) == 4 else document
+    )
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]

@@ -68,7 +68,7 @@ PLACES = [
     pytest.param({f"{HV}.transformers_km": [40.0, 170.0]}, f"{HV}.transformers_km.1", "170",
                  "between 0 and 160 km", id="transformer-beyond-the-line"),
     pytest.param({f"{HV}.transformers_km": [-1.0, 80.0]}, f"{HV}.transformers_km.0", "-1",
-                 "at 0 or beyond", id="transformer-before-the-line"),
+                 "between 0 and 160 km", id="transformer-before-the-line"),
     pytest.param({f"{EAST}.position_km": 0.0005}, f"{EAST}.position_km", "0.00050000000000000001",
                  "leave one of them out", id="converter-stations-half-a-metre-apart"),
     pytest.param({f"{HV}.transformers_km": [40.0, 40.0005]}, f"{HV}.transformers_km.1", "40.000",

@@ -94,8 +94,10 @@ WRONG_TYPES = [
 OUT_OF_RANGE = [
     pytest.param({"line.length_km": 0.0}, "line.length_km", "0.0", "greater than or equal to 0.01 km",
                  id="no-length"),
-    pytest.param({"line.stations.0.position_km": -5.0}, "line.stations.0.position_km", "-5.0",
-                 "greater than or equal to 0 km", id="negative-position"),
+    pytest.param({"line.stations.0.position_km": -5.0}, "line.stations.0.position_km", "-5",
+                 "between 0 and 160 km", id="negative-position"),
+    pytest.param({"line.begins_at_km": -20_000.0}, "line.begins_at_km", "-20000.0",
+                 "greater than or equal to -10000 km", id="beyond-all-railways"),
     pytest.param({"simulation.time_step_min": 0.0}, "simulation.time_step_min", "0.0",
                  "greater than or equal to 0.001 min", id="no-time-step"),
     pytest.param({"simulation.until": None, "simulation.duration_min": -90.0},

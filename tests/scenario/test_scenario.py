@@ -213,7 +213,7 @@ def test_a_change_may_add_a_table():
 def test_a_changed_copy_is_validated_too():
     with pytest.raises(ScenarioError, match=r"supply\.catenary = 'BTX'"):
         short_line().with_({"supply.catenary": "BTX"})
-    with pytest.raises(ScenarioError, match="ends at 15 km"):
+    with pytest.raises(ScenarioError, match="runs from 0 to 15 km"):
         short_line().with_({"line.length_km": 15.0})
 
 

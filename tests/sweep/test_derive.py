@@ -12,6 +12,7 @@ from tpss.sweep.design import design_of
 from tpss.sweep.inputs import inputs_of
 from tpss.sweep.settings import PLACES, places_of
 
+from properties.kilometres import moved
 from scenarios import SHORT_LINE, short_line
 
 HIGH_VOLTAGE = {"type": "132kV", "transformers_km": [5.0, 15.0]}
@@ -197,3 +198,31 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "standards.zones.*.from_km",
         "standards.zones.*.to_km",
     }
+
+
+def test_what_moves_with_the_length_keeps_its_share_of_the_way_from_the_beginning(tmp_path):
+    """From 438 to 458 km; at 5 km, a quarter of it, the middle station stands 2.5 km on."""
+    places = {
+        "line": moved(SHORT_LINE, 438.1)["line"],
+        "supply": moved(SHORT_LINE, 438.1)["supply"],
+        "standards.zones": [{"name": "all", "from_km": 438.1, "to_km": 458.1}],
+    }
+    case = first(tmp_path, {"set": places, "vary": {"line.length_km": [5.2]}})
+    assert (case.line.begins_at_km, case.line.end_km) == (438.1, 443.3)
+    assert [s.position_km for s in case.line.stations] == pytest.approx([438.1, 440.7, 443.3])
+    assert case.line.stations[-1].position_km == 443.3
+    assert [s.position_km for s in case.supply.converter_stations] == [438.1, 443.3]
+    assert [limit.from_km for limit in case.line.speed_limits] == [438.1]
+    assert case.standards.zones[0].to_km == 443.3
+
+
+def test_a_profile_is_drawn_from_where_the_line_begins(tmp_path):
+    """Inputs of a case are those of the same line from 0 on."""
+    cases = []
+    for begin_km in (0.0, -7.5):
+        places = {key: moved(SHORT_LINE, begin_km)[key] for key in ("line", "supply")}
+        cases.append(first(tmp_path, {"set": places, "vary": None, "gradients": DRAWN}))
+    assert [case.line.gradients[0].from_km for case in cases] == [0.0, -7.5]
+    here, there = (inputs_of(case)._asdict() for case in cases)
+    assert there.pop("catenary") == here.pop("catenary")
+    assert there == pytest.approx(here, rel=1e-9, abs=1e-12, nan_ok=True)

@@ -26,6 +26,7 @@ from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import HighVoltageLine, Supply
 from tpss.scenario.traffic import Traffic
+from tpss.units import kilometres
 
 MOST_LISTED = 8
 """Longer lists are shown by their first and last item and their length."""
@@ -68,14 +69,17 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 
 def _line(line: Line) -> Iterator[tuple[str, str]]:
-    yield "line", f"{line.length_km:g} km"
-    yield "stations", _listed([f"{s.name} {s.position_km:g} km" for s in line.stations])
-    pieces = line.gradients_between(0.0, line.length_km)
+    yield "line", line.in_words
+    yield "stations", _listed([f"{s.name} {kilometres(s.position_km)} km" for s in line.stations])
+    pieces = line.gradients_between(line.begins_at_km, line.end_km)
     lowest, highest = min(p for _, _, p in pieces), max(p for _, _, p in pieces)
     climb_m = sum((end - start) * permille for start, end, permille in pieces)
     spread = f"{lowest:g} ‰" if lowest == highest else f"{lowest:g} to {highest:g} ‰"
     yield "gradients", f"{spread}; from beginning to end {climb_m:+.0f} m"
-    limits = [f"{limit.speed_kmh:g} km/h from {limit.from_km:g} km" for limit in line.speed_limits]
+    limits = [
+        f"{limit.speed_kmh:g} km/h from {kilometres(limit.from_km)} km"
+        for limit in line.speed_limits
+    ]
     yield "speed limits", _listed(limits)
 
 
@@ -93,13 +97,13 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.stations:
-        yield "feeding", f"{station.name} {station.position_km:g} km: {station.in_words}"
+        yield "feeding", f"{station.name} {kilometres(station.position_km)} km: {station.in_words}"
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
     if line is None:
         return "none"
-    positions = [f"{km:g} km" for km in transformer_positions_km(supply)]
+    positions = [f"{kilometres(km)} km" for km in transformer_positions_km(supply)]
     between = library_name("transformers", line.line_transformer)
     at_stations = library_name("transformers", line.station_transformer)
     placed = f"{between} at {_listed(positions)}" if positions else "none between stations"

@@ -7,19 +7,25 @@ from tpss.kernel import plain
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
-from tpss.scenario.line import Line
+from tpss.scenario.line import DECIMALS, Line
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.traffic import Traffic
-from tpss.units import si
+from tpss.units import kilometres, si
 
 WHOLE = 1e-6
 """A time this close to a whole number of steps, in steps, is one."""
+
+
+DEAD_STRETCH_KM, DEAD_SHARE = 50.0, 0.5
+"""A stretch beyond the outermost station that is longer than both, the share being of the line, is
+noted: it was hardly meant. [km], [1]"""
 
 
 def notes(scenario: Scenario) -> list[str]:
     """Remarks in the order of the file."""
     return [
         *_profile(scenario.line),
+        *_dead_stretches(scenario.line),
         *_supply(scenario),
         *_voltage_limits(scenario),
         *_trains(scenario),
@@ -29,16 +35,46 @@ def notes(scenario: Scenario) -> list[str]:
 
 
 def _profile(line: Line) -> Iterator[str]:
+    begin, end = kilometres(line.begins_at_km), kilometres(line.end_km)
     first, last = line.gradients[0].from_km, line.gradients[-1].from_km
-    if first > 0.0:
-        yield f"line.gradients begins at {first:g} km; its first gradient applies from 0 km on"
-    if last > line.length_km:
-        yield f"line.gradients continues to {last:g} km, but the line ends at {line.length_km:g} km"
+    if first > line.begins_at_km:
+        yield (
+            f"line.gradients begins at {kilometres(first)} km; its first gradient applies from "
+            f"{begin} km on"
+        )
+    if first < line.begins_at_km and len(line.gradients) > 1:
+        yield (
+            f"line.gradients begins at {kilometres(first)} km, but the line at {begin} km; what lies "
+            "before it is left out"
+        )
+    if last > line.end_km:
+        yield f"line.gradients continues to {kilometres(last)} km, but the line ends at {end} km"
     for i, limit in enumerate(line.speed_limits):
-        if limit.from_km >= line.length_km:
+        if limit.from_km >= line.end_km:
             yield (
-                f"line.speed_limits.{i} begins at {limit.from_km:g} km, where the line has ended "
-                f"({line.length_km:g} km)"
+                f"line.speed_limits.{i} begins at {kilometres(limit.from_km)} km, where the line has "
+                f"ended ({end} km)"
+            )
+
+
+def _dead_stretches(line: Line) -> Iterator[str]:
+    """Much line beyond the outermost stations: a contact line without trains draws charging current."""
+    begin_km, end_km = line.begins_at_km, line.end_km
+    places_km = [station.position_km for station in line.stations]
+    first_km, last_km = min(places_km), max(places_km)
+    least_km = max(DEAD_STRETCH_KM, DEAD_SHARE * line.length_km)
+    first, length = f"{first_km:.12g}", f"{round(end_km - first_km, DECIMALS):.12g}"
+    beginning = f"begins_at_km = {first} and length_km = {length}"
+    ending = f"length_km = {round(last_km - begin_km, DECIMALS):.12g}"
+    for start_km, stop_km, end, remedy in (
+        (begin_km, first_km, "before its first", beginning),
+        (last_km, end_km, "behind its last", ending),
+    ):
+        if stop_km - start_km > least_km:
+            yield (
+                f"line: {kilometres(stop_km - start_km)} km of contact line {end} station, from "
+                f"{kilometres(start_km)} to {kilometres(stop_km)} km, have no train; if there is no "
+                f"such line, give {remedy}"
             )
 
 
@@ -115,8 +151,8 @@ def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
     available_kn = plain(adhesion_limit)(si(train, "adhesive_mass_t"), 0.0, rail) / 1e3
     if needed_kn > available_kn:
         yield (
-            f"traffic.{i} ({entry.name}): between {start_km:g} and {end_km:g} km the gradient is "
-            f"{permille:g} ‰, on which {entry.train} needs {needed_kn:.0f} kN to start; "
+            f"traffic.{i} ({entry.name}): between {kilometres(start_km)} and {kilometres(end_km)} km "
+            f"the gradient is {permille:g} ‰, on which {entry.train} needs {needed_kn:.0f} kN to start; "
             f"{scenario.simulation.rail} rails allow {available_kn:.0f} kN"
         )
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from tpss.errors import Finding, ScenarioError, shortened
 from tpss.scenario.files import read_text, shown_line
+from tpss.units import kilometres
 
 Units = Mapping[str, float]
 """What one of each unit is in the unit that a scenario is written in."""
@@ -119,7 +120,8 @@ class Quantities:
             if after <= before:
                 key = f"{name}.values.{i}"
                 key = key if key in self.given else f"{key}.0"
-                problem = f"the position does not increase: {after:g} km follows {before:g} km"
+                shown = f"{kilometres(after)} km follows {kilometres(before)} km"
+                problem = f"the position does not increase: {shown}"
                 remedy = "put the rows in ascending order"
                 self.findings.append(Finding(str(self.path), key, self.given[key], problem, remedy))
 

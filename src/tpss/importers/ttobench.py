@@ -11,12 +11,14 @@ References
 
 import re
 from dataclasses import dataclass, field, replace
+from operator import gt
 from pathlib import Path
 from typing import Any
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.importers.quantities import (
+    DIGITS,
     KM,
     KMH,
     KN,
@@ -31,6 +33,7 @@ from tpss.importers.quantities import (
     Quantities,
 )
 from tpss.scenario.scenario import Scenario
+from tpss.units import kilometres
 
 EFFICIENCY = 0.8
 RETARDATION_M_S2 = 0.85
@@ -126,19 +129,19 @@ def track(data: Quantities) -> Imported:
     name = _name(data)
     stops_km = data.column("stops", KM)
     limits = data.pairs("speed limits", {"position": KM, "velocity": KMH})
-    gradients: list[tuple[float, ...]] = [(0.0, 0.0)]
+    begin_km = min([*stops_km[:1], *(row[0] for row in limits[:1])], default=0.0)
+    gradients: list[tuple[float, ...]] = [(begin_km, 0.0)]
     assumed = ["level track: the file states no gradients"]
     if "gradients" in data:
         gradients = data.pairs("gradients", {"position": KM, "slope": PERMILLE})
         assumed = []
-    data.demand_ascending("stops", stops_km)
-    data.demand_ascending("speed limits", [row[0] for row in limits])
-    data.demand_ascending("gradients", [row[0] for row in gradients])
+    _demand_rising(data, stops_km, limits, gradients)
     if data.findings:
         raise ScenarioError(data.findings)
     names = station_names(name, len(stops_km))
     line = {
-        "length_km": stops_km[-1],
+        **({"begins_at_km": begin_km} if begin_km else {}),
+        "length_km": round(stops_km[-1] - begin_km, DIGITS),
         "speed_limits": [{"from_km": km, "speed_kmh": speed} for km, speed in limits],
         "stations": [
             {"name": station, "position_km": km}
@@ -147,7 +150,7 @@ def track(data: Quantities) -> Imported:
         "gradients": [{"from_km": km, "permille": rise} for km, rise in gradients],
     }
     taken = [
-        f"stops: {len(stops_km)} stations, the last one ends the line at {stops_km[-1]:g} km",
+        f"stops: {len(stops_km)} stations, the last one ends the line at {kilometres(stops_km[-1])} km",
         f"speed limits: {len(limits)}",
     ]
     if not assumed:
@@ -156,6 +159,23 @@ def track(data: Quantities) -> Imported:
     imported = Imported(name, data.path, line, taken, _left_out(data), assumed)
     _check(imported, data, line=line)
     return imported
+
+
+def _demand_rising(
+    data: Quantities, stops_km: list[float], *profiles: list[tuple[float, ...]]
+) -> None:
+    """Note a fault if positions do not increase; one alone if the kilometres of all of them fall."""
+    columns = [stops_km, *([row[0] for row in profile] for profile in profiles)]
+    if len(stops_km) > 1 and all(all(map(gt, km, km[1:])) for km in columns):
+        place = (str(data.path), "stops.values.1", data.given["stops.values.1"])
+        problem = "kilometres fall in the direction of travel"
+        remedy = (
+            "write a minus sign before every position; the order and the slopes stay as they are"
+        )
+        data.findings.append(Finding(*place, problem, remedy))
+        return
+    for name, km in zip(("stops", "speed limits", "gradients"), columns, strict=True):
+        data.demand_ascending(name, km)
 
 
 def train(data: Quantities) -> Imported:
@@ -289,7 +309,12 @@ def _check(
             "frequency_hz": 16.7,
             "catenary": next(iter(library.entries("catenaries"))),
             "converter_stations": [
-                {"name": "A", "position_km": 0.0, "type": kind, "converters": 1}
+                {
+                    "name": "A",
+                    "position_km": line["stations"][0]["position_km"],
+                    "type": kind,
+                    "converters": 1,
+                }
             ],
         },
         "trains": {"t": train or {"model": next(iter(library.entries("locomotives")))}},
@@ -308,6 +333,8 @@ def _check(
 def _at_its_origin(finding: Finding, data: Quantities) -> Finding:
     """A finding of a scenario's value, traced to the imported value."""
     key = finding.key
+    if key == "line.begins_at_km":
+        key = "line.stations.0.position_km"
     if key == "line.length_km":
         key = f"line.stations.{len(data.document['stops']['values']) - 1}.position_km"
     for ours, theirs in _ORIGIN.items():

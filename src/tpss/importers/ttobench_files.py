@@ -30,13 +30,13 @@ catenary = "BT"                     # or "AT", a table, or a file of your own
 
 [[supply.converter_stations]]
 name = "{first}"
-position_km = 0.0
+position_km = {begin_km}
 type = "Q48/Q49"
 converters = 1
 
 [[supply.converter_stations]]
 name = "{last}"
-position_km = {length_km}
+position_km = {end_km}
 type = "Q48/Q49"
 converters = 1
 
@@ -135,7 +135,8 @@ def _scenario(track: Imported, train: Imported) -> str:
         train=train.name,
         first=stations[0],
         last=stations[-1],
-        length_km=track.document["length_km"],
+        begin_km=track.document.get("begins_at_km", 0.0),
+        end_km=track.document["stations"][-1]["position_km"],
         service=f"{stations[0]}-{stations[-1]}",
         stops=", ".join(between),
         dwells=" and no dwells" if between else "",

@@ -31,7 +31,7 @@ class Layout:
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
-    network, plan = build_supply(scenario.supply, scenario.line.length_km)
+    network, plan = build_supply(scenario.supply, scenario.line.begins_at_km, scenario.line.end_km)
     types, points = build_train_types(list(scenario.trains.values()))
     model = Model(
         options=_options(scenario),

@@ -16,7 +16,7 @@ from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
 from tpss.scenario.supply import Catenary, HighVoltageLine, Supply
 from tpss.scenario.supply.system import system_named
-from tpss.units import si
+from tpss.units import kilometres, si
 
 CONTACT_LINE = "contact line"
 HIGH_VOLTAGE_LINE = "high-voltage line"
@@ -44,7 +44,7 @@ class SupplyPlan:
 
     def add_node(self, kind: str, position_km: float, level: float = 1.0) -> int:
         """Add a node and return its index; its name begins with its kind."""
-        self.nodes.append(f"{kind} at {position_km:g} km")
+        self.nodes.append(f"{kind} at {kilometres(position_km)} km")
         self.node_kinds.append(kind)
         self.node_km.append(position_km)
         self.node_level.append(level)
@@ -85,12 +85,12 @@ class SupplyPlan:
 
 
 @lru_cache(maxsize=64)
-def build_supply(supply: Supply, length_km: float) -> tuple[Network, SupplyPlan]:
-    """Network along a line, with the names of its parts.
+def build_supply(supply: Supply, begin_km: float, end_km: float) -> tuple[Network, SupplyPlan]:
+    """Network along a line between its ends [km], with the names of its parts.
 
     Cases of a study have few supplies; those of the same one share what this gives, and only read it.
     """
-    plan = plan_supply(supply, length_km)
+    plan = plan_supply(supply, begin_km, end_km)
     sources = build_sources(plan.sources, supply.stations)
     network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
     return network, plan
@@ -109,8 +109,8 @@ def system_of(supply: Supply) -> System:
     )
 
 
-def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
-    """Lay out nodes, sections and branches along the line.
+def plan_supply(supply: Supply, begin_km: float, end_km: float) -> SupplyPlan:
+    """Lay out nodes, sections and branches along the line between its ends. [km]
 
     References
     ----------
@@ -119,7 +119,7 @@ def plan_supply(supply: Supply, length_km: float) -> SupplyPlan:
     plan = SupplyPlan()
     transformers = transformer_positions_km(supply)
     stations = {station.position_km: station for station in supply.stations}
-    points = sorted({0.0, length_km, *stations, *transformers})
+    points = sorted({begin_km, end_km, *stations, *transformers})
     line_node = {km: plan.add_node(CONTACT_LINE, km) for km in points}
     _lay_contact_line(plan, points, line_node, supply)
     feeding = dict(line_node)
@@ -165,7 +165,7 @@ def _lay_contact_line(
         plan.sections.append(
             SectionPart(node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
         )
-        plan.section_names.append(f"{CONTACT_LINE} {start:g}-{end:g} km")
+        plan.section_names.append(f"{CONTACT_LINE} {kilometres(start)}-{kilometres(end)} km")
 
 
 def _lay_high_voltage_line(
@@ -187,8 +187,8 @@ def _lay_high_voltage_line(
         impedance = complex(si(unit, "r_ohm"), si(unit, "x_ohm"))
         if km not in stations:
             impedance += _connection_impedance(supply.catenary)
-        plan.add_branch(TRANSFORMER, f"{km:g} km", feeding[km], node[km], impedance)
+        plan.add_branch(TRANSFORMER, f"{kilometres(km)} km", feeding[km], node[km], impedance)
     for start, end in zip(stands, stands[1:], strict=False):
         impedance = per_m * (end - start) * 1e3
-        name = f"{start:g}-{end:g} km"
+        name = f"{kilometres(start)}-{kilometres(end)} km"
         plan.add_branch(HIGH_VOLTAGE_LINE, name, node[start], node[end], impedance, level)

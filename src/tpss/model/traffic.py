@@ -12,7 +12,7 @@ from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.model import Model
-from tpss.units import si
+from tpss.units import kilometres, si
 
 
 def build_services(scenario: Scenario, model: Model) -> list[Service]:
@@ -73,7 +73,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     if speed > limit and model.options.driver != Driver.AGGRESSIVE:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif plain(stopping_distance)(speed, retardation, model.options) > stop_m - position_m:
-        problem = f"too fast to stop at {stop_m / 1e3:g} km"
+        problem = f"too fast to stop at {kilometres(stop_m / 1e3)} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
         slowest = max(0.0, speed - retardation * h)
@@ -83,7 +83,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
             if lower and not can_meet_limit(
                 speed, slowest, distance, limits.value[j], retardation, h, UNIFORM
             ):
-                problem = f"too fast to meet the limit at {limits.from_m[j] / 1e3:g} km"
+                problem = f"too fast to meet the limit at {kilometres(limits.from_m[j] / 1e3)} km"
     if not problem:
         return []
     remedy = "lower the speed, or place the train earlier"

@@ -34,6 +34,7 @@ from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.explain import warnings
 from tpss.results.result import Result
+from tpss.units import kilometres
 
 STATUS_IN_WORDS = {
     "finished": "The run finished.",
@@ -238,6 +239,7 @@ def _page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["kilometres"] = kilometres
     first = next(iter(results.values()))
     return environment.get_template("report.html").render(
         generator=REPORT_MARK,

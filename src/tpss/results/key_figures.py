@@ -212,12 +212,12 @@ def _gather(run: Run, frame: Frame) -> Figures:
 
 def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
     """Ends of the zones of useful voltage; the line's end belongs to the last zone before it."""
-    length_km = scenario.line.length_km
+    begin_km, end_km = scenario.line.begins_at_km, scenario.line.end_km
     zones = [(zone.from_km, zone.to_km) for zone in scenario.standards.zones]
     if not zones:
-        points = sorted({0.0, length_km, *(m / 1e3 for m in layout.station_m)})
+        points = sorted({begin_km, end_km, *(m / 1e3 for m in layout.station_m)})
         zones = list(zip(points, points[1:], strict=False))
-    return [(begin, math.inf if end >= length_km else end) for begin, end in zones]
+    return [(begin, math.inf if end >= end_km else end) for begin, end in zones]
 
 
 def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:

@@ -1,4 +1,4 @@
-"""The line: its length, gradients, speed limits and stations."""
+"""The line: where it begins, its length, gradients, speed limits and stations."""
 
 import math
 from collections.abc import Sequence
@@ -8,6 +8,13 @@ from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
 from tpss.scenario.fields import Name, Part, Position, Real, ascending, one_of, unique
+from tpss.units import kilometres
+
+FARTHEST_KM = 10_000.0
+"""No line begins farther from kilometre 0: nanometres would be lost in rounding. [km]"""
+
+DECIMALS = 9
+"""Of the position of a line's end: a micrometre."""
 
 Piece = tuple[float, float, float]
 """Beginning and end of a piece of constant value [km], and that value."""
@@ -29,7 +36,7 @@ class SpeedLimit(Part):
     """A speed limit that applies from its position to that of the next one."""
 
     from_km: Position = Field(
-        ge=0, le=100_000, description="Position from which the limit applies."
+        ge=-100_000, le=100_000, description="Position from which the limit applies."
     )
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
@@ -38,14 +45,20 @@ class Station(Part):
     """A passenger station, where trains may begin, stop or end."""
 
     name: Name = Field(description="Name that traffic entries refer to.")
-    position_km: Position = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(description="Position on the line.")
 
 
 class Line(Part):
-    """A railway line from position 0 to its length."""
+    """A railway line from the kilometre where it begins, over its length; nothing lies outside."""
 
     model_config = ConfigDict(json_schema_extra=one_of("gradients", "gradients_file"))
 
+    begins_at_km: Real = Field(
+        default=0.0,
+        ge=-FARTHEST_KM,
+        le=FARTHEST_KM,
+        description="Position of its beginning; all positions are in these kilometres.",
+    )
     length_km: Real = Field(
         ge=0.01, le=2_000, description="Length; the contact line runs along all of it."
     )
@@ -58,11 +71,24 @@ class Line(Part):
         description="Gradients; the outer ones continue beyond the ends of the profile."
     )
     speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
-        Field(description="Speed limits; the first one begins at 0.")
+        Field(description="Speed limits; the first one begins where the line does.")
     )
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
     ] = Field(description="Stations, at least two.")
+
+    @property
+    def end_km(self) -> float:
+        """Position of its end. [km]"""
+        return end_of_line(self.begins_at_km, self.length_km)
+
+    @property
+    def in_words(self) -> str:
+        """Its length and, unless it begins at 0, its ends."""
+        length, begin, end = map(kilometres, (self.length_km, self.begins_at_km, self.end_km))
+        return (
+            f"{length} km" if self.begins_at_km == 0.0 else f"{length} km, from {begin} to {end} km"
+        )
 
     def gradients_between(self, start_km: float, end_km: float) -> list[Piece]:
         """Pieces of the gradient profile between two positions. [‰]"""
@@ -71,6 +97,14 @@ class Line(Part):
     def speed_limits_between(self, start_km: float, end_km: float) -> list[Piece]:
         """Pieces of the speed profile between two positions. [km/h]"""
         return _pieces([(s.from_km, s.speed_kmh) for s in self.speed_limits], start_km, end_km)
+
+
+def end_of_line(begin_km: float, length_km: float) -> float:
+    """Position of the end of a line, as one would write it. [km]
+
+    A sum such as 438.1 + 40.2 is not 478.3 to the last digit, where a station stands.
+    """
+    return length_km if begin_km == 0.0 else round(begin_km + length_km, DECIMALS)
 
 
 def _pieces(profile: Sequence[tuple[float, float]], start_km: float, end_km: float) -> list[Piece]:

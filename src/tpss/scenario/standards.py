@@ -60,8 +60,8 @@ class Zone(Part):
     """A section of line whose mean useful voltage is evaluated."""
 
     name: Name = Field(description="Name, shown in the results.")
-    from_km: Position = Field(ge=0, description="Where it begins.")
-    to_km: Position = Field(gt=0, description="Where it ends.")
+    from_km: Position = Field(description="Where it begins.")
+    to_km: Position = Field(description="Where it ends.")
 
     @model_validator(mode="after")
     def _ends_beyond_its_beginning(self) -> Self:

@@ -33,7 +33,7 @@ class Stop(Part):
 class InitialTrain(Part):
     """A train that is on the line when the simulation begins, heading for its next stop."""
 
-    position_km: Position = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(description="Position on the line.")
     speed_kmh: Real = Field(ge=0, le=500, description="Speed.")
 
 

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Tag, ValidationError
 
 from tpss import units
 from tpss.errors import Finding, ScenarioError, shortened, suggest
-from tpss.scenario.cross_check import cross_check
+from tpss.scenario.cross_check import cross_check, kilometres_fall
 from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
 
@@ -74,6 +74,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
             _finding(model, detail, inlined)
             for detail in details
             if not _follows_from_another(detail, locations, inlined)
+            and not (_is_of_positions(detail) and kilometres_fall(inlined.document))
         ]
     if not inlined.is_unread(("line",)):
         findings += [
@@ -99,6 +100,11 @@ def _follows_from_another(
     if location == ("line", "gradients"):
         return "gradients_file" in inlined.document.get("line", {}) and detail["type"] == "missing"
     return False
+
+
+def _is_of_positions(detail: dict[str, Any]) -> bool:
+    """Whether a finding is that positions are not in ascending order."""
+    return detail["type"] == "not_ascending" and "departures_min" not in detail["loc"]
 
 
 def _traced(finding: Finding, inlined: Inlined) -> Finding:

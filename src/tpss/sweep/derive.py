@@ -62,7 +62,8 @@ def draw_gradients(
     """
     drawn = design.study.file.gradients
     length_km = document["line"]["length_km"]
-    if drawn is None or not isinstance(length_km, int | float):
+    begin_km = document["line"].get("begins_at_km", 0.0)
+    if drawn is None or not all(isinstance(km, int | float) for km in (length_km, begin_km)):
         return
     pieces = max(1, math.ceil(length_km / drawn.piece_km - 1e-9))
     if pieces == 1 and deviation > 0.0:
@@ -70,8 +71,8 @@ def draw_gradients(
         remedy = "lower gradients.piece_km"
         place = (str(design.study.source), "gradients.piece_km", f"{drawn.piece_km:g}")
         raise ScenarioError([Finding(*place, problem, remedy)])
-    from_km = np.arange(pieces) * drawn.piece_km
-    share = np.diff(np.append(from_km, length_km)) / length_km
+    from_begin_km = np.arange(pieces) * drawn.piece_km
+    share = np.diff(np.append(from_begin_km, length_km)) / length_km
     rho = math.exp(-drawn.piece_km / drawn.correlation_km) if drawn.correlation_km > 0.0 else 0.0
     numbers = np.random.default_rng([design.study.file.seed, number]).standard_normal(pieces)
     numbers[1:] *= math.sqrt(1.0 - rho**2)
@@ -80,8 +81,8 @@ def draw_gradients(
     spread = math.sqrt(share @ profile**2)
     profile *= deviation / spread if spread > 0.0 else 0.0
     document["line"]["gradients"] = [
-        {"from_km": km, "permille": permille}
-        for km, permille in zip(from_km.tolist(), (profile + mean).tolist(), strict=True)
+        {"from_km": begin_km + km, "permille": permille}
+        for km, permille in zip(from_begin_km.tolist(), (profile + mean).tolist(), strict=True)
     ]
 
 

@@ -74,16 +74,16 @@ def gradient_profile(line: Line) -> tuple[Array, Array]:
     """Edges [km] of the pieces of equal gradient over the whole line, and the gradients [‰]."""
     from_km = np.array([gradient.from_km for gradient in line.gradients])
     # The outer gradients continue beyond the ends of the profile.
-    from_km[0] = min(from_km[0], 0.0)
-    edges_km = np.clip(np.append(from_km, np.inf), 0.0, line.length_km)
+    from_km[0] = min(from_km[0], line.begins_at_km)
+    edges_km = np.clip(np.append(from_km, np.inf), line.begins_at_km, line.end_km)
     return edges_km, np.array([gradient.permille for gradient in line.gradients])
 
 
 def weights_of(
     edges_km: Array, begin_km: float, end_km: float, stations_km: Sequence[float]
 ) -> Weights:
-    """Weights of the pieces of a line between `edges_km`, which begin at 0 and end at its length."""
-    share = edges_km / edges_km[-1]
+    """Weights of the pieces of a line between `edges_km`, from its beginning to its end."""
+    share = (edges_km - edges_km[0]) / (edges_km[-1] - edges_km[0])
     start_km = min(START_KM, end_km - begin_km)
     started = np.clip(edges_km, begin_km, begin_km + start_km) / start_km
     return Weights(

@@ -7,6 +7,7 @@ from typing import Any
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario import Scenario
 from tpss.scenario.fields import AlongLine, marked
+from tpss.scenario.line import end_of_line
 from tpss.scenario.override import copy_of, put_in
 
 Settings = dict[str, Any]
@@ -18,7 +19,7 @@ LEFT_OUT = "none"
 LENGTH = "line.length_km"
 
 PLACES = tuple(marked(Scenario, AlongLine))
-"""Positions that scale with the length of the line; those of gradients do not."""
+"""Positions whose distances from its beginning scale with the length of the line; gradients do not."""
 
 INSTEAD_OF = {
     "transformers": "transformers_km",
@@ -94,9 +95,10 @@ def _item(container: Any, key: str) -> Any:
 
 
 def _move_places(document: dict[str, Any], length_km: float) -> None:
-    """Change the length of a line; positions along it scale with it."""
-    before_km = _item(_item(document, "line"), "length_km")
-    if isinstance(before_km, int | float) and isinstance(length_km, int | float) and before_km > 0:
+    """Change the length of a line; the distances of positions from its beginning scale with it."""
+    line = _item(document, "line")
+    begin_km, before_km = _item(line, "begins_at_km") or 0.0, _item(line, "length_km")
+    if _are_numbers(begin_km, before_km, length_km) and before_km > 0:
         for place in (place for pattern in PLACES for place in places_of(document, pattern)):
             *above, last = place.split(".")
             container: Any = document
@@ -105,6 +107,16 @@ def _move_places(document: dict[str, Any], length_km: float) -> None:
             position = _item(container, last)
             if isinstance(position, int | float):
                 key_or_number: Any = int(last) if isinstance(container, list) else last
-                # Multiplied first, a position at the end stays exactly there.
-                container[key_or_number] = position * length_km / before_km
+                container[key_or_number] = _moved(position, begin_km, before_km, length_km)
     document["line"]["length_km"] = length_km
+
+
+def _are_numbers(*values: Any) -> bool:
+    return all(isinstance(value, int | float) for value in values)
+
+
+def _moved(position_km: float, begin_km: float, before_km: float, length_km: float) -> float:
+    """A position on a line whose length has changed; one at the end stays exactly there."""
+    if position_km == end_of_line(begin_km, before_km):
+        return end_of_line(begin_km, length_km)
+    return begin_km + (position_km - begin_km) * length_km / before_km

@@ -43,7 +43,7 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
         colours = parts.Colours(kv, label, *colour_range(kv))
         items = [parts.Map(middle_min, voltage.position_km, colours)]
         items.append(parts.Curve(minutes, km, colour=BLACK, width=0.6, words=names))
-    panel = parts.Panel(parts.POSITION, items, span=(0.0, line.length_km))
+    panel = parts.Panel(parts.POSITION, items, span=(line.begins_at_km, line.end_km))
     return parts.Drawing(parts.TIME, [panel], span, panel_inch=4.6)
 
 

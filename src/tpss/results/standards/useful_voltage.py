@@ -20,6 +20,7 @@ import xarray as xr
 
 from tpss.results.standards.windows import TOLERANCE, Floats, step_values
 from tpss.results.tables import step_s
+from tpss.units import kilometres
 
 LEAST_PRESENCE_S = 60.0
 """A train that is present for less is not a dimensioning train. [s]"""
@@ -40,20 +41,21 @@ class Section(NamedTuple):
 
 def feeding_sections(dataset: xr.Dataset) -> list[Section]:
     """Sections of line between feeding stations, and from the outer ones to the line's ends."""
-    ends_km = (0.0, _length_km(dataset))
-    named = dict.fromkeys(ends_km, "") | dict(
+    named = dict.fromkeys(_ends_km(dataset), "") | dict(
         zip(dataset.station_position.to_numpy() / 1e3, dataset.station.to_numpy(), strict=True)
     )
     points = sorted(named)
-    label = {km: str(named[km]) or f"{km:g} km" for km in points}
+    label = {km: str(named[km]) or f"{kilometres(km)} km" for km in points}
     return [
         Section(f"{label[begin]}-{label[end]}", float(begin), float(end))
         for begin, end in zip(points, points[1:], strict=False)
     ]
 
 
-def _length_km(dataset: xr.Dataset) -> float:
-    return float(dataset.node_position.to_numpy().max()) / 1e3
+def _ends_km(dataset: xr.Dataset) -> tuple[float, float]:
+    """Beginning and end of the line, which are nodes. [km]"""
+    positions_m = dataset.node_position.to_numpy()
+    return float(positions_m.min()) / 1e3, float(positions_m.max()) / 1e3
 
 
 def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) -> slice | None:
@@ -79,7 +81,7 @@ def zone_table(
     chosen = slice(0) if window is None else window
     voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
     position_km = dataset.position.to_numpy()[:-1][chosen] / 1e3
-    end_km = _length_km(dataset)
+    _, end_km = _ends_km(dataset)
     rows = []
     for zone in zones:
         upto = np.inf if zone.to_km >= end_km else zone.to_km

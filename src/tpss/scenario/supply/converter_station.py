@@ -28,7 +28,7 @@ class ConverterStation(Part):
     """A converter station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Position = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(description="Position on the line.")
     type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )

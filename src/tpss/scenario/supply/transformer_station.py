@@ -43,7 +43,7 @@ class TransformerStation(Part):
     """A transformer station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Position = Field(ge=0, description="Position on the line.")
+    position_km: Position = Field(description="Position on the line.")
     no_load_voltage_kv: Real = Field(
         ge=0.1, le=100, description="Voltage without load, on the railway's side."
     )
