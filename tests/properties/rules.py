@@ -194,6 +194,8 @@ class Journey:
         motors = motor_force_n(3.6 * self.v[k], self.volts[k] / 1e3, train.max_motor_current_a)
         hauled_kg = 1e3 * (train.mass_t - train.adhesive_mass_t)
         inertia_kg = 1e3 * train.adhesive_mass_t + hauled_kg * (1.0 + train.rotating_mass_factor)
+        if train.rotating_mass_share is not None:
+            inertia_kg = 1e3 * train.mass_t * (1.0 + train.rotating_mass_share)
         rotors = train.motor_inertia_kg * (1.0 + train.slip) / inertia_kg
         machine = (max(0.0, motors) + rotors * self.opposing[k]) / (1.0 + rotors)
         return max(0.0, min(1e3 * train.adhesive_mass_t * 9.81 * share, machine))

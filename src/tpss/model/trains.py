@@ -64,8 +64,7 @@ def _train_type(train: Train, book: CurveBook) -> Any:
     return TrainType.row(
         mass_kg=mass,
         adhesive_mass_kg=adhesive,
-        inertia_kg=adhesive + (mass - adhesive) * (1.0 + train.rotating_mass_factor),
-        coasting_inertia_kg=mass * (1.0 + train.rotating_mass_factor),
+        **_inertias(train, mass, adhesive),
         rotor_mass_kg=si(train, "motor_inertia_kg") * (1.0 + train.slip),
         slip_factor=1.0 + train.slip,
         resistance=DavisCoefficients.row(
@@ -81,6 +80,18 @@ def _train_type(train: Train, book: CurveBook) -> Any:
         line_current=_line_current(train),
         **_electric(train, book),
     )
+
+
+def _inertias(train: Train, mass_kg: float, adhesive_kg: float) -> dict[str, float]:
+    """Fields of `TrainType` that add the rotating parts to the mass."""
+    if train.rotating_mass_share is not None:
+        inertia_kg = mass_kg * (1.0 + train.rotating_mass_share)
+        return {"inertia_kg": inertia_kg, "coasting_inertia_kg": inertia_kg}
+    with_rotating = 1.0 + train.rotating_mass_factor
+    return {
+        "inertia_kg": adhesive_kg + (mass_kg - adhesive_kg) * with_rotating,
+        "coasting_inertia_kg": mass_kg * with_rotating,
+    }
 
 
 def _effort(train: Train, book: CurveBook) -> Any:

@@ -43,7 +43,7 @@ class TrainType(Record):
     adhesive_mass_kg: float
     """Mass on driven axles. [kg]"""
     inertia_kg: float
-    """Inertia with rotating parts, M = m_adh + (m - m_adh)(1 + H), eq. (2.11). [kg]"""
+    """Inertia with rotating parts, M = m_adh + (m - m_adh)(1 + H), eq. (2.11), or m (1 + ρ). [kg]"""
     coasting_inertia_kg: float
     """Inertia of a train that the aggressive driver lets coast, m (1 + H), eq. (2.11). [kg]"""
     rotor_mass_kg: float
