@@ -42,6 +42,13 @@ class Train(Part):
     )
     mass_t: Real = Field(ge=1, le=20_000, description="Mass of the whole train.")
     adhesive_mass_t: Real = Field(ge=1, le=20_000, description="Mass on driven axles.")
+    length_m: Real = Field(
+        default=0.0,
+        ge=0,
+        le=5_000,
+        description="Length, behind the train's position: a speed limit rises once the tail has "
+        "passed, and the gradient is the mean under the train; 0: a point.",
+    )
     rotating_mass_factor: Real = Field(
         default=0.0,
         ge=0,
@@ -161,6 +168,13 @@ class Train(Part):
                 f"write rotating_mass_share = {value - 1.0:.4g}, and leave out rotating_mass_factor",
             )
         return value
+
+    @field_validator("length_m")
+    @classmethod
+    def _a_point_or_a_train(cls, length_m: float) -> float:
+        if 0.0 < length_m < 1.0:
+            raise fault("shorter than a metre", "give the length in m, or 0 for a point")
+        return length_m
 
     @field_validator("max_motor_current_a")
     @classmethod

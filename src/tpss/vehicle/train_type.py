@@ -76,6 +76,8 @@ class TrainType(Record):
     """Highest retardation, positive. [m/s²]"""
     highest_speed_m_s: float
     """Highest speed of the train. [m/s]"""
+    profile: int
+    """Row of the line's profiles, which are laid out for each length of train."""
     resistance: DavisCoefficients
     """Running resistance on straight level track."""
     efficiency: Curve
