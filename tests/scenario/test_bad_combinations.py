@@ -60,7 +60,15 @@ ORDER_AND_UNIQUENESS = [
                  "traffic", "[{'name': 'a'", "give each one its own", id="traffic-name-twice"),
 ]  # fmt: skip
 
+CURVE = {"from_km": 10.0, "to_km": 12.0, "radius_m": 400.0}
+
 PLACES = [
+    pytest.param({"line.curves": [{**CURVE, "to_km": 170.0}]}, "line.curves.0.to_km", "170",
+                 "between 0 and 160 km", id="curve-beyond-the-line"),
+    pytest.param({"line.curves": [{**CURVE, "to_km": 9.0}]}, "line.curves.0", "",
+                 "the lower position as from_km", id="curve-that-ends-before-it-begins"),
+    pytest.param({"line.curves": [CURVE, {**CURVE, "from_km": 11.0, "to_km": 13.0}]}, "line.curves",
+                 "[{'from_km'", "give each place one radius", id="curves-that-overlap"),
     pytest.param({"line.stations.2.position_km": 200.0}, "line.stations.2.position_km", "200",
                  "between 0 and 160 km", id="station-beyond-the-line"),
     pytest.param({f"{EAST}.position_km": 161.0}, f"{EAST}.position_km", "161",

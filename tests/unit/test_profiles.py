@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from tpss.driving.data import Profile
-from tpss.model.profiles import PIECES, climb_to, lowest_under_train, mean_under_train
+from tpss.model.profiles import (
+    PIECES,
+    climb_to,
+    lowest_under_train,
+    mean_under_train,
+    with_curves,
+)
+from tpss.scenario.line import TrackCurve
 
 from alternatives import climb
 
@@ -60,3 +67,14 @@ def test_climb_is_that_of_the_train_s_mass_spread_over_its_length():
 
 def test_one_gradient_is_the_same_under_any_train():
     assert mean_under_train(staircase((0, 0.004)), 300.0) == staircase((0, 0.004))
+
+
+def test_curves_are_added_to_the_gradients_under_them():
+    """650/(380 - 55) = 2 per mille, 500/(280 - 30) = 2 per mille too."""
+    curves = [
+        TrackCurve(from_km=0.0, to_km=0.5, radius_m=380.0),
+        TrackCurve(from_km=0.8, to_km=1.2, radius_m=280.0),
+    ]
+    seen = with_curves(staircase((0, 0.004), (1000, -0.005)), curves)
+    assert seen.from_m.tolist() == [-1.0, 0.0, 500.0, 800.0, 1000.0, 1200.0]
+    assert seen.value == pytest.approx([0.004, 0.006, 0.004, 0.006, -0.003, -0.005])

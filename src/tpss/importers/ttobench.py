@@ -38,7 +38,7 @@ RETARDATION_M_S2 = 0.85
 
 _WHY_LEFT_OUT = {
     "altitude": "only differences of altitude count, which the gradients give",
-    "curvatures": "curve resistance is not modelled",
+    "curvatures": "curves are not imported; line.curves takes their radii",
     "ETCS braking data": "braking is at the highest deceleration, without a supervision curve",
     "tunnel resistance": "resistance in tunnels is not modelled",
     "num seats": "it does not act on the train's motion",

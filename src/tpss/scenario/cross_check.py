@@ -84,6 +84,8 @@ def _line(line: Mapping[str, Any], length: float | None) -> Iterator[_Fault]:
         yield from _outside(
             f"line.stations.{i}.position_km", _number(station, "position_km"), length
         )
+    for i, curve in _items(line, "curves"):
+        yield from _outside(f"line.curves.{i}.to_km", _number(curve, "to_km"), length)
     first = next((limit for _, limit in _items(line, "speed_limits")), {})
     begin = _number(first, "from_km")
     if begin is not None and begin > 0.0:
