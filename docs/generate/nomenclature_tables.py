@@ -115,7 +115,9 @@ SYMBOLS = {
 """Symbols of the theory and of the thesis."""
 
 MEANINGS = {
-    "TrainType.inertia_kg": "inertia with rotating parts, $m_{adh} + (m - m_{adh})(1 + H)$",
+    "TrainType.inertia_kg": (
+        r"inertia with rotating parts, $m_{adh} + (m - m_{adh})(1 + H)$ or $m (1 + \rho)$"
+    ),
     "TrainType.coasting_inertia_kg": "inertia of a train that the aggressive driver lets coast",
     "TrainType.rotor_mass_kg": r"inertia of the motors as a mass at the wheel rim, $4 K_J (\kappa + 1)$",
     "TrainType.slip_factor": "circumferential speed of the driven wheels over speed",

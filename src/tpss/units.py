@@ -41,6 +41,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_v": ("V", 1.0),
     "_n": ("N", 1.0),
     "_s": ("s", 1.0),
+    "_m": ("m", 1.0),
 }
 
 

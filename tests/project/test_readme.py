@@ -1,6 +1,7 @@
 """What the README shows is run as it stands."""
 
 import re
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -23,6 +24,13 @@ def test_the_pipeline_on_a_clean_checkout_uses_the_readme_s_commands():
     install, test = blocks[1].splitlines()
     assert test in pipeline
     assert install.removeprefix("pip install ") in pipeline
+
+
+def test_the_pipeline_tries_the_lowest_versions():
+    """Of what the program needs; a requirement without a bound would be tried as it is today."""
+    assert (ROOT / ".ci" / "run").read_text("utf-8").endswith("\n.ci/lowest\n")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert all(re.fullmatch(r"[\w-]+>=[\d.]+", needed) for needed in project["dependencies"])
 
 
 def test_the_product_speaks_of_itself_only():

@@ -115,6 +115,7 @@ class Journey:
         self.limit_m = np.array([limit.from_km * 1e3 for limit in line.speed_limits])
         limits = [min(item.speed_kmh, self.train.max_speed_kmh) for item in line.speed_limits]
         self.limit = np.array(limits) / 3.6
+        self.keep_limits_until_the_tail_has_passed()
         self.place_m = {station.name: station.position_km * 1e3 for station in line.stations}
         self.end_m = self.place_m[self.entry.destination]
         self.force, self.volts, resistance, climb = (
@@ -126,6 +127,18 @@ class Journey:
         self.opposing = resistance + climb
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
+
+    def keep_limits_until_the_tail_has_passed(self) -> None:
+        """Replace the limits by the lowest ones under the train."""
+        length_m = self.train.length_m
+        if length_m == 0.0:
+            return
+        ends_m = [*(self.limit_m[1:] + length_m), math.inf]
+        limits = list(zip(self.limit_m, ends_m, self.limit, strict=True))
+        self.limit_m = np.array(sorted({*self.limit_m.tolist(), *ends_m[:-1]}))
+        self.limit = np.array(
+            [min(limit for begin, end, limit in limits if begin <= x < end) for x in self.limit_m]
+        )
 
     def judge(self) -> None:
         """All rules; the aggressive driver does not keep to limits, nor aims at them.
@@ -194,6 +207,8 @@ class Journey:
         motors = motor_force_n(3.6 * self.v[k], self.volts[k] / 1e3, train.max_motor_current_a)
         hauled_kg = 1e3 * (train.mass_t - train.adhesive_mass_t)
         inertia_kg = 1e3 * train.adhesive_mass_t + hauled_kg * (1.0 + train.rotating_mass_factor)
+        if train.rotating_mass_share is not None:
+            inertia_kg = 1e3 * train.mass_t * (1.0 + train.rotating_mass_share)
         rotors = train.motor_inertia_kg * (1.0 + train.slip) / inertia_kg
         machine = (max(0.0, motors) + rotors * self.opposing[k]) / (1.0 + rotors)
         return max(0.0, min(1e3 * train.adhesive_mass_t * 9.81 * share, machine))

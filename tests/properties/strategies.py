@@ -163,6 +163,7 @@ TRAINS = st.fixed_dictionaries(
     {"model": st.just("Rc4-freight-1470t")},
     optional={
         "mass_t": numbers(80.0, 2500.0),
+        "length_m": st.sampled_from([0.0, 25.0, 700.0]),
         "max_motor_current_a": st.sampled_from([150.0, 700.0, 1250.0, 2080.0, 2500.0, 5000.0]),
         "max_retardation_m_s2": numbers(0.05, 2.0),
         "max_speed_kmh": numbers(20.0, 250.0),
@@ -243,12 +244,21 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
     return entry
 
 
+def _pull_out_beyond_the_knee(
+    max_force_kn: float, max_power_kw: float, limit_speed_kmh: float | None = None
+) -> Document:
+    """The limit speed, raised to that from which power limits; nothing, if there is none."""
+    if limit_speed_kmh is None:
+        return {}
+    return {"limit_speed_kmh": max(limit_speed_kmh, 3.6 * max_power_kw / max_force_kn)}
+
+
 EMUS = st.fixed_dictionaries(
     {
         "tractive_effort": st.fixed_dictionaries(
             {"max_force_kn": numbers(50.0, 400.0), "max_power_kw": numbers(500.0, 9000.0)},
             optional={"limit_speed_kmh": numbers(80.0, 300.0)},
-        ),
+        ).map(lambda effort: effort | _pull_out_beyond_the_knee(**effort)),
         "mass_t": numbers(80.0, 900.0),
         "adhesive_mass_t": numbers(40.0, 80.0),
         "resistance_a_n": numbers(0.0, 10_000.0),
@@ -263,6 +273,7 @@ EMUS = st.fixed_dictionaries(
     optional={
         "max_acceleration_m_s2": numbers(0.2, 1.5),
         "rotating_mass_factor": numbers(0.0, 0.2),
+        "length_m": st.sampled_from([0.0, 25.0, 700.0]),
         "current_limitation": st.fixed_dictionaries(
             {"max_current_a": numbers(300.0, 1000.0)},
             optional={"knee_factor": numbers(0.8, 1.0)},

@@ -60,7 +60,15 @@ ORDER_AND_UNIQUENESS = [
                  "traffic", "[{'name': 'a'", "give each one its own", id="traffic-name-twice"),
 ]  # fmt: skip
 
+CURVE = {"from_km": 10.0, "to_km": 12.0, "radius_m": 400.0}
+
 PLACES = [
+    pytest.param({"line.curves": [{**CURVE, "to_km": 170.0}]}, "line.curves.0.to_km", "170",
+                 "between 0 and 160 km", id="curve-beyond-the-line"),
+    pytest.param({"line.curves": [{**CURVE, "to_km": 9.0}]}, "line.curves.0", "",
+                 "the lower position as from_km", id="curve-that-ends-before-it-begins"),
+    pytest.param({"line.curves": [CURVE, {**CURVE, "from_km": 11.0, "to_km": 13.0}]}, "line.curves",
+                 "[{'from_km'", "give each place one radius", id="curves-that-overlap"),
     pytest.param({"line.stations.2.position_km": 200.0}, "line.stations.2.position_km", "200",
                  "between 0 and 160 km", id="station-beyond-the-line"),
     pytest.param({f"{EAST}.position_km": 161.0}, f"{EAST}.position_km", "161",
@@ -138,6 +146,16 @@ CONFLICTS = [
                  id="line-current-alone"),
     pytest.param({f"{FREIGHT}.adhesive_mass_t": 2000.0}, FREIGHT, "", "lower adhesive_mass_t",
                  id="more-adhesive-mass-than-mass"),
+    pytest.param({f"{FREIGHT}.tractive_effort": {"max_force_kn": 200.0, "max_power_kw": 2000.0,
+                                                 "limit_speed_kmh": 18.0},
+                  f"{FREIGHT}.power_factor": 1.0}, f"{FREIGHT}.tractive_effort", "",
+                 "raise it to 36 km/h at least", id="pull-out-below-the-knee"),
+    pytest.param({f"{FREIGHT}.rotating_mass_share": 0.06, f"{FREIGHT}.rotating_mass_factor": 0.04},
+                 FREIGHT, "", "leave out rotating_mass_factor", id="rotating-mass-twice"),
+    pytest.param({f"{FREIGHT}.rotating_mass_share": 0.06, f"{FREIGHT}.motor_inertia_kg": 9000.0},
+                 FREIGHT, "", "leave out motor_inertia_kg", id="motors-in-the-share-and-beside-it"),
+    pytest.param({f"{FREIGHT}.adhesive_mass_t": 1470.0, f"{FREIGHT}.rotating_mass_factor": 0.1},
+                 FREIGHT, "", "write rotating_mass_share = 0.1", id="rotating-mass-of-nothing-hauled"),
     pytest.param({f"{ENTRY}.headway_min": None, f"{ENTRY}.departures_min": [0.0]}, ENTRY, "",
                  "use it with headway_min alone", id="already-running-by-timetable"),
     pytest.param({f"{ENTRY}.initial_trains": [{"position_km": 1.0, "speed_kmh": 1.0}]}, ENTRY, "",

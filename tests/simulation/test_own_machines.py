@@ -13,12 +13,13 @@ import math
 import numpy as np
 import pytest
 
+from tpss.model import build_model
 from tpss.numerics.series import SCRATCH_SHAPE, Series
 from tpss.vehicle.effort.network import motor_force_series
 from vehicles import NETWORKS
 
 from conftest import plain
-from scenarios import run
+from scenarios import run, short_line
 
 OWN_TRAIN = {
     "tractive_effort": {"max_force_kn": 200.0, "max_power_kw": 2000.0},
@@ -54,6 +55,34 @@ def after_a_minute(step_min):
     result = run({**own(), "simulation.time_step_min": step_min, "simulation.duration_min": 1.0})
     last = result.dataset.sel(train="eastbound 1").isel(time=-1)
     return float(last.speed), float(last.position)
+
+
+def test_unit_with_all_axles_driven_accelerates_its_rotating_parts_too():
+    """203 t, rotating parts 10 % of it, 1 in 250 uphill, 45 N/t, 146.0 kN, to 42 km/h.
+
+    (145 995 - 9 135 - 203 000 · 9.81 · 0.004) N / (203 t · 1.1) = 0.577 m/s², so 20.2 s.
+    """
+    unit = own(
+        mass_t=203.0,
+        adhesive_mass_t=203.0,
+        resistance_a_n=9135.0,
+        rotating_mass_share=0.1,
+        tractive_effort={"max_force_kn": 145.995, "max_power_kw": 100_000.0},
+        efficiency=1.0,
+    )
+    unit |= {"line.gradients.0.permille": 4.0, "simulation.time_step_min": 0.001,
+             "simulation.duration_min": 0.5, "supply.catenary": "AT"}  # fmt: skip
+    train = run(unit).dataset.sel(train="eastbound 1")
+    after_s = float(np.interp(42.0 / 3.6, train.speed, train.time))
+    assert after_s == pytest.approx(20.2, abs=0.05)
+    assert float(train.acceleration[1]) == pytest.approx(128_894.28 / 223_300.0, rel=1e-6)
+
+
+def test_share_of_rotating_parts_stands_in_place_of_the_model_s():
+    """Of the library's locomotive, whose motors have their own inertia."""
+    (kind,) = build_model(short_line({"trains.freight.rotating_mass_share": 0.06}))[0].types
+    assert kind.inertia_kg == kind.coasting_inertia_kg == pytest.approx(1.06 * 1.47e6)
+    assert kind.rotor_mass_kg == 0.0
 
 
 def test_constant_force_then_constant_power_meets_its_closed_form():

@@ -146,3 +146,14 @@ def test_a_step_over_crest_and_dip_climbs_what_the_line_climbs():
     k = int(np.flatnonzero(way.x < 10_000.0)[-1])
     assert way.x[k] + 60 / 3.6 * 300.0 > 12_000.0
     assert float(result.dataset.gradient_force[k, 0]) == pytest.approx(0.0, abs=1e-6 * WEIGHT_N)
+
+
+@pytest.mark.parametrize("permille", [3.0, -1.0])
+def test_a_curve_opposes_a_train_uphill_and_downhill(permille):
+    """R = 300 m: 650/245 per mille of the weight, here for 2 km."""
+    curves = [{"from_km": 9.0, "to_km": 11.0, "radius_m": 300.0}]
+    changes = {**step(0.1), **gradients((0, permille)), "line.curves": curves}
+    result = run(changes)
+    in_curve = abs(journey(result).x - 10_000.0) < 900.0
+    force_n = result.dataset.gradient_force.to_numpy()[:, 0][: in_curve.size][in_curve]
+    assert force_n == pytest.approx(WEIGHT_N * (permille + 650.0 / 245.0) * 1e-3, rel=1e-12)

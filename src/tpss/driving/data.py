@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tpss.kernel import at, inlined
 from tpss.physics.adhesion import Rail
 from tpss.record import Record, Records
 from tpss.vehicle.train_type import TrainType
@@ -49,6 +50,15 @@ class Profile(NamedTuple):
     value: Floats
 
 
+class Profiles(NamedTuple):
+    """Staircases over position, a row for each length of train; what is left of a row begins nowhere."""
+
+    from_m: Floats
+    """Shape (lengths, n); infinite in what is left of a row. [m]"""
+    value: Floats
+    """Shape (lengths, n)."""
+
+
 class Options(NamedTuple):
     """Choices of the simulation."""
 
@@ -69,10 +79,24 @@ class DrivingData(NamedTuple):
     """What drivers know."""
 
     options: Options
-    gradients: Profile
-    """Rise over run. [1]"""
-    limits: Profile
-    """Speed limits. [m/s]"""
+    gradients: Profiles
+    """Rise over run, as trains of each length feel it. [1]"""
+    limits: Profiles
+    """Speed limits, as trains of each length have to keep them. [m/s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]
+
+
+@inlined
+def gradients_of(kind: TrainType, profiles: Profiles) -> Profile:
+    """Gradients as a train of a type feels them, over the position of its head."""
+    row = at(kind.profile)
+    return Profile(profiles.from_m[row], profiles.value[row])
+
+
+@inlined
+def limits_of(kind: TrainType, profiles: Profiles) -> Profile:
+    """Speed limits that a train of a type has to keep, over the position of its head."""
+    row = at(kind.profile)
+    return Profile(profiles.from_m[row], profiles.value[row])

@@ -1,7 +1,7 @@
 """The driver of each train: which speed to reach in this step, and which force that takes."""
 
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
-from tpss.driving.data import Driver, DrivingData, Floats
+from tpss.driving.data import Driver, DrivingData, Floats, gradients_of, limits_of
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
 from tpss.driving.motion import force_to_target, set_target, update_resistances
 from tpss.driving.stops import distance_to_stop
@@ -48,7 +48,7 @@ def target_speed(train: Train, kind: TrainType, data: DrivingData) -> float:
     ----------
     [Boullanger2009]_, section 2.3.1 and figure 3-7.
     """
-    motion, limits, h = train.motion, data.limits, data.options.step_s
+    motion, limits, h = train.motion, limits_of(kind, data.limits), data.options.step_s
     v, retardation = motion.speed_m_s, kind.highest_retardation_m_s2
     limit = limits.value[index_at(motion.position_m, limits.from_m)]
     target = min(limit, kind.highest_speed_m_s)
@@ -119,5 +119,5 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
         demand.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
     if speed_m_s != demand.speed_m_s or not within_free_band(demand):
         update_speed_terms(speed_m_s, kind, demand, points, scratch)
-    update_resistances(train, kind, data.gradients, options)
+    update_resistances(train, kind, gradients_of(kind, data.gradients), options)
     decision.decided = False

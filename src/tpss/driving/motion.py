@@ -1,6 +1,6 @@
 """Resistances, targets and steps of constant acceleration, which all drivers and manners share."""
 
-from tpss.driving.data import DrivingData, Options, Profile
+from tpss.driving.data import DrivingData, Options, Profile, gradients_of
 from tpss.driving.regulated import ideal_force, wanted_acceleration
 from tpss.kernel import inlined, kernel
 from tpss.numerics.staircase import index_from
@@ -38,7 +38,7 @@ def update_resistances(train: Train, kind: TrainType, gradients: Profile, option
 def update_gradient(train: Train, kind: TrainType, distance_m: float, data: DrivingData) -> None:
     """Update the resistances for a step in which the train covers `distance_m`."""
     if data.options.mean_gradient:
-        profile, motion, forces = data.gradients, train.motion, train.forces
+        profile, motion, forces = gradients_of(kind, data.gradients), train.motion, train.forces
         slope = mean_gradient(
             motion.gradient, motion.position_m, distance_m, profile.from_m, profile.value
         )

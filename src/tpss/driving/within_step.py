@@ -11,7 +11,7 @@ from tpss.driving.course import (
     part_of_step,
     stopping_distance,
 )
-from tpss.driving.data import DrivingData
+from tpss.driving.data import DrivingData, limits_of
 from tpss.driving.motion import (
     apply_solution_uniformly,
     drive_uniformly,
@@ -40,7 +40,7 @@ def allowed_speed(train: Train, kind: TrainType, target_m_s: float, data: Drivin
     A train that has to slow down for one is put on its course.  One that cannot hold its speed aims at
     the same speed uniformly, which takes less distance.
     """
-    limits, v, decision = data.limits, train.motion.speed_m_s, train.decision
+    limits, v, decision = limits_of(kind, data.limits), train.motion.speed_m_s, train.decision
     holds = train.motion.phase == Phase.DRIVING and decision.course != Course.LIMIT_FIRST
     slowing = HOLD_FIRST if holds else UNIFORM
     allowed = respect_limits_ahead(
@@ -80,7 +80,8 @@ def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
     """
     h, retardation = data.options.step_s, kind.highest_retardation_m_s2
     v, distance_m = train.motion.speed_m_s, distance_to_stop(train, data.stops)
-    limits, position_m, decision = data.limits, train.motion.position_m, train.decision
+    limits, decision = limits_of(kind, data.limits), train.decision
+    position_m = train.motion.position_m
     limited = slows_down(v, position_m, position_m + distance_m, limits.from_m, limits.value)
     if decision.course != Course.EVEN and not limited:
         decision.course = Course.LATEST

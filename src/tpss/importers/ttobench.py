@@ -41,12 +41,12 @@ RETARDATION_M_S2 = 0.85
 
 _WHY_LEFT_OUT = {
     "altitude": "only differences of altitude count, which the gradients give",
-    "curvatures": "curve resistance is not modelled",
+    "curvatures": "curves are not imported; line.curves takes their radii",
     "ETCS braking data": "braking is at the highest deceleration, without a supervision curve",
     "tunnel resistance": "resistance in tunnels is not modelled",
     "num seats": "it does not act on the train's motion",
     "num coaches": "it does not act on the train's motion",
-    "length": "a train is a point",
+    "length": "a train is imported as a point; length_m gives it a length",
     "max reg braking power": "trains do not feed power back",
     "max reg braking force": "trains do not feed power back",
     "efficiency traction": "a map of losses over load and speed is not modelled",

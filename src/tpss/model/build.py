@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from tpss.driving.data import Braking, Driver, Options, Profile, Stop
+from tpss.driving.data import Braking, Driver, Options, Stop
 from tpss.kernel import switch
+from tpss.model.profiles import build_profiles, lengths_of
 from tpss.model.supply import SupplyPlan, build_supply
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
 from tpss.record import Records
-from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model, RunControl
-from tpss.units import si, si_of_each
+from tpss.units import si
 
 STEP_ROUNDING = 1e-9
 """A dwell or a duration that exceeds whole steps by less than this share of a step ends with them."""
@@ -32,12 +32,14 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     network, plan = build_supply(scenario.supply, scenario.line.begins_at_km, scenario.line.end_km)
-    types, points = build_train_types(list(scenario.trains.values()))
+    trains = list(scenario.trains.values())
+    types, points = build_train_types(trains)
+    gradients, limits = build_profiles(scenario.line, lengths_of(trains))
     model = Model(
         options=_options(scenario),
         control=RunControl(),
-        gradients=_gradients(scenario.line),
-        limits=_limits(scenario.line),
+        gradients=gradients,
+        limits=limits,
         stops=_stops(scenario),
         types=types,
         points=points,
@@ -71,20 +73,6 @@ def _options(scenario: Scenario) -> Options:
 def _member(choice: str) -> str:
     """Name of the member of an enum that a choice of the scenario stands for."""
     return choice.upper().replace("-", "_")
-
-
-def _gradients(line: Line) -> Profile:
-    return Profile(
-        from_m=np.array(si_of_each(line.gradients, "from_km")),
-        value=np.array([item.permille for item in line.gradients]) * 1e-3,
-    )
-
-
-def _limits(line: Line) -> Profile:
-    return Profile(
-        from_m=np.array(si_of_each(line.speed_limits, "from_km")),
-        value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
-    )
 
 
 def _stops(scenario: Scenario) -> Records[Stop]:

@@ -9,6 +9,7 @@ import numpy as np
 from tpss import library
 from tpss.kernel import plain
 from tpss.model.curves import CurveBook, interpolate
+from tpss.model.profiles import lengths_of
 from tpss.numerics.curve import Curve as CurvePlace
 from tpss.numerics.curve import Points
 from tpss.numerics.neural_network import FeedForwardNetwork, build_network
@@ -54,18 +55,17 @@ def _no_networks() -> Any:
 
 def build_train_types(trains: list[Train]) -> tuple[Records[TrainType], Points]:
     """The types in the order of the trains, and the points of their curves."""
-    book = CurveBook()
-    rows = [_train_type(train, book) for train in trains]
+    book, lengths_m = CurveBook(), lengths_of(trains)
+    rows = [_train_type(train, lengths_m, book) for train in trains]
     return TrainType.array(rows), book.points()
 
 
-def _train_type(train: Train, book: CurveBook) -> Any:
+def _train_type(train: Train, lengths_m: list[float], book: CurveBook) -> Any:
     mass, adhesive = si(train, "mass_t"), si(train, "adhesive_mass_t")
     return TrainType.row(
         mass_kg=mass,
         adhesive_mass_kg=adhesive,
-        inertia_kg=adhesive + (mass - adhesive) * (1.0 + train.rotating_mass_factor),
-        coasting_inertia_kg=mass * (1.0 + train.rotating_mass_factor),
+        **_inertias(train, mass, adhesive),
         rotor_mass_kg=si(train, "motor_inertia_kg") * (1.0 + train.slip),
         slip_factor=1.0 + train.slip,
         resistance=DavisCoefficients.row(
@@ -76,11 +76,24 @@ def _train_type(train: Train, book: CurveBook) -> Any:
         highest_acceleration_m_s2=_si_or(train, "max_acceleration_m_s2", math.inf),
         highest_retardation_m_s2=si(train, "max_retardation_m_s2"),
         highest_speed_m_s=si(train, "max_speed_kmh"),
+        profile=lengths_m.index(si(train, "length_m")),
         efficiency=_over_speed(train.efficiency, book),
         effort=_effort(train, book),
         line_current=_line_current(train),
         **_electric(train, book),
     )
+
+
+def _inertias(train: Train, mass_kg: float, adhesive_kg: float) -> dict[str, float]:
+    """Fields of `TrainType` that add the rotating parts to the mass."""
+    if train.rotating_mass_share is not None:
+        inertia_kg = mass_kg * (1.0 + train.rotating_mass_share)
+        return {"inertia_kg": inertia_kg, "coasting_inertia_kg": inertia_kg}
+    with_rotating = 1.0 + train.rotating_mass_factor
+    return {
+        "inertia_kg": adhesive_kg + (mass_kg - adhesive_kg) * with_rotating,
+        "coasting_inertia_kg": mass_kg * with_rotating,
+    }
 
 
 def _effort(train: Train, book: CurveBook) -> Any:

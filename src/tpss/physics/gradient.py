@@ -7,12 +7,16 @@ from tpss.kernel import at, inlined
 
 Array = npt.NDArray[np.float64]
 
+CREEPING_M = 1e-6
+"""Distance below which a train stands as far as gradients go: a position rounds to some 1e-10 m, by
+which a shorter distance would be off too far. [m]"""
+
 
 @inlined
 def mean_gradient(
     index: int, position_m: float, distance_m: float, from_m: Array, gradient: Array
 ) -> float:
-    """Rise over a distance ahead, divided by the distance; the gradient at the point if it is zero. [1]
+    """Rise over a distance ahead, divided by the distance; the gradient at the point if it is short. [1]
 
     The climb of a long step is then the true one, wherever the gradient changes.  The gradients
     are summed one by one rather than by the difference of two altitudes, which would cancel.
@@ -33,7 +37,7 @@ def mean_gradient(
     ----------
     [Boullanger2009]_, the inclination of eq. (F.3).
     """
-    if distance_m <= 0.0:
+    if distance_m < CREEPING_M:
         return gradient[at(index)]
     end_m = position_m + distance_m
     climb_m = 0.0

@@ -3,7 +3,7 @@
 Sign: a positive force opposes forward motion.  Units: SI; the suffix of a name says which.
 """
 
-from tpss.kernel import inlined
+from tpss.kernel import inlined, kernel
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.record import Record
 
@@ -56,3 +56,26 @@ def gradient_force(mass_kg: float, gradient: float) -> float:
     [Boullanger2009]_, eq. (2.9) and (F.3).
     """
     return mass_kg * GRAVITY_M_S2 * gradient
+
+
+@kernel
+def curve_resistance(radius_m: float) -> float:
+    r"""Resistance of a curve as a share of the train's weight, as if it were a gradient. [1]
+
+    .. math:: w = \frac{650}{R - 55} ‰ \;\; (R \ge 300 \text{ m}), \quad
+              w = \frac{500}{R - 30} ‰ \;\; (R < 300 \text{ m})
+
+    Röckl's formula, for standard gauge; an estimate.
+
+    Parameters
+    ----------
+    radius_m : float
+        Radius of the curve, more than 55. [m]
+
+    References
+    ----------
+    [Wende2003]_.
+    """
+    if radius_m >= 300.0:
+        return 0.650 / (radius_m - 55.0)
+    return 0.500 / (radius_m - 30.0)

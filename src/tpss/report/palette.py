@@ -31,3 +31,9 @@ def tint(pure: str, strength: float) -> str:
     """A colour mixed with white; of strength 1 it is pure, of strength 0 white."""
     parts = (int(pure[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(255 - strength * (255 - part)):02X}" for part in parts)
+
+
+def translucent(pure: str, opacity: float) -> str:
+    """A colour that lets shine through what is behind it, in the notation that every plotly reads."""
+    red, green, blue = (int(pure[k : k + 2], 16) for k in (1, 3, 5))
+    return f"rgba({red},{green},{blue},{opacity:g})"

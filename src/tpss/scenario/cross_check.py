@@ -152,6 +152,8 @@ def _positions(document: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     for kind in STATIONS:
         items = _items(supply, kind)
         standing += [(f"supply.{kind}.{i}.position_km", station) for i, station in items]
+    for i, curve in _items(line, "curves"):
+        standing += [(f"line.curves.{i}.{key}", curve) for key in ("from_km", "to_km")]
     for i, zone in _items(_table(document, "standards"), "zones"):
         standing += [(f"standards.zones.{i}.{key}", zone) for key in ("from_km", "to_km")]
     placed = _table(supply, "high_voltage_line").get("transformers_km")

@@ -15,6 +15,7 @@ from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.files import Profile, read_gradients, read_toml
 from tpss.scenario.override import copy_of
+from tpss.scenario.rolling_stock import completed
 
 Location = tuple[int | str, ...]
 
@@ -146,8 +147,7 @@ def _merge_model(train: dict[str, Any], location: Location, inlined: Inlined) ->
             Finding(str(path), "model", repr(table.pop("model")), problem, remedy)
         )
     inlined.files[location], inlined.own[location] = path, set(train)
-    for key, value in table.items():
-        train.setdefault(key, value)
+    train.update(completed(train, table))
 
 
 def _insert_profile(inlined: Inlined) -> None:

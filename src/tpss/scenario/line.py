@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from typing import Annotated
+from itertools import pairwise
+from typing import Annotated, Self
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from tpss.scenario.fields import Name, Part, Position, Real, ascending, one_of, unique
+from tpss.scenario.fields import Name, Part, Position, Real, ascending, fault, one_of, unique
 from tpss.units import kilometres
 
 FARTHEST_KM = 10_000.0
@@ -41,6 +42,34 @@ class SpeedLimit(Part):
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
 
+class TrackCurve(Part):
+    """A curve of the track, which opposes trains on it."""
+
+    from_km: Position = Field(ge=-100_000, le=100_000, description="Where the curve begins.")
+    to_km: Position = Field(ge=-100_000, le=100_000, description="Where it ends.")
+    radius_m: Real = Field(ge=100, le=100_000, description="Radius; of standard gauge.")
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        if self.to_km <= self.from_km:
+            raise fault(
+                f"the curve ends at {self.to_km:g} km, and begins at {self.from_km:g} km",
+                "give the lower position as from_km",
+            )
+        return self
+
+
+def _one_after_another(curves: Sequence[TrackCurve]) -> Sequence[TrackCurve]:
+    for before, after in pairwise(curves):
+        if after.from_km < before.to_km:
+            raise fault(
+                f"a curve begins at {after.from_km:g} km, before the last one ends, at "
+                f"{before.to_km:g} km",
+                "give each place one radius, and list the curves in ascending order",
+            )
+    return curves
+
+
 class Station(Part):
     """A passenger station, where trains may begin, stop or end."""
 
@@ -72,6 +101,9 @@ class Line(Part):
     )
     speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
         Field(description="Speed limits; the first one begins where the line does.")
+    )
+    curves: Annotated[tuple[TrackCurve, ...], AfterValidator(_one_after_another)] = Field(
+        default=(), description="Curves; between them the track is straight."
     )
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")

@@ -141,8 +141,8 @@ class EffortLimits(Part):
         default=None,
         gt=0,
         le=500,
-        description="Speed beyond which the motors' pull-out force limits, as 1/v²; leave it out: "
-        "constant power to the end.",
+        description="Speed beyond which the motors' pull-out force limits, as 1/v², in the range of "
+        "constant power; leave it out: constant power to the end.",
     )
     full_voltage_kv: Real | None = Field(
         default=None,
@@ -156,6 +156,17 @@ class EffortLimits(Part):
         ge=0,
         description="Line voltage below which they are zero; in between they fall linearly.",
     )
+
+    @model_validator(mode="after")
+    def _pull_out_limits_in_the_range_of_constant_power(self) -> Self:
+        begin_kmh = 3.6 * self.max_power_kw / self.max_force_kn
+        if self.limit_speed_kmh is not None and self.limit_speed_kmh < begin_kmh * (1.0 - 1e-9):
+            raise fault(
+                f"limit_speed_kmh ({self.limit_speed_kmh:g} km/h) lies below the speed from which power "
+                f"limits, max_power_kw / max_force_kn = {begin_kmh:.4g} km/h",
+                f"raise it to {begin_kmh:.4g} km/h at least, or leave it out; or lower max_power_kw",
+            )
+        return self
 
     @model_validator(mode="after")
     def _two_voltages_in_order(self) -> Self:

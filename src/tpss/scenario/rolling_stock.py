@@ -1,5 +1,6 @@
 """The trains: a model of the library or of a file, any of its fields overridden."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
@@ -12,6 +13,19 @@ from tpss.scenario.machine import (
     RatioOverSpeed,
     TractiveEffort,
 )
+
+LARGEST_SHARE = 0.5
+"""Largest share of rotating parts in the mass of a train; 1 plus it is the largest factor."""
+
+
+def completed(given: Mapping[str, Any], model: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of a train, completed with those of its model that they do not replace."""
+    replaced: set[str] = set()
+    if given.get("rotating_mass_share") is not None:
+        replaced = {"rotating_mass_factor", "motor_inertia_kg"}
+    elif given.get("rotating_mass_factor") is not None:
+        replaced = {"rotating_mass_share"}
+    return {**{key: value for key, value in model.items() if key not in replaced}, **given}
 
 
 class Train(Part):
@@ -28,11 +42,26 @@ class Train(Part):
     )
     mass_t: Real = Field(ge=1, le=20_000, description="Mass of the whole train.")
     adhesive_mass_t: Real = Field(ge=1, le=20_000, description="Mass on driven axles.")
+    length_m: Real = Field(
+        default=0.0,
+        ge=0,
+        le=5_000,
+        description="Length, behind the train's position: a speed limit rises once the tail has "
+        "passed, and the gradient is the mean under the train; 0: a point.",
+    )
     rotating_mass_factor: Real = Field(
         default=0.0,
         ge=0,
         le=1,
         description="Rotating parts of the hauled mass, H, as a share of it.",
+    )
+    rotating_mass_share: Real | None = Field(
+        default=None,
+        ge=0,
+        le=LARGEST_SHARE,
+        description="All rotating parts, those of driven axles and motors included, as a share of the "
+        "mass of the whole train, such as 0.06; in place of `rotating_mass_factor` and "
+        "`motor_inertia_kg`.",
     )
     motor_inertia_kg: Real = Field(
         default=0.0,
@@ -130,6 +159,23 @@ class Train(Part):
         description="Current limitation at low voltage, as in EN 50388; leave it out: no such limit.",
     )
 
+    @field_validator("rotating_mass_factor", "rotating_mass_share", mode="before")
+    @classmethod
+    def _share_not_factor(cls, value: Any) -> Any:
+        if isinstance(value, int | float) and 1.0 < value <= 1.0 + LARGEST_SHARE:
+            raise fault(
+                "a factor of the mass of the whole train, where a share is asked for",
+                f"write rotating_mass_share = {value - 1.0:.4g}, and leave out rotating_mass_factor",
+            )
+        return value
+
+    @field_validator("length_m")
+    @classmethod
+    def _a_point_or_a_train(cls, length_m: float) -> float:
+        if 0.0 < length_m < 1.0:
+            raise fault("shorter than a metre", "give the length in m, or 0 for a point")
+        return length_m
+
     @field_validator("max_motor_current_a")
     @classmethod
     def _current_of_the_machine(cls, current: float | None, info: ValidationInfo) -> float | None:
@@ -202,6 +248,23 @@ class Train(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _rotating_parts_are_counted_once(self) -> Self:
+        if self.rotating_mass_share is not None:
+            for name in ("rotating_mass_factor", "motor_inertia_kg"):
+                if getattr(self, name) > 0.0:
+                    raise fault(
+                        f"rotating_mass_share counts the rotating parts of {name} too",
+                        f"leave out {name}, or rotating_mass_share",
+                    )
+        elif self.rotating_mass_factor > 0.0 and self.adhesive_mass_t == self.mass_t:
+            raise fault(
+                "rotating_mass_factor is of the hauled mass, and the whole train is on driven axles",
+                f"write rotating_mass_share = {self.rotating_mass_factor:.4g} in its place, which "
+                "counts driven axles too, and leave out motor_inertia_kg",
+            )
+        return self
+
     @model_validator(mode="before")
     @classmethod
     def _start_from_the_library(cls, given: Any) -> Any:
@@ -210,4 +273,4 @@ class Train(Part):
         known = library.entries("locomotives")
         # An unknown model is reported by its own field; any values allow the others to be checked too.
         model = given["model"] if given["model"] in known else next(iter(known))
-        return {**library.values("locomotives", model), **given}
+        return completed(given, library.values("locomotives", model))

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from tpss.driving.data import DrivingData, Options, Profile, Stop
+from tpss.driving.data import DrivingData, Options, Profiles, Stop
 from tpss.kernel import inlined
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Network
@@ -24,10 +24,10 @@ class Model(NamedTuple):
 
     options: Options
     control: RunControl
-    gradients: Profile
-    """Rise over run. [1]"""
-    limits: Profile
-    """Speed limits. [m/s]"""
+    gradients: Profiles
+    """Rise over run, as trains of each length feel it. [1]"""
+    limits: Profiles
+    """Speed limits, as trains of each length have to keep them. [m/s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]

@@ -43,7 +43,7 @@ class TrainType(Record):
     adhesive_mass_kg: float
     """Mass on driven axles. [kg]"""
     inertia_kg: float
-    """Inertia with rotating parts, M = m_adh + (m - m_adh)(1 + H), eq. (2.11). [kg]"""
+    """Inertia with rotating parts, M = m_adh + (m - m_adh)(1 + H), eq. (2.11), or m (1 + ρ). [kg]"""
     coasting_inertia_kg: float
     """Inertia of a train that the aggressive driver lets coast, m (1 + H), eq. (2.11). [kg]"""
     rotor_mass_kg: float
@@ -76,6 +76,8 @@ class TrainType(Record):
     """Highest retardation, positive. [m/s²]"""
     highest_speed_m_s: float
     """Highest speed of the train. [m/s]"""
+    profile: int
+    """Row of the line's profiles, which are laid out for each length of train."""
     resistance: DavisCoefficients
     """Running resistance on straight level track."""
     efficiency: Curve

@@ -39,6 +39,13 @@ def test_mean_over_no_way_is_the_gradient_at_the_point(as_run):
     assert mean_over(as_run, 1000.0, 0.0, FROM_M, GRADIENT) == -0.005
 
 
+def test_mean_over_less_than_a_rounding_of_the_position_is_the_gradient_at_the_point(as_run):
+    """At 7 km a position rounds to 1e-12 m, over which a train that creeps goes 5e-13 m."""
+    from_m, gradient = np.array([0.0, 7062.4069]), np.array([0.005, 0.001])
+    assert mean_over(as_run, 7062.4, 5.4e-13, from_m, gradient) == 0.005
+    assert mean_over(as_run, 7062.4, 9e-7, from_m, gradient) == 0.005
+
+
 def test_single_stair_holds_everywhere(as_run):
     uniform = mean_over(as_run, -7.0, 1e5, np.array([0.0]), np.array([0.004]))
     assert uniform == pytest.approx(0.004)

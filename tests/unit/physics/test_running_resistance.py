@@ -10,6 +10,7 @@ import pytest
 
 from tpss.physics.running_resistance import (
     DavisCoefficients,
+    curve_resistance,
     gradient_force,
     running_resistance,
 )
@@ -35,3 +36,10 @@ def test_downhill_pushes_as_uphill_holds_back(as_run):
 
 def test_level_track_adds_nothing(as_run):
     assert as_run(gradient_force)(1_470_000.0, 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("radius_m", "permille"), [(705.0, 1.0), (300.0, 650.0 / 245.0), (280.0, 2.0), (130.0, 5.0)]
+)
+def test_curve_resistance_by_hand(as_run, radius_m, permille):
+    assert as_run(curve_resistance)(radius_m) == pytest.approx(permille * 1e-3, rel=1e-14)

@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from tpss.report.drawings import parts
-from tpss.report.palette import AREA_SCALE, LINE_SCALE, STRONG_GREY, Stops, colour
+from tpss.report.palette import AREA_SCALE, LINE_SCALE, STRONG_GREY, Stops, colour, translucent
 from tpss.report.sampling import MOST_OF_CURVES, Floats, Indices, kept, share
 
 DASHES = ("solid", "dash", "dashdot", "dot")
@@ -72,7 +72,7 @@ def _trace(item: parts.Curve | parts.Band | parts.Map | parts.Bar, curves: int) 
         case parts.Band():
             x = _single(np.concatenate([item.x, item.x[::-1]]))
             y = _single(np.concatenate([item.lowest, item.highest[::-1]]))
-            faint = f"{colour(item.colour)}26"  # 15 % of it
+            faint = translucent(colour(item.colour), 0.15)
             area: Any = {"mode": "none", "fill": "toself", "fillcolor": faint, "hoverinfo": "skip"}
             return go.Scatter(x=x, y=y, **area)
         case parts.Map():

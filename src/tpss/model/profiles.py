@@ -1,0 +1,113 @@
+r"""Gradients and speed limits of a line as trains of a length see them, over their heads' positions.
+
+A limit rises for a train once its tail has passed: it has to keep the lowest limit under it.  The
+gradient acts on all of its mass, taken as spread evenly over its length L,
+
+.. math:: \bar\alpha(x) = \frac{1}{L} \int_{x - L}^{x} \alpha(s) \, ds,
+
+which changes linearly over L after each change of the line's gradient.  Drivers know staircases: such
+a ramp becomes `PIECES` stairs, each with the mean over it, so that the climb over whole stairs is exact.
+
+Curves oppose trains, which go towards higher positions, as gradients do, and are added to them.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.driving.data import Profile, Profiles
+from tpss.kernel import plain
+from tpss.physics.running_resistance import curve_resistance
+from tpss.scenario.line import Line, TrackCurve
+from tpss.scenario.rolling_stock import Train
+from tpss.units import si, si_of_each
+
+Array = npt.NDArray[np.float64]
+
+PIECES = 16
+"""Stairs over the length of a train after a change of gradient."""
+
+
+def lengths_of(trains: Sequence[Train]) -> list[float]:
+    """Lengths that trains have, each once, in the order of the rows of the profiles. [m]"""
+    return list(dict.fromkeys(si(train, "length_m") for train in trains))
+
+
+def build_profiles(line: Line, lengths_m: Sequence[float]) -> tuple[Profiles, Profiles]:
+    """Gradients [1] and speed limits [m/s] of a line, a row for each length of train."""
+    gradients = Profile(
+        from_m=np.array(si_of_each(line.gradients, "from_km")),
+        value=np.array([item.permille for item in line.gradients]) * 1e-3,
+    )
+    if line.curves:
+        gradients = with_curves(gradients, line.curves)
+    limits = Profile(
+        from_m=np.array(si_of_each(line.speed_limits, "from_km")),
+        value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
+    )
+    return (
+        _rows(gradients, mean_under_train, lengths_m),
+        _rows(limits, lowest_under_train, lengths_m),
+    )
+
+
+def _rows(
+    profile: Profile, under_train: Callable[[Profile, float], Profile], lengths_m: Sequence[float]
+) -> Profiles:
+    """A profile for each length, in rows of the same number of stairs."""
+    seen = [under_train(profile, length_m) if length_m > 0.0 else profile for length_m in lengths_m]
+    most = max(each.from_m.size for each in seen)
+    return Profiles(
+        from_m=np.array([_filled(each.from_m, most, np.inf) for each in seen]),
+        value=np.array([_filled(each.value, most, float(each.value[-1])) for each in seen]),
+    )
+
+
+def _filled(values: Array, count: int, rest: float) -> Array:
+    return np.append(values, np.full(count - values.size, rest))
+
+
+def with_curves(gradients: Profile, curves: Sequence[TrackCurve]) -> Profile:
+    """Gradients and resistances of curves, as shares of the weight of what is there. [1]"""
+    begin_m, end_m = (np.array(si_of_each(curves, name)) for name in ("from_km", "to_km"))
+    from_m = np.unique(np.concatenate([gradients.from_m, begin_m, end_m]))
+    stair = np.maximum(np.searchsorted(gradients.from_m, from_m, side="right") - 1, 0)
+    value = gradients.value[stair]
+    for begin, end, curve in zip(begin_m, end_m, curves, strict=True):
+        value[(from_m >= begin) & (from_m < end)] += plain(curve_resistance)(curve.radius_m)
+    if from_m[0] == begin_m[0]:  # the first stair holds before it too, where there is no curve
+        from_m, value = np.append(from_m[0] - 1.0, from_m), np.append(gradients.value[0], value)
+    return Profile(from_m, value)
+
+
+def lowest_under_train(limits: Profile, length_m: float) -> Profile:
+    """Lowest of the limits under a train. [m/s]"""
+    left_m = np.append(limits.from_m[1:] + length_m, np.inf)
+    from_m = np.unique(np.append(limits.from_m, left_m[:-1]))
+    lowest = np.array(
+        [limits.value[(limits.from_m <= head_m) & (head_m < left_m)].min() for head_m in from_m]
+    )
+    changes = np.append(True, np.diff(lowest) != 0.0)
+    return Profile(from_m[changes], lowest[changes])
+
+
+def mean_under_train(gradients: Profile, length_m: float) -> Profile:
+    """Mean of the gradients under a train. [1]"""
+    if gradients.from_m.size == 1:
+        return gradients
+    ramps = gradients.from_m[1:, None] + np.linspace(0.0, length_m, PIECES + 1)
+    from_m = np.unique(ramps)
+    mean = (climb_to(from_m, gradients) - climb_to(from_m - length_m, gradients)) / length_m
+    inner = (mean[:-1] + mean[1:]) / 2.0
+    value = np.concatenate([gradients.value[:1], inner, gradients.value[-1:]])
+    return Profile(np.append(gradients.from_m[0], from_m), value)
+
+
+def climb_to(position_m: Array, gradients: Profile) -> Array:
+    """Altitude over that of the profile's first position. [m]"""
+    from_m, gradient = gradients
+    altitude_m = np.append(0.0, np.cumsum(np.diff(from_m) * gradient[:-1]))
+    stair = np.maximum(np.searchsorted(from_m, position_m, side="right") - 1, 0)
+    climbed: Array = altitude_m[stair] + gradient[stair] * (position_m - from_m[stair])
+    return climbed
