@@ -29,7 +29,7 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
 
 NEAR = 0.7
-"""Least similarity of a word that is proposed, from 0 to 1; that of ``to_km`` and ``from_km`` is 0.67."""
+"""Least similarity of a word that is proposed, from 0 to 1; of ``to_km`` and ``from_km`` it is 0.67."""
 
 LEAST_BEGINNING = 3
 """Letters by which the beginning of a word stands for the whole."""

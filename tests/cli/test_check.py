@@ -105,6 +105,10 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
     [
         (["trains.freight.max_speed_kmh=90"],
          "trains.freight: its max_speed_kmh of 90 is below every speed limit of the line"),
+        (["trains.freight.tractive_effort={max_force_kn = 280, max_power_kw = 4000}",
+          "trains.freight.power_factor=0.9", "trains.freight.max_motor_current_a=2000"],
+         "trains.freight: max_motor_current_a does nothing for a machine that is described by force "
+         "and power"),
         (["trains.other={model = 'Rc4-freight-1470t'}"],
          "trains.other is used by no traffic entry"),
         (["supply.converter_stations.0.converters=1"],

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Iterator
 
+from tpss import library
 from tpss.kernel import plain
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.line import Line
+from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.traffic import Traffic
 from tpss.units import si
@@ -74,6 +76,23 @@ def _trains(scenario: Scenario) -> Iterator[str]:
                 f"trains.{name}: its max_speed_kmh of {train.max_speed_kmh:g} is below every speed "
                 f"limit of the line (the lowest is {slowest:g} km/h)"
             )
+        yield from _idle_current(name, train)
+
+
+def _idle_current(name: str, train: Train) -> Iterator[str]:
+    """A current limit of the motors that the description of the machine does not ask for."""
+    effort, current_a = train.tractive_effort, train.max_motor_current_a
+    usual = library.entries("locomotives").get(train.model or "", {}).get("max_motor_current_a")
+    if current_a is None or current_a == usual or effort == "Rc4":
+        return
+    if isinstance(effort, EffortTable) and effort.motor_current_a is not None:
+        return
+    kind = (
+        "a table without motor_current_a" if isinstance(effort, EffortTable) else "force and power"
+    )
+    yield (
+        f"trains.{name}: max_motor_current_a does nothing for a machine that is described by {kind}"
+    )
 
 
 def _times(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
