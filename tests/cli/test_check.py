@@ -136,6 +136,32 @@ def test_what_may_not_be_meant_is_noted(tpss_command, changes, note):
     assert f"Note: {note}" in said.out
 
 
+LIMITS = "trains.freight.tractive_effort={{max_force_kn = {}, max_power_kw = {}}}"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        # N / 10 in place of kN: 10 000 / 100 = 100 m/s²; dry rails take 325 kN from 100 t.
+        (["trains.freight.mass_t=100", "trains.freight.adhesive_mass_t=100", "trains.freight.resistance_c_n_s2_per_m2=5",
+          "trains.freight.tractive_effort={speed_kmh = [0, 160], force_kn = [10000, 2200]}"],
+         ["10000 kN would be 100.0 m/s² for 100 t", "31 times what 100 t", "(325 kN)"]),
+        ([LIMITS.format(250, 200_000)], ["power of up to 200000 kW is 136 kW a tonne"]),
+        ([LIMITS.format(250, 100)], ["auxiliaries draw 151.5 kW, more than the 100 kW of its motors"]),
+        # C as if for km/h, 49.2 · 3.6²: 15.4 + 0.279 · 37.5 + 0.6376 · 37.5² = 922 kN of 14 421 kN.
+        (["trains.freight.resistance_c_n_s2_per_m2=637.6"],
+         ["running resistance at 135 km/h is 922 kN, 6 % of its weight", "in N and m/s"]),
+        (["trains.freight.mass_t=14700"], ["a whole train of 14700 t is unusual"]),
+    ],
+)  # fmt: skip
+def test_what_no_train_has_is_noted(tpss_command, short_file, changes, words):
+    said = check(tpss_command, short_file, "trains.freight.power_factor=0.9", *changes)
+    assert said.code == 0
+    assert said.out.count("Note: trains.freight: ") == 1
+    for each in words:
+        assert each in said.out, each
+
+
 def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, short_file):
     (tmp_path / "profile.csv").write_text("position_km,gradient_permille\n2,1\n25,0\n")
     changes = ("line.gradients_file=profile.csv", "line.length_km=20")

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from tpss import library
+from tpss.cli.implausible import implausible
 from tpss.kernel import plain
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
@@ -77,6 +78,7 @@ def _trains(scenario: Scenario) -> Iterator[str]:
                 f"limit of the line (the lowest is {slowest:g} km/h)"
             )
         yield from _idle_current(name, train)
+        yield from implausible(name, train)
 
 
 def _idle_current(name: str, train: Train) -> Iterator[str]:

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.terminal import say
-from tpss.results.explain import warnings
+from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.results.tables import train_steps
 from tpss.step.recorded import RECORDED
@@ -32,8 +32,8 @@ def print_result(result: Result, console: Console) -> None:
     for line in key_figures(result):
         say(console, line)
     print_violations(result, console)
-    for line in warnings(summary):
-        console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
+    for line in notes(result):
+        console.print(f"[yellow]Note:[/yellow] {escape(line)}", highlight=False, soft_wrap=True)
     if "problem" in summary:
         status = summary["status"].capitalize()
         console.print(

@@ -32,7 +32,7 @@ from tpss.report.render.interactive import render
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
-from tpss.results.explain import warnings
+from tpss.results.notes import notes
 from tpss.results.result import Result
 
 STATUS_IN_WORDS = {
@@ -190,17 +190,17 @@ def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
 
 def _notes(result: Result, voltage: LineVoltage | None, data: Mapping[str, Any]) -> list[str]:
     """What was limited in the run, and what the plots leave out."""
-    notes = [*warnings(result.summary), *result.standards.notes]
+    remarks = [*notes(result), *result.standards.notes]
     if result.dataset.sizes["time"] < 2:
-        return [*notes, "no time step was simulated, so there is nothing to draw"]
+        return [*remarks, "no time step was simulated, so there is nothing to draw"]
     if voltage is None:
-        return notes
+        return remarks
     if voltage.steps_a_column > 1:
-        notes.append(
+        remarks.append(
             f"a column of the time-distance graph shows the lowest voltage of {voltage.steps_a_column} "
             "time steps"
         )
-    return [*notes, *_about_samples(data, {"": result})]
+    return [*remarks, *_about_samples(data, {"": result})]
 
 
 def _about_samples(data: Mapping[str, Any], runs: Mapping[str, Result]) -> list[str]:
