@@ -143,7 +143,8 @@ LIMITS = "trains.freight.tractive_effort={{max_force_kn = {}, max_power_kw = {}}
     ("changes", "words"),
     [
         # N / 10 in place of kN: 10 000 / 100 = 100 m/s²; dry rails take 325 kN from 100 t.
-        (["trains.freight.mass_t=100", "trains.freight.adhesive_mass_t=100", "trains.freight.resistance_c_n_s2_per_m2=5",
+        (["trains.freight.mass_t=100", "trains.freight.adhesive_mass_t=100",
+          "trains.freight.resistance_c_n_s2_per_m2=5",
           "trains.freight.tractive_effort={speed_kmh = [0, 160], force_kn = [10000, 2200]}"],
          ["10000 kN would be 100.0 m/s² for 100 t", "31 times what 100 t", "(325 kN)"]),
         ([LIMITS.format(250, 200_000)], ["power of up to 200000 kW is 136 kW a tonne"]),
@@ -160,6 +161,26 @@ def test_what_no_train_has_is_noted(tpss_command, short_file, changes, words):
     assert said.out.count("Note: trains.freight: ") == 1
     for each in words:
         assert each in said.out, each
+
+
+@pytest.mark.parametrize(("max_speed_kmh", "line_kmh"), [(160, 200), (200, 160)])
+def test_a_table_that_ends_below_the_speed_of_its_train_is_noted(
+    tpss_command, short_file, max_speed_kmh, line_kmh
+):
+    """45 kN are 1.0 MW at 80 km/h, where the table ends, and 2.0 MW at 160 km/h."""
+    table = "trains.freight.tractive_effort={speed_kmh = [0, 40, 80], force_kn = [100, 80, 45]}"
+    changes = (
+        table, "trains.freight.power_factor=0.9", f"trains.freight.max_speed_kmh={max_speed_kmh}",
+        f"line.speed_limits=[{{from_km = 0, speed_kmh = {line_kmh}}}]",
+    )  # fmt: skip
+    said = check(tpss_command, short_file, *changes)
+    assert (
+        "Note: trains.freight: its table of tractive effort ends at 80 km/h, and the train runs up to "
+        f"160 km/h (max_speed_kmh = {max_speed_kmh}): beyond its end the force of 45 kN holds, so that "
+        "1000 kW grow to 2000 kW; extend the table" in said.out
+    )
+    slow = check(tpss_command, short_file, *changes[:-1], "line.speed_limits.0.speed_kmh=80")
+    assert "ends at" not in slow.out
 
 
 def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, short_file):

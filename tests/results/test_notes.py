@@ -65,6 +65,61 @@ def test_power_that_circulates_is_noted(angle_deg, told):
         assert f"took {power_mw.sum() * 0.05 / 60.0:.3f} MWh" in said[0]
 
 
+def with_table(**table) -> tpss.Result:
+    """A light train by a table on a short line of 160 km/h; the line idles at 16.5 kV."""
+    changes = {
+        "line.speed_limits.0.speed_kmh": 160.0,
+        "trains.freight": {
+            **HEAVY, "mass_t": 100.0, "adhesive_mass_t": 100.0, "tractive_effort": table,
+        },
+    }  # fmt: skip
+    return tpss.simulate(short_line(changes))
+
+
+def test_a_table_that_was_used_beyond_its_end_is_named_with_train_and_speeds():
+    result = with_table(speed_kmh=[0.0, 40.0, 80.0], force_kn=[100.0, 80.0, 45.0])
+    speed_kmh = result.dataset.speed.to_numpy()[:-1] * 3.6
+    beyond = (result.dataset.tractive_force.to_numpy()[:-1] > 0.0) & (speed_kmh > 80.0)
+    assert (
+        f"freight pulled above 80 km/h, up to {speed_kmh[beyond].max():.4g} km/h, in {beyond.sum()} "
+        "train-steps: its table of tractive effort ends there, and its outer values hold"
+    ) in notes(result)
+
+
+@pytest.mark.parametrize(("top_kv", "told"), [(14.0, True), (15.0, False)])
+def test_a_voltage_above_a_table_counts_only_if_the_table_ends_below_the_nominal_one(top_kv, told):
+    row = [100.0, 40.0]
+    result = with_table(
+        speed_kmh=[0.0, 160.0], voltage_kv=[10.0, top_kv], force_kn=[[0.8 * f for f in row], row]
+    )
+    assert result.summary["limited"]["effort_extrapolated"] > 0
+    said = [note for note in notes(result) if "pulled" in note]
+    assert len(said) == told
+    assert not told or said[0].startswith("freight pulled above 14 kV, up to 16.")
+
+
+def test_an_rc4_below_the_voltages_of_its_network_is_named_with_how_far():
+    """Behind 60 km of BT catenary with one station the voltage falls below 10.5 kV."""
+    changes = {
+        "line.length_km": 60.0, "line.stations.2.position_km": 60.0,
+        "line.speed_limits.0.speed_kmh": 100.0,
+        "supply.converter_stations": [
+            {"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 2}
+        ],
+        "traffic.0.headway_min": 10.0,
+    }  # fmt: skip
+    result = tpss.simulate(short_line(changes))
+    (note,) = [each for each in notes(result) if "pulled" in each]
+    lowest = (
+        result.dataset.pantograph_voltage.where(result.dataset.tractive_force > 0.0).min() / 1e3
+    )
+    assert note.startswith(f"freight pulled below 10.5 kV, down to {float(lowest):.4g} kV, in ")
+    count = result.summary["limited"]["effort_extrapolated"]
+    assert note.endswith(
+        f"in {count} train-steps: the tractive-effort network of the Rc4 was not trained there"
+    )
+
+
 def test_a_run_without_a_step_has_no_loads_to_note():
     result = tpss.simulate(short_line({"line.gradients": [{"from_km": 0.0, "permille": 30.0}]}))
     assert result.dataset.sizes["time"] == 1

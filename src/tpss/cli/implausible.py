@@ -77,7 +77,7 @@ def highest_force_kn(train: Train) -> float:
     effort = train.tractive_effort
     if isinstance(effort, EffortLimits):
         return effort.max_force_kn
-    return max(max(row) for row in _rows(effort)) if isinstance(effort, EffortTable) else 0.0
+    return max(max(row) for row in rows_of(effort)) if isinstance(effort, EffortTable) else 0.0
 
 
 def highest_power_kw(train: Train) -> float:
@@ -89,12 +89,12 @@ def highest_power_kw(train: Train) -> float:
         return 0.0
     return max(
         force_kn * speed_kmh / 3.6
-        for row in _rows(effort)
+        for row in rows_of(effort)
         for force_kn, speed_kmh in zip(row, effort.speed_kmh, strict=True)
     )
 
 
-def _rows(effort: EffortTable) -> list[tuple[float, ...]]:
+def rows_of(effort: EffortTable) -> list[tuple[float, ...]]:
     """The rows over speed of a table of forces."""
     level: list[Any] = [effort.force_kn]
     while isinstance(level[0][0], tuple):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from tpss import library
-from tpss.cli.implausible import implausible
+from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
@@ -79,6 +79,24 @@ def _trains(scenario: Scenario) -> Iterator[str]:
             )
         yield from _idle_current(name, train)
         yield from implausible(name, train)
+        yield from _early_end(name, train, scenario.line)
+
+
+def _early_end(name: str, train: Train, line: Line) -> Iterator[str]:
+    """A table of tractive effort that ends below the speeds at which its train runs."""
+    effort = train.tractive_effort
+    if not isinstance(effort, EffortTable):
+        return
+    last_kmh = effort.speed_kmh[-1]
+    fastest_kmh = min(train.max_speed_kmh, max(limit.speed_kmh for limit in line.speed_limits))
+    force_kn = max(row[-1] for row in rows_of(effort))
+    if fastest_kmh > last_kmh and force_kn > 0.0:
+        yield (
+            f"trains.{name}: its table of tractive effort ends at {last_kmh:g} km/h, and the train runs "
+            f"up to {fastest_kmh:g} km/h (max_speed_kmh = {train.max_speed_kmh:g}): beyond its end "
+            f"the force of {force_kn:g} kN holds, so that {force_kn * last_kmh / 3.6:.0f} kW grow to "
+            f"{force_kn * fastest_kmh / 3.6:.0f} kW; extend the table"
+        )
 
 
 def _idle_current(name: str, train: Train) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Explanations of a run: why it ended early, what would help, what was limited."""
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -151,10 +152,10 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
     return {"problem": problem, "advice": stall_advice(forces, demand, kind, described, model)}
 
 
-def warnings(summary: dict[str, Any]) -> list[str]:
-    """Sentences on what was limited or left its range."""
+def warnings(summary: dict[str, Any], but: Collection[str] = ()) -> list[str]:
+    """Sentences on what was limited or left its range, but for names that are told otherwise."""
     return [
         f"{_LIMITED[name]}, in {count} train-steps"
         for name, count in summary["limited"].items()
-        if count
+        if count and name not in but
     ]

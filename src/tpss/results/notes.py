@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tpss.results.explain import warnings
+from tpss.results.extrapolation import EFFORT, extrapolations
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.tables import J_PER_MWH, step_s
@@ -18,7 +19,12 @@ def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
     if result.dataset.sizes["time"] < 2:
         return warnings(result.summary)
-    return [*_overloads(result), *_circulation(result), *warnings(result.summary)]
+    return [
+        *_overloads(result),
+        *_circulation(result),
+        *extrapolations(result),
+        *warnings(result.summary, but=[EFFORT]),
+    ]
 
 
 def _overloads(result: Result) -> Iterator[str]:
