@@ -120,6 +120,37 @@ def test_an_rc4_below_the_voltages_of_its_network_is_named_with_how_far():
     )
 
 
+def test_departures_dwells_and_arrivals_at_feeding_points_are_not_noted():
+    """Trains stand at West, at Middle with its transformer for two minutes, and at East."""
+    changes = {
+        "supply.high_voltage_line": {"type": "132kV", "transformers_km": [10.0]},
+        "traffic.0.stops": [{"station": "Middle", "dwell_min": 2.0}],
+    }
+    result = tpss.simulate(short_line(changes))
+    assert result.summary["limited"]["short_piece"] > 40
+    assert not any("closer" in note for note in notes(result))
+
+
+def test_a_train_that_stands_at_a_feeding_point_between_stations_is_noted():
+    """It creeps at 1 km/h from 0.2 m before a transformer: 1.2 m at 0.28 m/s and less are some steps."""
+    result = tpss.simulate(
+        short_line(
+            {
+                "simulation.time_step_min": 0.01,
+                "simulation.duration_min": 1.0,
+                "line.speed_limits.0.speed_kmh": 1.0,
+                "supply.high_voltage_line": {"type": "132kV", "transformers_km": [5.0]},
+                "traffic.0.already_running": False,
+                "traffic.0.first_departure_min": 50.0,
+                "traffic.0.initial_trains": [{"position_km": 4.9998, "speed_kmh": 0.0}],
+            }
+        )
+    )
+    near = (result.dataset.position.to_numpy()[:-1, 0] - 5000.0) < 1.0
+    (note,) = [each for each in notes(result) if "closer" in each]
+    assert f"feeding point at 5.00 km and counted as 1 m away, in {near.sum()} train-steps" in note
+
+
 def test_a_run_without_a_step_has_no_loads_to_note():
     result = tpss.simulate(short_line({"line.gradients": [{"from_km": 0.0, "permille": 30.0}]}))
     assert result.dataset.sizes["time"] == 1

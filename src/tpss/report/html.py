@@ -16,7 +16,7 @@ import tomli_w
 from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
-from tpss.audit.verdict import usual_limits
+from tpss.audit.verdict import JUDGED, usual_limits
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.model.supply import system_of
@@ -252,7 +252,8 @@ def _page(
         tables=tables,
         key_figures=key_figures,
         notes=notes,
-        limits=usual_limits(system_of(first.scenario.supply).base_power_va),
+        limits={label: _limits(result) for label, result in results.items()},
+        judged=JUDGED,
         validity=limits_of_validity(results.values()),
         violations=_violations(results),
         scenarios={key: tomli_w.dumps(run.scenario.as_document()) for key, run in results.items()},
@@ -261,6 +262,13 @@ def _page(
         plotly=get_plotlyjs() if figures else "",
         report_data=_for_script(figures, data),
     )
+
+
+def _limits(result: Result) -> dict[str, float]:
+    """Limits of a run's audit; the usual ones of a result that was saved without them."""
+    usual = usual_limits(system_of(result.scenario.supply).base_power_va)
+    limits: dict[str, float] = result.audit.get("limits", usual)
+    return limits
 
 
 def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:

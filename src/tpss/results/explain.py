@@ -35,7 +35,6 @@ _LIMITED = {
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
-    "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 
 
@@ -157,5 +156,5 @@ def warnings(summary: dict[str, Any], but: Collection[str] = ()) -> list[str]:
     return [
         f"{_LIMITED[name]}, in {count} train-steps"
         for name, count in summary["limited"].items()
-        if count and name not in but
+        if count and name in _LIMITED and name not in but
     ]

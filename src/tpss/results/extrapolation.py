@@ -12,6 +12,7 @@ from tpss.results.standards.windows import Floats, step_values
 from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import system_named
+from tpss.vehicle.effort.network import CURRENT, SPEED, VOLTAGE
 
 EFFORT = "effort_extrapolated"
 """What the recording counts of it."""
@@ -48,7 +49,14 @@ def _of_type(name: str, result: Result) -> Iterator[str]:
         "km/h": step_values(data, "speed")[:, own] * 3.6,
         "kV": step_values(data, "pantograph_voltage")[:, own] / 1e3,
     }
-    for span in _spans(scenario.trains[name], nominal_kv):
+    train = scenario.trains[name]
+    highest_a = library.networks()["tractive_effort"]["input_max"][CURRENT]
+    if train.tractive_effort == "Rc4" and (train.max_motor_current_a or 0.0) > highest_a:
+        yield (
+            f"{name} has a max_motor_current_a of {train.max_motor_current_a:g} A, beyond the "
+            f"{highest_a:g} A to which the tractive-effort network of the Rc4 was trained"
+        )
+    for span in _spans(train, nominal_kv):
         yield from _beyond(name, span, values[span.unit], pulls)
 
 
@@ -84,5 +92,5 @@ def _spans(train: Train, nominal_kv: float) -> Iterator[Span]:
     elif effort == "Rc4":
         network = library.networks()["tractive_effort"]
         ends = "the tractive-effort network of the Rc4 was not trained there"
-        for i, unit in enumerate(("km/h", "kV")):
+        for i, unit in ((SPEED, "km/h"), (VOLTAGE, "kV")):
             yield Span(unit, network["input_min"][i], network["input_max"][i], ends, False)

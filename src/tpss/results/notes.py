@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
 from tpss.results.result import Result
@@ -14,6 +15,12 @@ MOST_CIRCULATING = 0.1
 """Energy that stations may receive from others without a note, as a share of what trains and losses
 take. [1]"""
 
+CLOSE_M = SHORTEST_PIECE_M
+"""Distance below which the load flow sets a train apart. [m]"""
+
+FEW = 3
+"""Train-steps that closeness may take without a note, as of a train that passes."""
+
 
 def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
@@ -23,6 +30,7 @@ def notes(result: Result) -> list[str]:
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),
+        *_closeness(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
 
@@ -61,6 +69,46 @@ def _circulation(result: Result) -> Iterator[str]:
         f"{circulating_mwh:.3f} MWh went from station to station, where trains and losses took "
         f"{taken_mwh:.3f} MWh; look at the stations' no_load_voltage_kv and angles"
     )
+
+
+def _closeness(result: Result) -> Iterator[str]:
+    """Trains that stood on each other, or at a node that is no station, which the load flow parts.
+
+    A train that departs, dwells or arrives at a feeding point is no more than its station demands.
+    """
+    if result.summary["limited"]["short_piece"] <= FEW:
+        return
+    data, names = result.dataset, result.dataset.train.to_numpy()
+    there = np.isfinite(step_values(data, "pantograph_voltage"))
+    place_m = np.where(there, step_values(data, "position"), np.inf)
+    order = np.argsort(place_m, axis=1)
+    with np.errstate(invalid="ignore"):  # between trains that are not there
+        step, pair = np.nonzero(
+            np.diff(np.take_along_axis(place_m, order, axis=1), axis=1) < CLOSE_M
+        )
+    if len(step) > FEW:
+        first, second = (names[order[step[0], pair[0] + i]] for i in (0, 1))
+        yield (
+            f"trains stood closer than {CLOSE_M:g} m to each other and counted as {CLOSE_M:g} m apart, "
+            f"in {len(step)} train-steps, first {first} and {second} at "
+            f"{step[0] * step_s(data) / 60.0:.2f} min"
+        )
+    for node_m in _nodes_between_stations(result):
+        step, train = np.nonzero(np.abs(place_m - node_m) < CLOSE_M)
+        if len(step) > FEW:
+            yield (
+                f"a train stood closer than {CLOSE_M:g} m to the feeding point at "
+                f"{node_m / 1e3:.2f} km and counted as {CLOSE_M:g} m away, in {len(step)} "
+                f"train-steps, first {names[train[0]]} at {step[0] * step_s(data) / 60.0:.2f} min"
+            )
+
+
+def _nodes_between_stations(result: Result) -> Floats:
+    """Positions of nodes where no train is to stop. [m]"""
+    nodes_m = np.unique(result.dataset.node_position.to_numpy())
+    stations_m = np.array([1e3 * each.position_km for each in result.scenario.line.stations])
+    apart = np.abs(nodes_m[:, None] - stations_m) >= CLOSE_M
+    return np.asarray(nodes_m[apart.all(axis=1)])
 
 
 def _station_powers_mw(result: Result) -> tuple[Floats, Floats]:
