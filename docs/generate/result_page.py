@@ -120,7 +120,10 @@ AUDIT = """## Audit
 
 Every run audits itself: from the recorded voltages it forms the currents and powers once more, in a
 different way from the solver, and it checks energy balances, forces and motion. A figure beyond its
-limit makes `tpss run` end with exit code 4. With `power_sampling = "start"` the traction balance
+limit makes `tpss run` end with exit code 4. The limits of a run stand in `limits`, and those below
+are the usual ones: over impedances of some microohms, such as between feeding points a few metres
+apart, rounding alone is a visible mismatch, and the limits of power mismatch, converters and network
+balance grow with it. With `power_sampling = "start"` the traction balance
 does not close; it is reported but not judged."""
 
 

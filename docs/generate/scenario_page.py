@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 
 from tpss import library
 from tpss.scenario import Scenario
+from tpss.scenario.absences import ABSENCES
 from tpss.scenario.fields import fields_of
 from tpss.units import label
 
@@ -22,11 +23,16 @@ INTRODUCTION = """# Scenario file
 
 A scenario is a file in [TOML](https://toml.io). Numbers carry their unit in the key's name; where a
 number is asked for, a whole one will do. Unknown keys are refused, with the nearest known one as a
-proposal, and all faults of a file are reported at once. Paths are relative to the file.
+proposal if one is near, or with what is [not modelled](#not-modelled), and all faults of a file are
+reported at once. Paths are relative to the file.
 
 `--set` of `tpss run` and `Scenario.with_` reach a single value by its path,
 `simulation.time_step_min` or `traffic.0.headway_min`. A key without a default may be left out
 unless it is marked as required."""
+
+NOT_MODELLED = (
+    "Keys that ask for one of these are told so; what has no other way is to be left out."
+)
 
 GIVEN = {"model": ("locomotives", "the model's"), "system": ("voltage_limits", "the system's")}
 """Keys that name an entry of the library, its kind, and whose values the others then have."""
@@ -64,7 +70,16 @@ def page() -> str:
         blocks += [f"## `{head}`", prose(inspect.getdoc(part) or "")]
         blocks += [f"Likewise `{other}`." for other in others]
         blocks.append(_keys(part))
+    blocks += ["## Not modelled", NOT_MODELLED, table(("not modelled", "instead"), _absences())]
     return "\n\n".join(blocks)
+
+
+def _absences() -> list[tuple[str, str]]:
+    return [(_sentence(each.words), _sentence(each.instead)) for each in ABSENCES]
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
 
 
 def _heads(part: Part, path: str = "") -> dict[Part, list[str]]:

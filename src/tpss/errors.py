@@ -28,9 +28,18 @@ def suggest(word: str, known: Iterable[str]) -> str:
     return f"did you mean {close}? {choices}" if (close := closest(word, names)) else choices
 
 
+NEAR = 0.7
+"""Least similarity of a word that is proposed, from 0 to 1; of ``to_km`` and ``from_km`` it is 0.67."""
+
+LEAST_BEGINNING = 3
+"""Letters by which the beginning of a word stands for the whole."""
+
+
 def closest(word: str, known: Sequence[str]) -> str:
-    """The known word that is most similar to another; empty if none is similar."""
-    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.5)), "")
+    """The known word that is most similar to another, or begins with it; empty if none does."""
+    near = difflib.get_close_matches(word, known, n=1, cutoff=NEAR)
+    longer = [each for each in known if len(word) >= LEAST_BEGINNING and each.startswith(word)]
+    return next(iter([*near, *sorted(longer, key=len)]), "")
 
 
 def shortened(text: str) -> str:

@@ -105,6 +105,10 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
     [
         (["trains.freight.max_speed_kmh=90"],
          "trains.freight: its max_speed_kmh of 90 is below every speed limit of the line"),
+        (["trains.freight.tractive_effort={max_force_kn = 280, max_power_kw = 4000}",
+          "trains.freight.power_factor=0.9", "trains.freight.max_motor_current_a=2000"],
+         "trains.freight: max_motor_current_a does nothing for a machine that is described by force "
+         "and power"),
         (["trains.other={model = 'Rc4-freight-1470t'}"],
          "trains.other is used by no traffic entry"),
         (["supply.converter_stations.0.converters=1"],
@@ -130,6 +134,53 @@ def test_what_may_not_be_meant_is_noted(tpss_command, changes, note):
     assert said.code == 0
     assert said.out.count("Note:") == 1
     assert f"Note: {note}" in said.out
+
+
+LIMITS = "trains.freight.tractive_effort={{max_force_kn = {}, max_power_kw = {}}}"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        # N / 10 in place of kN: 10 000 / 100 = 100 m/s²; dry rails take 325 kN from 100 t.
+        (["trains.freight.mass_t=100", "trains.freight.adhesive_mass_t=100",
+          "trains.freight.resistance_c_n_s2_per_m2=5",
+          "trains.freight.tractive_effort={speed_kmh = [0, 160], force_kn = [10000, 2200]}"],
+         ["10000 kN would be 100.0 m/s² for 100 t", "31 times what 100 t", "(325 kN)"]),
+        ([LIMITS.format(250, 200_000)], ["power of up to 200000 kW is 136 kW a tonne"]),
+        ([LIMITS.format(250, 100)], ["auxiliaries draw 151.5 kW, more than the 100 kW of its motors"]),
+        # C as if for km/h, 49.2 · 3.6²: 15.4 + 0.279 · 37.5 + 0.6376 · 37.5² = 922 kN of 14 421 kN.
+        (["trains.freight.resistance_c_n_s2_per_m2=637.6"],
+         ["running resistance at 135 km/h is 922 kN, 6 % of its weight", "in N and m/s"]),
+        (["trains.freight.mass_t=14700"], ["a whole train of 14700 t is unusual"]),
+    ],
+)  # fmt: skip
+def test_what_no_train_has_is_noted(tpss_command, short_file, changes, words):
+    said = check(tpss_command, short_file, "trains.freight.power_factor=0.9", *changes)
+    assert said.code == 0
+    assert said.out.count("Note: trains.freight: ") == 1
+    for each in words:
+        assert each in said.out, each
+
+
+@pytest.mark.parametrize(("max_speed_kmh", "line_kmh"), [(160, 200), (200, 160)])
+def test_a_table_that_ends_below_the_speed_of_its_train_is_noted(
+    tpss_command, short_file, max_speed_kmh, line_kmh
+):
+    """45 kN are 1.0 MW at 80 km/h, where the table ends, and 2.0 MW at 160 km/h."""
+    table = "trains.freight.tractive_effort={speed_kmh = [0, 40, 80], force_kn = [100, 80, 45]}"
+    changes = (
+        table, "trains.freight.power_factor=0.9", f"trains.freight.max_speed_kmh={max_speed_kmh}",
+        f"line.speed_limits=[{{from_km = 0, speed_kmh = {line_kmh}}}]",
+    )  # fmt: skip
+    said = check(tpss_command, short_file, *changes)
+    assert (
+        "Note: trains.freight: its table of tractive effort ends at 80 km/h, and the train runs up to "
+        f"160 km/h (max_speed_kmh = {max_speed_kmh}): beyond its end the force of 45 kN holds, so that "
+        "1000 kW grow to 2000 kW; extend the table" in said.out
+    )
+    slow = check(tpss_command, short_file, *changes[:-1], "line.speed_limits.0.speed_kmh=80")
+    assert "ends at" not in slow.out
 
 
 def test_a_profile_that_does_not_fit_the_line_is_noted(tpss_command, tmp_path, short_file):

@@ -385,6 +385,32 @@ def test_a_quiet_run_tells_by_its_exit_code_that_it_failed(tpss_command, tmp_pat
     assert len(folders_in(tmp_path / "results")) == 1
 
 
+def test_the_audit_shows_the_limits_that_held(tpss_command, tmp_path):
+    """Transformers a metre apart: over 0.2 mΩ roundings are visible, and the limits follow them."""
+    high_voltage = "supply.high_voltage_line={type = '132kV', transformers_km = [%s]}"
+    limits = {}
+    for places in ("40.0, 80.0", "5.0, 5.001, 5.002"):
+        said = tpss_command(
+            "run", HEADWAY, *SHORT, "--set", high_voltage % places, "--out", "r", "--force"
+        )
+        audit = json.loads((tmp_path / "r/summary.json").read_text("utf-8"))["audit"]
+        limits[places] = audit["limits"]
+        shown = re.search(r"power mismatch (\S+) VA \(limit (\S+)\)", said.out)
+        assert float(shown[1]) == pytest.approx(audit["power_mismatch_va"], rel=0.05)
+        assert float(shown[2]) == pytest.approx(audit["limits"]["power_mismatch_va"], rel=0.05)
+        assert audit["power_mismatch_va"] <= audit["limits"]["power_mismatch_va"]
+        assert "converters " in said.out
+    usual, grown = limits.values()
+    assert usual["power_mismatch_va"] == pytest.approx(0.01, rel=0.1)
+    assert grown["power_mismatch_va"] > 1.5 * usual["power_mismatch_va"]
+    assert grown["converter_residual"] >= usual["converter_residual"]
+
+
+def test_what_is_not_judged_is_said_to_be_so(tpss_command):
+    said = tpss_command("run", HEADWAY, *SHORT, "--set", "simulation.power_sampling=start")
+    assert re.search(r"traction \S+ \(not judged\)", said.out)
+
+
 def fail_the_audit(monkeypatch: pytest.MonkeyPatch, figure: str) -> None:
     usual = verdict.usual_limits
     monkeypatch.setattr(verdict, "usual_limits", lambda base: {**usual(base), figure: -1.0})

@@ -416,6 +416,17 @@ def test_a_fault_names_file_key_value_and_remedy(folder, document, changes, key,
 
 
 @pytest.mark.parametrize(
+    ("document", "name"), [(TRACK, "gradients"), (TRACK, "speed limits"), (TRAIN, "max speed")]
+)
+def test_a_null_in_place_of_a_quantity_is_one_finding(folder, document, name):
+    path = write(folder / "bad.json", {**document, name: None})
+    with pytest.raises(tpss.ScenarioError) as caught:
+        read([path])
+    (finding,) = caught.value.findings
+    assert (finding.key, finding.problem) == (name, "it is missing")
+
+
+@pytest.mark.parametrize(
     ("text", "place", "value", "problem"),
     [
         ('{"stops": {\n "unit": }}', "line 2", '"unit": }}', "not JSON"),

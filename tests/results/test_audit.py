@@ -323,6 +323,13 @@ def test_limits_follow_the_rounding_over_impedances_of_microohms():
 
 def test_the_figures_are_plain_values_by_name(arrival):
     figures = arrival.audit().as_dict()
-    assert {*JUDGED, "lowest_voltage_v", "highest_voltage_v", "failures", "passed"} == set(figures)
+    assert {
+        *JUDGED,
+        "lowest_voltage_v",
+        "highest_voltage_v",
+        "failures",
+        "limits",
+        "passed",
+    } == set(figures)
     assert figures["passed"] is True
     assert figures["failures"] == []

@@ -12,6 +12,7 @@ from faults import (
     FILE,
     FREIGHT,
     HV,
+    INLINE,
     NOT_RUNNING,
     WEST,
     faults_of,
@@ -251,3 +252,64 @@ def test_a_wrong_unit_also_leaves_the_right_key_missing():
     findings = faults_of({"line.length_km": None, "line.length_m": 160_000.0})
     assert "did you mean length_km?" in finding_at("line.length_m", findings).remedy
     assert finding_at("line.length_km", findings).remedy == "add it"
+
+
+ABSENT = [
+    pytest.param({f"{FREIGHT}.regenerative_braking": True}, f"{FREIGHT}.regenerative_braking",
+                 "trains do not feed power back", "leave it out", id="regeneration"),
+    pytest.param({"line.neutral_sections": [{"from_km": 4.0, "to_km": 4.1}]}, "line.neutral_sections",
+                 "neutral sections", "leave it out", id="neutral sections"),
+    pytest.param({"line.speed_limits": [{"from_km": 0.0, "to_km": 5.0, "speed_kmh": 80.0}]},
+                 "line.speed_limits.0.to_km", "an end of a speed limit",
+                 "holds until the next one begins; where limits overlap, give the lowest",
+                 id="end of a limit"),
+    pytest.param({INLINE: None, "line.gradients": [{"from_km": 0.0, "permille": 5.0, "to_km": 3.0}]},
+                 "line.gradients.0.to_km", "an end of a gradient", "add an entry with 0",
+                 id="end of a gradient"),
+    pytest.param({"line.tracks": 2}, "line.tracks", "there is one, on which trains do not see each",
+                 "leave it out", id="tracks"),
+    pytest.param({f"{ENTRY}.timetable": []}, f"{ENTRY}.timetable", "scheduled times of arrival",
+                 "give departures_min", id="timetable"),
+    pytest.param({f"{ENTRY}.direction": "down"}, f"{ENTRY}.direction", "all trains run towards growing",
+                 "mirror the line", id="direction"),
+    pytest.param({"line.tunnels": []}, "line.tunnels", "tunnels", "leave it out", id="tunnels"),
+    pytest.param({"line.curves": []}, "line.curves", "curves of the line", "leave it out", id="curves"),
+    pytest.param({"line.elevation_m": []}, "line.elevation_m", "altitudes", "give gradients",
+                 id="altitudes"),
+    pytest.param({"traffic_signals": True}, "traffic_signals", "signals", "leave it out", id="signals"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "key", "words", "remedy"), ABSENT)
+def test_what_is_known_to_be_absent_is_said_as_such_without_a_proposal(changes, key, words, remedy):
+    finding = finding_at(key, faults_of(changes))
+    assert finding.problem.startswith("unknown key; not modelled: ")
+    assert words in finding.problem
+    assert remedy in finding.remedy
+    assert "did you mean" not in finding.remedy
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({f"{FREIGHT}.reach": 1}, f"{FREIGHT}.reach"),
+        ({"line.branches": []}, "line.branches"),
+        ({"line.trucks": 1}, "line.trucks"),
+        ({f"{ENTRY}.to_km": 5.0}, f"{ENTRY}.to_km"),
+    ],
+)
+def test_nothing_far_fetched_is_proposed(changes, key):
+    finding = finding_at(key, faults_of(changes))
+    assert finding.problem == "unknown key"
+    assert finding.remedy.startswith("choose from ")
+
+
+def test_a_beginning_of_a_key_is_near_enough():
+    finding = finding_at("supply.freq", faults_of({"supply.freq": 16.7}))
+    assert "did you mean frequency_hz?" in finding.remedy
+
+
+def test_a_misspelt_key_is_proposed_though_it_resembles_something_absent():
+    changes = {"simulation.adhesion_speed_unt": "m/s"}
+    finding = finding_at("simulation.adhesion_speed_unt", faults_of(changes))
+    assert "did you mean adhesion_speed_unit?" in finding.remedy

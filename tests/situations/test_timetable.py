@@ -13,6 +13,7 @@ import pytest
 
 from tpss.model import build_model
 from tpss.model.traffic import build_services
+from tpss.results.notes import notes
 from tpss.run.run import Run
 from tpss.run.services import ScheduledTrain, departing_trains
 from tpss.step.model import RunControl
@@ -82,6 +83,9 @@ def test_trains_that_depart_together_run_side_by_side():
     volts = result.dataset.pantograph_voltage.to_numpy()[:-1]
     assert np.ptp(volts, axis=1).max() < 0.5
     assert result.summary["limited"]["short_piece"] == 2 * 100 + 1  # and the station at the start
+    (note,) = [each for each in notes(result) if "closer" in each]
+    assert note.startswith("trains stood closer than 1 m to each other and counted as 1 m apart")
+    assert "in 200 train-steps, first a 1 and b 1 at 0.00 min" in note
 
 
 def test_a_fast_train_overtakes_a_slow_one():

@@ -62,6 +62,8 @@ class Audit:
         Range of all voltages at pantographs and contact-line nodes, if there are any. [V]
     failures : tuple of str
         Figures beyond their limits, in words; empty for a sound run.
+    limits : dict of str to float
+        Limits of this run by the names of the figures; one that is missing is not judged.
     """
 
     power_mismatch_va: float
@@ -74,6 +76,7 @@ class Audit:
     lowest_voltage_v: float | None
     highest_voltage_v: float | None
     failures: tuple[str, ...]
+    limits: dict[str, float]
 
     @property
     def passed(self) -> bool:
@@ -82,7 +85,12 @@ class Audit:
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name."""
-        return {**vars(self), "failures": list(self.failures), "passed": self.passed}
+        return {
+            **vars(self),
+            "failures": list(self.failures),
+            "limits": dict(self.limits),
+            "passed": self.passed,
+        }
 
 
 def judge(
@@ -94,7 +102,13 @@ def judge(
 ) -> Audit:
     """An audit from its figures, the range of voltages if there are any, and the limits."""
     failures = (*_beyond_limits(figures, limits), *_out_of_range(lowest, highest, system))
-    return Audit(**figures, lowest_voltage_v=lowest, highest_voltage_v=highest, failures=failures)
+    return Audit(
+        **figures,
+        lowest_voltage_v=lowest,
+        highest_voltage_v=highest,
+        failures=failures,
+        limits=limits,
+    )
 
 
 def limits_of(model: Model) -> dict[str, float]:

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Iterator
 
+from tpss import library
+from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.line import DECIMALS, Line
+from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.traffic import Traffic
 from tpss.units import kilometres, si
@@ -110,6 +113,42 @@ def _trains(scenario: Scenario) -> Iterator[str]:
                 f"trains.{name}: its max_speed_kmh of {train.max_speed_kmh:g} is below every speed "
                 f"limit of the line (the lowest is {slowest:g} km/h)"
             )
+        yield from _idle_current(name, train)
+        yield from implausible(name, train)
+        yield from _early_end(name, train, scenario.line)
+
+
+def _early_end(name: str, train: Train, line: Line) -> Iterator[str]:
+    """A table of tractive effort that ends below the speeds at which its train runs."""
+    effort = train.tractive_effort
+    if not isinstance(effort, EffortTable):
+        return
+    last_kmh = effort.speed_kmh[-1]
+    fastest_kmh = min(train.max_speed_kmh, max(limit.speed_kmh for limit in line.speed_limits))
+    force_kn = max(row[-1] for row in rows_of(effort))
+    if fastest_kmh > last_kmh and force_kn > 0.0:
+        yield (
+            f"trains.{name}: its table of tractive effort ends at {last_kmh:g} km/h, and the train runs "
+            f"up to {fastest_kmh:g} km/h (max_speed_kmh = {train.max_speed_kmh:g}): beyond its end "
+            f"the force of {force_kn:g} kN holds, so that {force_kn * last_kmh / 3.6:.0f} kW grow to "
+            f"{force_kn * fastest_kmh / 3.6:.0f} kW; extend the table"
+        )
+
+
+def _idle_current(name: str, train: Train) -> Iterator[str]:
+    """A current limit of the motors that the description of the machine does not ask for."""
+    effort, current_a = train.tractive_effort, train.max_motor_current_a
+    usual = library.entries("locomotives").get(train.model or "", {}).get("max_motor_current_a")
+    if current_a is None or current_a == usual or effort == "Rc4":
+        return
+    if isinstance(effort, EffortTable) and effort.motor_current_a is not None:
+        return
+    kind = (
+        "a table without motor_current_a" if isinstance(effort, EffortTable) else "force and power"
+    )
+    yield (
+        f"trains.{name}: max_motor_current_a does nothing for a machine that is described by {kind}"
+    )
 
 
 def _times(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:

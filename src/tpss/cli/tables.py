@@ -13,7 +13,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.terminal import say
-from tpss.results.explain import warnings
+from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.results.tables import train_steps
 from tpss.step.recorded import RECORDED
@@ -32,8 +32,8 @@ def print_result(result: Result, console: Console) -> None:
     for line in key_figures(result):
         say(console, line)
     print_violations(result, console)
-    for line in warnings(summary):
-        console.print(f"[yellow]Note:[/yellow] {line}", highlight=False, soft_wrap=True)
+    for line in notes(result):
+        console.print(f"[yellow]Note:[/yellow] {escape(line)}", highlight=False, soft_wrap=True)
     if "problem" in summary:
         status = summary["status"].capitalize()
         console.print(
@@ -143,14 +143,30 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
-    audit = summary["audit"]
-    lines.append(
-        f"Audit {'passed' if audit['passed'] else 'FAILED'}: power mismatch "
-        f"{audit['power_mismatch_va']:.1e} VA, converters {audit['converter_residual']:.1e}, "
-        f"energy balance {audit['network_balance']:.1e}, traction {audit['traction_balance']:.1e}"
-    )
+    lines.append(_audit(summary["audit"]))
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
     return lines
+
+
+_AUDITED = {
+    "power mismatch": ("power_mismatch_va", " VA"),
+    "converters": ("converter_residual", ""),
+    "energy balance": ("network_balance", ""),
+    "traction": ("traction_balance", ""),
+}
+"""Figures of the audit that are printed: their names, and with which unit."""
+
+
+def _audit(audit: Mapping[str, Any]) -> str:
+    """Verdict of the audit, and its most important figures with the limits that held."""
+    limits = audit.get("limits")  # of results saved before, they are not known
+    texts = []
+    for words, (name, unit) in _AUDITED.items():
+        text = f"{words} {audit[name]:.1e}{unit}"
+        if limits is not None:
+            text += f" (limit {limits[name]:.1e})" if name in limits else " (not judged)"
+        texts.append(text)
+    return f"Audit {'passed' if audit['passed'] else 'FAILED'}: {', '.join(texts)}"
 
 
 def print_violations(result: Result, console: Console) -> None:

@@ -125,6 +125,10 @@ class Quantities:
                 remedy = "put the rows in ascending order"
                 self.findings.append(Finding(str(self.path), key, self.given[key], problem, remedy))
 
+    def _has_entry(self, key: str) -> bool:
+        """Whether the quantity of a key is there; if not, that alone is its fault."""
+        return isinstance(self.document.get(key.split(".")[0]), dict)
+
     def _entry(self, name: str) -> dict[str, Any]:
         entry = self.document.get(name)
         if isinstance(entry, dict):
@@ -145,7 +149,7 @@ class Quantities:
         """A unit, and what one of it is; NaN, with a finding, if it is at fault."""
         if isinstance(unit, str) and unit in units:
             return unit, units[unit]
-        if key.split(".")[0] in self:
+        if self._has_entry(key):
             problem = "it is missing" if unit is None else "not a unit that is known here"
             self.blame(key, unit, problem, f"convert the values to one of {', '.join(units)}")
         return "", math.nan
@@ -154,7 +158,7 @@ class Quantities:
         unit, factor = scale
         self.given[key] = f"{value!r} {unit}".removesuffix(" -")
         if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
-            if key.split(".")[0] in self:
+            if self._has_entry(key):
                 self.blame(key, value, "not a number", "write a number, without quotes")
             return math.nan
         if not math.isfinite(value):

@@ -16,7 +16,7 @@ import tomli_w
 from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
-from tpss.audit.verdict import usual_limits
+from tpss.audit.verdict import JUDGED, usual_limits
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.model.supply import system_of
@@ -32,7 +32,7 @@ from tpss.report.render.interactive import render
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
-from tpss.results.explain import warnings
+from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.units import kilometres
 
@@ -191,17 +191,17 @@ def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
 
 def _notes(result: Result, voltage: LineVoltage | None, data: Mapping[str, Any]) -> list[str]:
     """What was limited in the run, and what the plots leave out."""
-    notes = [*warnings(result.summary), *result.standards.notes]
+    remarks = [*notes(result), *result.standards.notes]
     if result.dataset.sizes["time"] < 2:
-        return [*notes, "no time step was simulated, so there is nothing to draw"]
+        return [*remarks, "no time step was simulated, so there is nothing to draw"]
     if voltage is None:
-        return notes
+        return remarks
     if voltage.steps_a_column > 1:
-        notes.append(
+        remarks.append(
             f"a column of the time-distance graph shows the lowest voltage of {voltage.steps_a_column} "
             "time steps"
         )
-    return [*notes, *_about_samples(data, {"": result})]
+    return [*remarks, *_about_samples(data, {"": result})]
 
 
 def _about_samples(data: Mapping[str, Any], runs: Mapping[str, Result]) -> list[str]:
@@ -254,7 +254,8 @@ def _page(
         tables=tables,
         key_figures=key_figures,
         notes=notes,
-        limits=usual_limits(system_of(first.scenario.supply).base_power_va),
+        limits={label: _limits(result) for label, result in results.items()},
+        judged=JUDGED,
         validity=limits_of_validity(results.values()),
         violations=_violations(results),
         scenarios={key: tomli_w.dumps(run.scenario.as_document()) for key, run in results.items()},
@@ -263,6 +264,13 @@ def _page(
         plotly=get_plotlyjs() if figures else "",
         report_data=_for_script(figures, data),
     )
+
+
+def _limits(result: Result) -> dict[str, float]:
+    """Limits of a run's audit; the usual ones of a result that was saved without them."""
+    usual = usual_limits(system_of(result.scenario.supply).base_power_va)
+    limits: dict[str, float] = result.audit.get("limits", usual)
+    return limits
 
 
 def _troubles(results: Mapping[str, Result]) -> list[dict[str, Any]]:

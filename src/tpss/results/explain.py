@@ -1,35 +1,28 @@
 """Explanations of a run: why it ended early, what would help, what was limited."""
 
+import math
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 
-from tpss.kernel import plain
-from tpss.physics.locomotive import machine_force
-from tpss.run.run import INTERRUPTED, Outcome, on_line
-from tpss.step.model import Model
-from tpss.vehicle.terms import Demand
-from tpss.vehicle.train_type import TrainType
+from tpss.results.advice import STRENGTHEN, forces_on, stall_advice, what_binds
+from tpss.run.run import INTERRUPTED, Outcome, Run, on_line
+from tpss.scenario.scenario import Scenario
+from tpss.step.model import Model, RunControl
+from tpss.step.state import Status
 
 ALMOST = 0.99
 """Share of the highest plausible voltage above which the voltages count as too high."""
 
-_STRENGTHEN = (
-    "Strengthen the supply (an AT catenary, a high-voltage line, more transformers or feeding "
-    "stations), or reduce the traffic (longer headway, lower speed or current limit)."
-)
 _FEED_LESS = (
     "Reduce the reactive power that is fed into the line by the trains' filters (a "
     "filter_reactance_ohm further from zero) or by the catenary's capacitance."
 )
 
-_HELP_THE_TRAIN = (
-    "Lower the train's mass, raise its current limit (max_motor_current_a) or adhesive mass, "
-    "run on dry rails, or strengthen the supply if the voltage is low; with long time steps, "
-    "try a shorter one."
-)
-_LIMIT_LESS = (
-    "Relax the train's current_limitation (higher max_current_a, lower umin2_kv or knee_factor)."
+_UNLOADED = (
+    "Less traffic does not help. Feed the line near its open end, shorten it there, or lower what "
+    "raises the voltage: the catenary's capacitance_nf_per_km, or no_load_voltage_kv of the stations."
 )
 
 _LIMITED = {
@@ -42,17 +35,16 @@ _LIMITED = {
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
-    "short_piece": "a train stood closer than 1 m to another or to a node and counted as 1 m away",
 }
 
 
-def explain(outcome: Outcome, model: Model) -> dict[str, str]:
+def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str]:
     """Problem and advice of a run that did not finish; empty for one that did."""
     time_min = outcome.steps * model.options.step_s / 60.0
     if outcome.status == "collapsed":
         return _collapse(outcome, model, time_min)
     if outcome.status == "stalled":
-        return _stall(outcome, model, time_min)
+        return _stall(outcome, model, scenario, time_min)
     if outcome.status == INTERRUPTED:
         problem = f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
         return {"problem": problem, "advice": "Run it again to the end."}
@@ -66,6 +58,8 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
     drawing = state.trains["demand"][places["train"]]
     active_mw = drawing["active_power_w"].sum() / 1e6
     reactive_mvar = drawing["reactive_power_var"].sum() / 1e6
+    if share <= 0.0 and (unloaded := _collapse_without_load(model, time_min)):
+        return unloaded
     system = model.network.system
     lowest_kv, highest_kv = system.lowest_voltage_v / 1e3, system.highest_voltage_v / 1e3
     problem = (
@@ -74,7 +68,7 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
         f"load flow has no stable solution with all voltages between {lowest_kv:.2f} and "
         f"{highest_kv:.2f} kV."
     )
-    advice = _STRENGTHEN
+    advice = STRENGTHEN
     if len(places) and share > 0.0:
         voltage_kv = np.abs(places["voltage_v"]) / 1e3
         too_high = voltage_kv.max() > ALMOST * highest_kv
@@ -89,48 +83,78 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
     return {"problem": problem, "advice": advice}
 
 
-def _stall(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
+def _collapse_without_load(model: Model, time_min: float) -> dict[str, str] | None:
+    """What to say of a line whose voltage leaves the band without any train; None of another."""
+    system = model.network.system
+    if _voltage_without_load(model, system.highest_voltage_v) is not None:
+        return None
+    highest_kv = system.highest_voltage_v / 1e3
+    problem = (
+        f"At {time_min:.2f} min the line has no solution with all voltages below {highest_kv:.2f} kV, "
+        "not even without trains"
+    )
+    found = _voltage_without_load(model, math.inf)
+    if found is not None:
+        voltage_v, position_m = found
+        problem += f": it would have {voltage_v / 1e3:.2f} kV at {position_m / 1e3:.2f} km"
+    if model.network.sections["susceptance_s_per_m"].max() > 0.0:
+        problem += ". The charging current of its catenary raises the voltage"
+    return {"problem": f"{problem}.", "advice": _UNLOADED}
+
+
+def _voltage_without_load(model: Model, highest_v: float) -> tuple[float, float] | None:
+    """Highest voltage of the contact line's nodes without trains [V], and where that is [m].
+
+    None if the load flow has no solution with all voltages below a highest one.
+    """
+    system = model.network.system._replace(highest_voltage_v=highest_v)
+    network = model.network._replace(system=system)
+    run = Run(model._replace(network=network, control=RunControl()), [], 1)
+    run.advance_to(1)
+    if run.status != Status.RUNNING:
+        return None
+    sections, rows = network.sections, np.asarray(run.recording.nodes)[0]
+    ends = np.concatenate([sections["start_node"], sections["end_node"]])
+    voltages_v = np.hypot(rows["node_real"], rows["node_imag"])[ends]
+    highest = int(voltages_v.argmax())
+    places_m = np.concatenate([sections["start_m"], sections["end_m"]])
+    return float(voltages_v[highest]), float(places_m[highest])
+
+
+def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) -> dict[str, str]:
     clock = outcome.state.clock[0]
     if clock.stalled_train < 0:
         problem = f"The studied train has not arrived after {time_min:.0f} min."
         return {"problem": problem, "advice": "Give simulation.duration_min, or check the traffic."}
     train = outcome.state.trains[clock.stalled_train]
-    name = outcome.trains[clock.stalled_train].name
-    motion, demand = train.motion, train.demand
+    scheduled = outcome.trains[clock.stalled_train]
+    motion, demand, kind = train.motion, train.demand, model.types[train.train_type]
     doing = "cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
     problem = (
-        f"At {time_min:.2f} min {name} {doing} at {motion.position_m / 1e3:.2f} km: resistance and "
-        f"gradient demand {clock.force_needed_n / 1e3:.1f} kN, its machine and adhesion give "
-        f"{clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
+        f"At {time_min:.2f} min {scheduled.name} {doing} at {motion.position_m / 1e3:.2f} km: "
+        f"resistance and gradient demand {clock.force_needed_n / 1e3:.1f} kN, its machine and adhesion "
+        f"give {clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
         f"{motion.speed_m_s * 3.6:.1f} km/h."
     )
-    voltages_v = outcome.state.trains["demand"]["voltage_v"][on_line(outcome.state)]
-    lowest_kv = voltages_v.min() / 1e3
-    problem += f" The lowest voltage on the line is {lowest_kv:.2f} kV."
-    unlimited_n = _force_without_current_limitation(demand, model.types[train.train_type])
-    if demand.wheel_force_n < unlimited_n:
-        share = 100.0 * demand.wheel_force_n / unlimited_n
+    forces = forces_on(demand, kind, float(clock.force_needed_n))
+    if forces.current_binds:
+        share = 100.0 * forces.given_n / forces.unlimited_n
         problem += (
             f" At this voltage its current limitation passes {share:.0f} % of the wanted force, "
-            f"{unlimited_n / 1e3:.1f} kN."
+            f"{forces.unlimited_n / 1e3:.1f} kN."
         )
-        return {"problem": problem, "advice": f"{_LIMIT_LESS} {_STRENGTHEN}"}
-    return {"problem": problem, "advice": _HELP_THE_TRAIN}
+    else:
+        problem += what_binds(forces)
+    voltages_v = outcome.state.trains["demand"]["voltage_v"][on_line(outcome.state)]
+    problem += f" The lowest voltage on the line is {voltages_v.min() / 1e3:.2f} kV."
+    described = scenario.trains_by_service()[scheduled.service]
+    return {"problem": problem, "advice": stall_advice(forces, demand, kind, described, model)}
 
 
-def _force_without_current_limitation(demand: Demand, train_type: TrainType) -> float:
-    """Force at the wheel rim that driver, adhesion and machine allow at the train's voltage. [N]"""
-    motors_n = max(0.0, float(demand.machine_force_n))
-    machine_n = plain(machine_force)(
-        motors_n, demand.resistance_n, train_type.rotor_mass_kg, train_type.inertia_kg
-    )
-    return float(min(demand.force_cap_n, max(0.0, machine_n)))
-
-
-def warnings(summary: dict[str, Any]) -> list[str]:
-    """Sentences on what was limited or left its range."""
+def warnings(summary: dict[str, Any], but: Collection[str] = ()) -> list[str]:
+    """Sentences on what was limited or left its range, but for names that are told otherwise."""
     return [
         f"{_LIMITED[name]}, in {count} train-steps"
         for name, count in summary["limited"].items()
-        if count
+        if count and name in _LIMITED and name not in but
     ]

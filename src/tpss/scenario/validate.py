@@ -7,7 +7,8 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, Tag, ValidationError
 
 from tpss import units
-from tpss.errors import Finding, ScenarioError, shortened, suggest
+from tpss.errors import Finding, ScenarioError, closest, shortened, suggest
+from tpss.scenario.absences import absence_of
 from tpss.scenario.cross_check import cross_check, kilometres_fall
 from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
@@ -140,7 +141,7 @@ def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, 
     words = [name for name in place if isinstance(name, str)]
     unit = units.label(words[-1]) if words else ""
     if kind in ("extra_forbidden", "unexpected_keyword_argument"):
-        return "unknown key", suggest(str(place[-1]), _keys(part))
+        return _unknown_key(part, detail["loc"])
     if kind == "unknown_name":
         own = f"; or name a file of your own that ends in {SUFFIX}"
         return message, suggest(str(detail["input"]), context["known"]) + own
@@ -163,6 +164,15 @@ def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, 
     return _PROBLEMS.get(kind, message), _REMEDIES.get(
         kind, "see the commented examples for this key"
     )
+
+
+def _unknown_key(part: type, location: Location) -> tuple[str, str]:
+    """What is wrong with a key that a part does not have: not modelled, misspelt, or neither."""
+    key, known = str(location[-1]), _keys(part)
+    absence = absence_of(location)
+    if absence is not None and not closest(key, known):
+        return f"unknown key; not modelled: {absence.words}", absence.instead
+    return "unknown key", suggest(key, known)
 
 
 def _keys(part: type) -> list[str]:

@@ -1,0 +1,118 @@
+"""Notes on a run: what was limited or left its range, and loads that no equipment stands."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tpss.powerflow.network import SHORTEST_PIECE_M
+from tpss.results.explain import warnings
+from tpss.results.extrapolation import EFFORT, extrapolations
+from tpss.results.result import Result
+from tpss.results.standards.windows import Floats, step_values
+from tpss.results.tables import J_PER_MWH, step_s
+
+MOST_CIRCULATING = 0.1
+"""Energy that stations may receive from others without a note, as a share of what trains and losses
+take. [1]"""
+
+CLOSE_M = SHORTEST_PIECE_M
+"""Distance below which the load flow sets a train apart. [m]"""
+
+FEW = 3
+"""Train-steps that closeness may take without a note, as of a train that passes."""
+
+
+def notes(result: Result) -> list[str]:
+    """Sentences on a run that ended, each a sign that something may not be as it was meant."""
+    if result.dataset.sizes["time"] < 2:
+        return warnings(result.summary)
+    return [
+        *_overloads(result),
+        *_circulation(result),
+        *extrapolations(result),
+        *_closeness(result),
+        *warnings(result.summary, but=[EFFORT]),
+    ]
+
+
+def _overloads(result: Result) -> Iterator[str]:
+    """Stations whose running converters or transformers were above their rating for several steps."""
+    data, h = result.dataset, step_s(result.dataset) / 60.0
+    loading = step_values(data, "converter_loading")
+    apparent_mva = np.hypot(*_station_powers_mw(result))
+    for i, name in enumerate(data.station.to_numpy()):
+        above = loading[:, i] > 1.0
+        if above.sum() < 2:
+            continue
+        worst = int(np.nanargmax(loading[:, i]))
+        times = np.flatnonzero(above)
+        yield (
+            f"{name} was loaded to {100.0 * loading[worst, i]:.0f} % of its rating "
+            f"({apparent_mva[worst, i]:.1f} MVA at {worst * h:.2f} min), and above 100 % for "
+            f"{above.sum() * h:.2f} min between {times[0] * h:.2f} and {(times[-1] + 1) * h:.2f} min; "
+            "the model continues, the equipment would not"
+        )
+
+
+def _circulation(result: Result) -> Iterator[str]:
+    """Power that some stations feed and others receive, while trains take little of it."""
+    data, (active_mw, _) = result.dataset, _station_powers_mw(result)
+    received_mw = np.maximum(-active_mw, 0.0)
+    h = step_s(data) * 1e6 / J_PER_MWH
+    circulating_mwh, taken_mwh = received_mw.sum() * h, active_mw.sum() * h
+    if circulating_mwh <= MOST_CIRCULATING * max(taken_mwh, 0.0) or circulating_mwh <= 0.0:
+        return
+    worst, station = np.unravel_index(int(received_mw.argmax()), received_mw.shape)
+    yield (
+        f"power circulates between the stations: {data.station.to_numpy()[station]} received up to "
+        f"{received_mw[worst, station]:.1f} MW (at {worst * step_s(data) / 60.0:.2f} min), and "
+        f"{circulating_mwh:.3f} MWh went from station to station, where trains and losses took "
+        f"{taken_mwh:.3f} MWh; look at the stations' no_load_voltage_kv and angles"
+    )
+
+
+def _closeness(result: Result) -> Iterator[str]:
+    """Trains that stood on each other, or at a node that is no station, which the load flow parts.
+
+    A train that departs, dwells or arrives at a feeding point is no more than its station demands.
+    """
+    if result.summary["limited"]["short_piece"] <= FEW:
+        return
+    data, names = result.dataset, result.dataset.train.to_numpy()
+    there = np.isfinite(step_values(data, "pantograph_voltage"))
+    place_m = np.where(there, step_values(data, "position"), np.inf)
+    order = np.argsort(place_m, axis=1)
+    with np.errstate(invalid="ignore"):  # between trains that are not there
+        step, pair = np.nonzero(
+            np.diff(np.take_along_axis(place_m, order, axis=1), axis=1) < CLOSE_M
+        )
+    if len(step) > FEW:
+        first, second = (names[order[step[0], pair[0] + i]] for i in (0, 1))
+        yield (
+            f"trains stood closer than {CLOSE_M:g} m to each other and counted as {CLOSE_M:g} m apart, "
+            f"in {len(step)} train-steps, first {first} and {second} at "
+            f"{step[0] * step_s(data) / 60.0:.2f} min"
+        )
+    for node_m in _nodes_between_stations(result):
+        step, train = np.nonzero(np.abs(place_m - node_m) < CLOSE_M)
+        if len(step) > FEW:
+            yield (
+                f"a train stood closer than {CLOSE_M:g} m to the feeding point at "
+                f"{node_m / 1e3:.2f} km and counted as {CLOSE_M:g} m away, in {len(step)} "
+                f"train-steps, first {names[train[0]]} at {step[0] * step_s(data) / 60.0:.2f} min"
+            )
+
+
+def _nodes_between_stations(result: Result) -> Floats:
+    """Positions of nodes where no train is to stop. [m]"""
+    nodes_m = np.unique(result.dataset.node_position.to_numpy())
+    stations_m = np.array([1e3 * each.position_km for each in result.scenario.line.stations])
+    apart = np.abs(nodes_m[:, None] - stations_m) >= CLOSE_M
+    return np.asarray(nodes_m[apart.all(axis=1)])
+
+
+def _station_powers_mw(result: Result) -> tuple[Floats, Floats]:
+    """Active [MW] and reactive [Mvar] power of each station in each step, shape (steps, stations)."""
+    names = "station_active_power", "station_reactive_power"
+    active, reactive = (np.nan_to_num(step_values(result.dataset, name)) / 1e6 for name in names)
+    return active, reactive

@@ -1,0 +1,112 @@
+"""What scenarios cannot describe, so that an unknown key is told what it asks for in vain."""
+
+import re
+from typing import NamedTuple
+
+
+class Absence(NamedTuple):
+    """Something that is not modelled.
+
+    Attributes
+    ----------
+    keys : str
+        Regular expression of the keys that ask for it, matched from a word's beginning.
+    words : str
+        What is not modelled.
+    instead : str
+        What to do.
+    parts : tuple of str
+        Where it is asked for: a table or list, such as ``speed_limits``; empty: anywhere.
+    """
+
+    keys: str
+    words: str
+    instead: str = "leave it out"
+    parts: tuple[str, ...] = ()
+
+
+_ENDS = r"(to|end|until|upto)(_km|_m)?$|length_k?m$"
+
+ABSENCES = (
+    Absence(r"regen|recuperat|feed_?back", "regeneration: trains do not feed power back"),
+    Absence(
+        r"neutral|phase_(break|separation)|separation_section|dead_section|gaps?$",
+        "neutral sections and gaps of the contact line",
+    ),
+    Absence(
+        _ENDS,
+        "an end of a speed limit",
+        "a limit holds until the next one begins; where limits overlap, give the lowest at each "
+        "place, with an entry wherever it changes",
+        ("speed_limits",),
+    ),
+    Absence(
+        _ENDS,
+        "an end of a gradient",
+        "a gradient holds until the next one begins; add an entry with 0 where it ends",
+        ("gradients",),
+    ),
+    Absence(
+        r"(single|double)_track|(number_of_)?tracks?$|lanes$|n_tracks",
+        "tracks: there is one, on which trains do not see each other",
+    ),
+    Absence(
+        r"direction|reverse|return_trip|bidirectional",
+        "directions: all trains run towards growing positions",
+        "mirror the line to run the other direction on its own",
+    ),
+    Absence(
+        r"time_?table|schedule|arrivals?(_min|_s)?$|arrive",
+        "scheduled times of arrival",
+        "give departures_min and stops with dwell_min; times of arrival are a result",
+    ),
+    Absence(
+        r"supplement|(time_)?margin|recovery|allowance|buffer",
+        "supplements to running times",
+        "lower max_speed_kmh or the speed limits, or lengthen the stops",
+    ),
+    Absence(
+        r"elevation|altitude|height|heights$",
+        "altitudes of the line",
+        "give gradients: the difference of two altitudes over their distance, in per mille",
+    ),
+    Absence(
+        r"curvature|radius$|radii|curve_|cant$",
+        "curvature and cant of the line as profiles",
+        "line.curves takes from_km, to_km and radius_m of each curve",
+        ("line",),
+    ),
+    Absence(r"tunnel", "tunnels"),
+    Absence(r"signal|block|interlocking", "signals and blocks"),
+    Absence(
+        r"adhesion(?!_speed)|friction|adhesion_curve",
+        "an adhesion of one's own",
+        'choose simulation.rail = "dry" or "wet", and adhesive_mass_t',
+    ),
+    Absence(
+        r"(limits|speed_limits|stations|timetable)_file",
+        "CSV files of anything but gradients",
+        'write the list here, or name a file that ends in .toml, such as line = "line.toml"',
+    ),
+    Absence(
+        r"out_of_service|outage|disabled|failed",
+        "equipment that is out of service",
+        "take it out of the scenario, for a run without it",
+    ),
+    Absence(r"storage|battery|accumulator", "stores of energy"),
+    Absence(
+        r"harmonics?|earth|rail_potential|return_(current|line)", "harmonics and the return circuit"
+    ),
+)
+"""Everything that unknown keys are held against, the first that matches first."""
+
+
+def absence_of(location: tuple[int | str, ...]) -> Absence | None:
+    """What the key of a location asks for that is known not to be modelled, if anything."""
+    key = str(location[-1]).lower().replace("-", "_")
+    above = {str(name) for name in location[:-1]}
+    for each in ABSENCES:
+        here = not each.parts or bool(above & set(each.parts))
+        if here and re.search(rf"(^|_)({each.keys})", key):
+            return each
+    return None
