@@ -273,7 +273,7 @@ ABSENT = [
     pytest.param({f"{ENTRY}.direction": "down"}, f"{ENTRY}.direction", "all trains run towards growing",
                  "mirror the line", id="direction"),
     pytest.param({"line.tunnels": []}, "line.tunnels", "tunnels", "leave it out", id="tunnels"),
-    pytest.param({"line.curves": []}, "line.curves", "curves of the line", "leave it out", id="curves"),
+    pytest.param({"line.radii_m": []}, "line.radii_m", "curvature and cant", "line.curves takes", id="radii"),
     pytest.param({"line.elevation_m": []}, "line.elevation_m", "altitudes", "give gradients",
                  id="altitudes"),
     pytest.param({"traffic_signals": True}, "traffic_signals", "signals", "leave it out", id="signals"),
