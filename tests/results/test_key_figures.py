@@ -132,7 +132,7 @@ def test_figures_of_random_scenarios_are_those_of_their_results():
     ends: Counter[str] = Counter()
 
     @settings(
-        max_examples=60,
+        max_examples=100,
         derandomize=True,
         database=None,
         deadline=None,
