@@ -30,7 +30,7 @@ the supply's system in the [library](library.md#voltage-limits), which says wher
   at an instant. The first window of a table is the time step: its mean is the peak. One that is
   longer than the run has no mean, NaN, and `notes` says so.
 - A train pulls while its tractive force at the wheel rim is positive. One that is present for less than
-  {LEAST_PRESENCE_S:g} s is not a dimensioning train.
+  {LEAST_PRESENCE_S:g} s is not a dimensioning train, and is not judged.
 - Energy is billed in blocks of {BLOCK_MIN:g} min from the start of the run. Trains do not brake
   electrically yet, so nothing is regenerated."""
 
@@ -106,7 +106,7 @@ TABLES: dict[str, dict[str, str]] = {
         **TRAIN,
         "present_min": "time on the line within the peak window",
         "traction_min": "time of that in which it pulls",
-        "counts": "whether it is there long enough to be the dimensioning train",
+        "counts": "whether it is there long enough to be the dimensioning train, and to be judged",
         **JUDGED,
     },
     "energy": {

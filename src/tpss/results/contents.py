@@ -25,6 +25,7 @@ _OF_STANDARDS = (
 )  # fmt: skip
 TABLE_PLACES = {
     "trips": "trips",
+    "stops": "stops",
     "stations": "stations",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "trains": "train_steps",
