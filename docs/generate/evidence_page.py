@@ -8,6 +8,7 @@ from markdown_pieces import described, prose
 
 import tpss
 from tpss.results.standards.energy import BLOCK_MIN
+from tpss.results.standards.low_voltage import JOINED_KM, MOST_NAMES
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S
 from tpss.results.standards.windows import WINDOWS_MIN
 
@@ -94,6 +95,20 @@ TABLES: dict[str, dict[str, str]] = {
         "extreme_min": "... and when",
         "allowed_min": "how long it may last",
         "violation": "whether it lasted longer",
+    },
+    "low_voltage_places": {
+        "limit": "Umin2 or Umin1",
+        "limit_kv": "its value",
+        "from_km": f"where the stretch begins; stretches within {JOINED_KM:g} km of each other are one",
+        "to_km": "... and ends",
+        "lowest_kv": "lowest voltage in it",
+        "lowest_km": "... and where",
+        "lowest_min": "... and when",
+        "from_min": "when a train was first below the limit in it",
+        "to_min": "... and last",
+        "duration_min": "time in which at least one train was",
+        "train_count": "trains that were",
+        "trains": f"their names, {MOST_NAMES} at most",
     },
     "useful_voltage_zones": {
         "zone": "name",
