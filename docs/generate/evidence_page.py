@@ -8,6 +8,7 @@ from markdown_pieces import described, prose
 
 import tpss
 from tpss.results.standards.energy import BLOCK_MIN
+from tpss.results.standards.low_voltage import JOINED_KM, MOST_NAMES
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S
 from tpss.results.standards.windows import WINDOWS_MIN
 
@@ -30,7 +31,7 @@ the supply's system in the [library](library.md#voltage-limits), which says wher
   at an instant. The first window of a table is the time step: its mean is the peak. One that is
   longer than the run has no mean, NaN, and `notes` says so.
 - A train pulls while its tractive force at the wheel rim is positive. One that is present for less than
-  {LEAST_PRESENCE_S:g} s is not a dimensioning train.
+  {LEAST_PRESENCE_S:g} s is not a dimensioning train, and is not judged.
 - Energy is billed in blocks of {BLOCK_MIN:g} min from the start of the run. Trains do not brake
   electrically yet, so nothing is regenerated."""
 
@@ -95,6 +96,20 @@ TABLES: dict[str, dict[str, str]] = {
         "allowed_min": "how long it may last",
         "violation": "whether it lasted longer",
     },
+    "low_voltage_places": {
+        "limit": "Umin2 or Umin1",
+        "limit_kv": "its value",
+        "from_km": f"where the stretch begins; stretches within {JOINED_KM:g} km of each other are one",
+        "to_km": "... and ends",
+        "lowest_kv": "lowest voltage in it",
+        "lowest_km": "... and where",
+        "lowest_min": "... and when",
+        "from_min": "when a train was first below the limit in it",
+        "to_min": "... and last",
+        "duration_min": "time in which at least one train was",
+        "train_count": "trains that were",
+        "trains": f"their names, {MOST_NAMES} at most",
+    },
     "useful_voltage_zones": {
         "zone": "name",
         "from_km": "where it begins",
@@ -106,7 +121,7 @@ TABLES: dict[str, dict[str, str]] = {
         **TRAIN,
         "present_min": "time on the line within the peak window",
         "traction_min": "time of that in which it pulls",
-        "counts": "whether it is there long enough to be the dimensioning train",
+        "counts": "whether it is there long enough to be the dimensioning train, and to be judged",
         **JUDGED,
     },
     "energy": {

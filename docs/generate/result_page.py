@@ -48,7 +48,7 @@ STATES = "`train_state` has the values"
 
 TABLES = """## Tables
 
-`Result.trips`, `Result.stations` and `Result.train_steps` are pandas tables; those of
+`Result.trips`, `Result.stops`, `Result.stations` and `Result.train_steps` are pandas tables; those of
 `Result.standards` stand on [a page of their own](evidence.md). What a train has not done yet, or not
 within the run, is NaN."""
 
@@ -64,6 +64,14 @@ TRIPS = {
     "lowest_voltage_kv": "lowest voltage at the pantograph",
     "lowest_voltage_km": "... and where",
     "lowest_voltage_min": "... and when",
+}
+STOPS = {
+    "train": "name",
+    "station": "where it begins, stops or ends",
+    "position_km": "position on the line",
+    "arrival_min": "when it came to stand; NaN where it begins",
+    "departure_min": "when it went on; NaN where it ends",
+    "dwell_min": "from one to the other",
 }
 STATIONS = {
     "station": "name",
@@ -145,6 +153,8 @@ def page() -> str:
         TABLES,
         "### `trips`, a row a train",
         described(TRIPS, result.trips, "column"),
+        "### `stops`, a row a train and station of its route where it stops",
+        described(STOPS, result.stops, "column"),
         "### `stations`, a row a feeding station",
         described(STATIONS, result.stations, "column"),
         "### `train_steps`, a row a train and instant",

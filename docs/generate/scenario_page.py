@@ -47,8 +47,8 @@ DEFAULTS = {
     "Supply.transformer_stations": "none",
     "Supply.converter_stations": "none; there is a station of some kind",
     "VoltageLimits.system": "the supply's",
-    "VoltageLimits.mean_useful_kv": "the system's, if any",
-    "VoltageLimits.mean_useful_fast_kv": "the system's, if any",
+    "VoltageLimits.mean_useful_kv": "the system's, if any, with its `un_kv`",
+    "VoltageLimits.mean_useful_fast_kv": "the system's, if any, with its `un_kv`",
     "HighVoltageLine.transformers_km": "this or `transformers`",
     "HighVoltageLine.transformers": "this or `transformers_km`",
 }

@@ -109,6 +109,9 @@ def test_a_train_placed_too_fast_is_a_fault(tpss_command):
           "trains.freight.power_factor=0.9", "trains.freight.max_motor_current_a=2000"],
          "trains.freight: max_motor_current_a does nothing for a machine that is described by force "
          "and power"),
+        (["standards.voltage_limits={un_kv = 14, umin1_kv = 12}"],
+         "standards.voltage_limits: its un_kv of 14 kV is not the 15 kV of the supply's system "
+         "(15kV-16.7Hz); mean useful voltages are not judged, as mean_useful_kv is not given for it"),
         (["trains.other={model = 'Rc4-freight-1470t'}"],
          "trains.other is used by no traffic entry"),
         (["supply.converter_stations.0.converters=1"],

@@ -2,6 +2,7 @@
 
 import pytest
 
+import tpss
 from tpss import ScenarioError, library
 from tpss.scenario.standards import VoltageLimits
 
@@ -23,6 +24,42 @@ def test_a_scenario_that_says_nothing_is_judged_by_the_limits_of_15_kv():
 def test_any_figure_may_be_changed_alone():
     limits = short_line({f"{LIMITS}.umin1_kv": 12.5}).standards.voltage_limits
     assert (limits.umin1_kv, limits.umin2_kv) == (12.5, 11.0)
+
+
+ELEVEN_KV = {
+    f"{LIMITS}.{key}": value
+    for key, value in {
+        "un_kv": 11.0, "umin2_kv": 8.0, "umin1_kv": 9.0, "umax1_kv": 17.0, "umax2_kv": 18.0,
+    }.items()
+}  # fmt: skip
+"""Limits of one's own, of a nominal voltage of 11 kV."""
+
+
+@pytest.mark.parametrize(
+    ("given", "useful", "fast"),
+    [
+        ({}, None, None),
+        ({"mean_useful_kv": 10.0}, 10.0, None),
+        ({"mean_useful_fast_kv": 10.5}, None, 10.5),
+        ({"un_kv": 15.0}, 13.5, 14.2),
+    ],
+)
+def test_the_useful_voltage_of_the_library_is_not_that_of_another_nominal_voltage(
+    given, useful, fast
+):
+    changes = {**ELEVEN_KV, **{f"{LIMITS}.{key}": value for key, value in given.items()}}
+    scenario = short_line(changes)
+    limits = scenario.standards.voltage_limits
+    assert (limits.mean_useful_kv, limits.mean_useful_fast_kv) == (useful, fast)
+    again = type(scenario).from_document(scenario.as_document())
+    assert again.standards.voltage_limits == limits
+
+
+def test_a_line_of_another_nominal_voltage_is_not_held_against_13_5_kv():
+    result = tpss.simulate(short_line({**ELEVEN_KV, "simulation.duration_min": 5.0}))
+    assert result.standards.least_useful_voltage_kv is None
+    assert set(result.standards.useful_voltage_trains.verdict) == {""}
+    assert set(result.standards.useful_voltage_zones.verdict) == {""}
 
 
 @pytest.mark.parametrize("system", library.entries("systems"))

@@ -150,6 +150,8 @@ def _train(train: Train) -> str:
 
 
 def _plain(value: Any) -> str:
+    if value is None:
+        return "none"
     return f"{value:g}" if isinstance(value, float) else textwrap.shorten(str(value), 40)
 
 

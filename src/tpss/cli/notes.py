@@ -12,6 +12,7 @@ from tpss.scenario import Scenario
 from tpss.scenario.line import DECIMALS, Line
 from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.supply.system import system_named
 from tpss.scenario.traffic import Traffic
 from tpss.units import kilometres, si
 
@@ -91,7 +92,18 @@ def _supply(scenario: Scenario) -> Iterator[str]:
 
 
 def _voltage_limits(scenario: Scenario) -> Iterator[str]:
-    limits = scenario.standards.voltage_limits
+    limits, system = scenario.standards.voltage_limits, scenario.supply.system
+    nominal_kv = system_named(system).nominal_kv
+    if limits.un_kv != nominal_kv:
+        unjudged = (
+            ""
+            if limits.mean_useful_kv
+            else ("; mean useful voltages are not judged, as mean_useful_kv is not given for it")
+        )
+        yield (
+            f"standards.voltage_limits: its un_kv of {limits.un_kv:g} kV is not the {nominal_kv:g} kV "
+            f"of the supply's system ({system}){unjudged}"
+        )
     for station in scenario.supply.stations:
         without_load_kv = station.no_load_voltage_kv
         if not limits.umin1_kv <= without_load_kv <= limits.umax1_kv:

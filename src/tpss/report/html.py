@@ -101,6 +101,7 @@ def report(result: Result) -> str:
     figures, data = _figures(result, voltage) if voltage else ({}, {})
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
+        tables.of_frame("stops", "Times at stops", result.stops),
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_standards(result),
     ]

@@ -63,6 +63,10 @@ def of_standards(result: Result) -> list[Table]:
     shown = {
         "violations": ("Violations of limits", evidence.violations),
         "voltage": ("EN 50163: voltage at the pantograph", evidence.voltage),
+        "low-voltage-places": (
+            "EN 50163: where the voltage is low",
+            evidence.low_voltage_places,
+        ),
         "useful-voltage-zones": (
             "EN 50388: mean useful voltage of zones",
             evidence.useful_voltage_zones,

@@ -20,11 +20,13 @@ TABLES = "tables"
 """Folder of exported tables, within that of the result."""
 
 _OF_STANDARDS = (
-    "violations", "voltage", "excursions", "useful_voltage_zones", "useful_voltage_trains", "energy",
-    "energy_blocks", "station_power", "load_duration", "converters", "losses", "branch_current",
+    "violations", "voltage", "excursions", "low_voltage_places", "useful_voltage_zones",
+    "useful_voltage_trains", "energy", "energy_blocks", "station_power", "load_duration", "converters",
+    "losses", "branch_current",
 )  # fmt: skip
 TABLE_PLACES = {
     "trips": "trips",
+    "stops": "stops",
     "stations": "stations",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "trains": "train_steps",

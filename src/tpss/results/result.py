@@ -11,6 +11,7 @@ import xarray as xr
 
 from tpss.results import store, tables
 from tpss.results.standards.evidence import Evidence, gather
+from tpss.results.stops import stops
 from tpss.scenario.scenario import Scenario
 
 STANDARDS = "standards"
@@ -57,6 +58,11 @@ class Result:
     def trips(self) -> pd.DataFrame:
         """One row per train: times, distance, energy, lowest voltage."""
         return tables.trips(self.dataset)
+
+    @cached_property
+    def stops(self) -> pd.DataFrame:
+        """One row per train and station where it stops: arrival, departure, dwell."""
+        return stops(self.dataset, self.scenario)
 
     @cached_property
     def stations(self) -> pd.DataFrame:

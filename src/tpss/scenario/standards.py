@@ -9,6 +9,9 @@ from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, un
 
 KIND = "voltage_limits"
 
+USEFUL = ("mean_useful_kv", "mean_useful_fast_kv")
+"""Keys of the least mean useful voltage."""
+
 
 class VoltageLimits(Part):
     """Limits of the voltage at the pantograph: those of a system in the library, or one's own."""
@@ -27,7 +30,8 @@ class VoltageLimits(Part):
     mean_useful_kv: Real | None = Field(
         default=None,
         gt=0,
-        description="Least mean useful voltage of zones and trains; without one they are not judged.",
+        description="Least mean useful voltage of zones and trains; without one they are not judged. "
+        "That of the system holds for its own `un_kv` only.",
     )
     mean_useful_fast_kv: Real | None = Field(
         default=None, gt=0, description="The same on lines with speeds above 200 km/h."
@@ -42,7 +46,11 @@ class VoltageLimits(Part):
         system = given.get("system", cls.model_fields["system"].default)
         # An unknown system is reported by its own field; any values allow the others to be checked too.
         entry = system if isinstance(system, str) and system in known else next(iter(known))
-        return {**library.values(KIND, entry), **given}
+        usual = library.values(KIND, entry)
+        if given.get("un_kv", usual["un_kv"]) != usual["un_kv"]:
+            # A least mean useful voltage belongs to a nominal voltage.
+            usual = {key: value for key, value in usual.items() if key not in USEFUL}
+        return {**usual, **given}
 
     @model_validator(mode="after")
     def _limits_are_in_order(self) -> Self:

@@ -73,6 +73,14 @@ def test_a_train_that_is_there_for_a_moment_does_not_count():
     assert dimensioning_train(trains.reset_index()) is None  # train a does not pull then
 
 
+def test_a_train_that_does_not_count_has_no_verdict_either():
+    """Within the second minute train c pulls for 30 s, at 13.6 kV: too short to be judged by 14 kV."""
+    window = steps_in_window(DATASET, 1.0, 2.0)
+    trains = train_table(DATASET, window, 14.0).set_index("train")
+    assert trains.mean_useful_kv["c"] == pytest.approx(13.6)
+    assert trains.verdict.to_dict() == {"a": "", "b": "", "c": ""}
+
+
 def test_only_the_peak_window_counts():
     zones = zone_table(DATASET, ZONES, steps_in_window(DATASET, 0.0, 1.0), 13.5)
     assert zones.mean_useful_kv.tolist() == pytest.approx([13.5, 13.2])

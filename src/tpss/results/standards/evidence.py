@@ -16,6 +16,7 @@ from tpss.results.standards import (
     useful_voltage,
     voltage_limits,
 )
+from tpss.results.standards.low_voltage import LowVoltagePlace, find_low_voltage_places
 from tpss.results.standards.violations import Violation, find_violations, voltage_in_words
 from tpss.results.standards.voltage_limits import Excursion, find_excursions
 from tpss.results.standards.windows import WINDOWS_MIN, Floats, table_of
@@ -63,6 +64,12 @@ class Evidence:
     def excursions(self) -> pd.DataFrame:
         """EN 50163, one row per uninterrupted time of a train beyond a limit: when, where, how far."""
         return table_of(self._excursions, Excursion)
+
+    @cached_property
+    def low_voltage_places(self) -> pd.DataFrame:
+        """EN 50163, one row per stretch of line below Umin2 or Umin1: how low, when, which trains."""
+        places = find_low_voltage_places(self._excursions, self.standards.voltage_limits)
+        return table_of(places, LowVoltagePlace)
 
     @cached_property
     def useful_voltage_zones(self) -> pd.DataFrame:

@@ -94,7 +94,10 @@ def zone_table(
 
 
 def train_table(dataset: xr.Dataset, window: slice | None, least_kv: float | None) -> pd.DataFrame:
-    """One row per train: time present and in traction, mean useful voltage, against the minimum."""
+    """One row per train: time present and in traction, mean useful voltage, against the minimum.
+
+    A train that does not count has no verdict.
+    """
     chosen, h = slice(0) if window is None else window, step_s(dataset) / 60.0
     voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
     present = np.isfinite(voltage)
@@ -103,13 +106,16 @@ def train_table(dataset: xr.Dataset, window: slice | None, least_kv: float | Non
     total = np.where(pulls, voltage, 0.0).sum(axis=0)
     mean: Floats = total / np.where(steps > 0, steps, np.nan)
     present_min = present.sum(axis=0) * h
+    counts = present_min >= LEAST_PRESENCE_S / 60.0 - TOLERANCE
+    judged = _judged(mean, least_kv)
+    judged["verdict"][~counts] = ""
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),
             "present_min": present_min,
             "traction_min": steps * h,
-            "counts": present_min >= LEAST_PRESENCE_S / 60.0 - TOLERANCE,
-            **_judged(mean, least_kv),
+            "counts": counts,
+            **judged,
         }
     )
 

@@ -28,7 +28,7 @@ def step_values(dataset: xr.Dataset, name: str) -> Floats:
 
 def table_of(rows: Sequence[tuple[Any, ...]], kind: type[Any]) -> pd.DataFrame:
     """Table of rows that are named tuples of a kind, its columns typed even without a row."""
-    types = {"str": object, "float": float, "bool": bool}
+    types = {"str": object, "float": float, "int": int, "bool": bool}
     return pd.DataFrame(
         {
             name: np.array([row[i] for row in rows], dtype=types[annotation.__name__])

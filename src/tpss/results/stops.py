@@ -1,0 +1,87 @@
+"""Times at stops: when each train came to stand at its stations, and when it went on."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from tpss.results.standards.windows import Floats, table_of
+from tpss.results.tables import step_s
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.traffic import Traffic
+from tpss.step.state import TrainState
+
+AT_STOP_M = 0.01
+"""A standing train is at a stop that is no further away. [m]"""
+
+
+class StopTimes(NamedTuple):
+    """A train at a station of its route."""
+
+    train: str
+    station: str
+    position_km: float
+    arrival_min: float
+    departure_min: float
+    dwell_min: float
+
+
+def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
+    """One row per train and station where it begins, stops or ends: arrival, departure, dwell.
+
+    A train that brakes within a step arrives when it stands, not at the next instant.  What it has not
+    done within the run is NaN, and so is what it did before, if it was on the line at the start.
+    """
+    entries = {entry.name: entry for entry in scenario.traffic}
+    places_km = {station.name: station.position_km for station in scenario.line.stations}
+    names, services = dataset.train.to_numpy(), dataset.service.to_numpy()
+    rows = []
+    for i, (name, service) in enumerate(zip(names, services, strict=True)):
+        entry, train = entries[str(service)], dataset.isel(train=i)
+        for station in _stations_of(entry):
+            times = _times_at(station, places_km[station], entry, train)
+            rows.append(StopTimes(str(name), station, places_km[station], *times))
+    return table_of(rows, StopTimes)
+
+
+def _stations_of(entry: Traffic) -> list[str]:
+    return [entry.origin, *(stop.station for stop in entry.stops), entry.destination]
+
+
+def _times_at(
+    station: str, position_km: float, entry: Traffic, train: xr.Dataset
+) -> tuple[float, float, float]:
+    """Arrival, departure and dwell of a train at a station of its route. [min]"""
+    if station == entry.origin:
+        return np.nan, float(train.departure_time) / 60.0, np.nan
+    if station == entry.destination:
+        return float(train.arrival_time) / 60.0, np.nan, np.nan
+    position_m, speed_m_s = train.position.to_numpy(), train.speed.to_numpy()
+    stands = (np.abs(position_m - 1e3 * position_km) <= AT_STOP_M) & (speed_m_s == 0.0)
+    if not stands.any():
+        return np.nan, np.nan, np.nan
+    first, h = int(stands.argmax()), step_s(train)
+    arrival_min = _arrival_s(first, position_m, speed_m_s, train.holding_time.to_numpy(), h) / 60.0
+    goes_on = np.flatnonzero(train.train_state.to_numpy()[first:-1] != TrainState.DWELLING)
+    departure_min = (first + int(goes_on[0])) * h / 60.0 if len(goes_on) else np.nan
+    return arrival_min, departure_min, departure_min - arrival_min
+
+
+def _arrival_s(
+    instant: int, position_m: Floats, speed_m_s: Floats, holding_s: Floats, step_s: float
+) -> float:
+    """When a train that stands at an instant came to stand, in the step before or at its end. [s]
+
+    Within that step it holds its speed v for a time t, and then brakes evenly over what is left of its
+    way s: for 2 (s - v t) / v.
+    """
+    before = instant - 1
+    if before < 0 or not np.isfinite(position_m[before]):
+        return np.nan  # it was on the line at the start, or stands where it begins
+    speed, held_s = float(speed_m_s[before]), float(holding_s[before])
+    if speed <= 0.0:
+        return instant * step_s
+    way_m = float(position_m[instant] - position_m[before])
+    braking_s = 2.0 * (way_m - speed * held_s) / speed
+    return before * step_s + min(step_s, held_s + braking_s)
