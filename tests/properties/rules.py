@@ -204,6 +204,10 @@ class Journey:
         """Force at the wheel rim in step `k` with full effort: adhesion, machine, never negative."""
         train, v = self.train, self.v[k] * (3.6 if self.adhesion_in_km_h else 1.0)
         share = 3.78 / (23.6 + v) if self.wet else 0.161 + 7.5 / (44.0 + 3.6 * v)
+        if isinstance(train.adhesion, float):
+            share = train.adhesion
+        elif train.adhesion is not None:  # through two points it is a line
+            share = np.interp(3.6 * self.v[k], train.adhesion.speed_kmh, train.adhesion.value)
         motors = motor_force_n(3.6 * self.v[k], self.volts[k] / 1e3, train.max_motor_current_a)
         hauled_kg = 1e3 * (train.mass_t - train.adhesive_mass_t)
         inertia_kg = 1e3 * train.adhesive_mass_t + hauled_kg * (1.0 + train.rotating_mass_factor)

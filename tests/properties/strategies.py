@@ -163,6 +163,7 @@ TRAINS = st.fixed_dictionaries(
     {"model": st.just("Rc4-freight-1470t")},
     optional={
         "mass_t": numbers(80.0, 2500.0),
+        "adhesion": numbers(0.05, 0.4),
         "length_m": st.sampled_from([0.0, 25.0, 700.0]),
         "max_motor_current_a": st.sampled_from([150.0, 700.0, 1250.0, 2080.0, 2500.0, 5000.0]),
         "max_retardation_m_s2": numbers(0.05, 2.0),

@@ -118,6 +118,8 @@ OUT_OF_RANGE = [
                  "write rotating_mass_share = 0.1", id="factor-for-a-share"),
     pytest.param({f"{FREIGHT}.length_m": 0.7}, f"{FREIGHT}.length_m", "0.7", "give the length in m",
                  id="length-in-kilometres"),
+    pytest.param({f"{FREIGHT}.adhesion": 30.0}, f"{FREIGHT}.adhesion", "30.0",
+                 "less than or equal to 1", id="adhesion-in-percent"),
     pytest.param(limits((0.0, 900.0)), "line.speed_limits.0.speed_kmh", "900.0",
                  "less than or equal to 500 km/h", id="speed-of-an-aircraft"),
     pytest.param(gradients((0.0, 300.0)), "line.gradients.0.permille", "300.0",

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tpss.model.effort_curve import adhesion
+
 from scenarios import gradients, journey, limits, phases, run
 
 STATION = {"type": "Q48/Q49", "converters": 2}
@@ -134,6 +136,27 @@ def test_above_2080_ampere_the_rails_limit_the_effort_at_the_start(current_a, st
     assert float(result.dataset.tractive_force[0, 0]) / 1e3 == pytest.approx(start_kn, abs=0.1)
     counted = result.summary["limited"]["effort_extrapolated"]
     assert (counted > 0) == (current_a > 2080.0)
+
+
+@pytest.mark.parametrize("rail", ["dry", "wet"])
+def test_an_adhesion_of_its_own_limits_a_train_on_any_rails(rail):
+    """79 t · 9.81 · 0.2 = 155.0 kN, less than the machine's 175.2 kN."""
+    result = run({"simulation.rail": rail, "trains.freight.adhesion": 0.2})
+    assert float(result.dataset.tractive_force[0, 0]) == pytest.approx(79e3 * 9.81 * 0.2)
+
+
+def test_an_adhesion_may_fall_with_the_speed():
+    """From 0.2 at standstill to 0.1 at 20 km/h, linearly, and 0.1 beyond."""
+    curve = {"speed_kmh": [0, 20], "value": [0.2, 0.1]}
+    result = run({**step(0.1), "trains.freight.adhesion": curve})
+    way, force = journey(result), result.dataset.tractive_force[:, 0].to_numpy()
+    slow = np.flatnonzero((way.v < 10.0) & (way.a > 0.05))
+    coefficient = 0.2 - 0.1 * np.minimum(3.6 * way.v[slow], 20.0) / 20.0
+    assert slow.size > 10
+    assert force[slow] == pytest.approx(79e3 * 9.81 * coefficient, rel=1e-12)
+    (train,) = result.scenario.trains.values()
+    drawn = adhesion(train, way.v[slow], result.scenario.simulation)
+    assert drawn == pytest.approx(force[slow], rel=1e-12)
 
 
 def test_wet_rails_limit_the_effort_over_speed():

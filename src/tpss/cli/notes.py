@@ -3,10 +3,12 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
-from tpss.physics.adhesion import Rail, adhesion_limit
+from tpss.model.effort_curve import adhesion
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.line import DECIMALS, Line
@@ -198,14 +200,17 @@ def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
     start_km, end_km, permille = max(route, key=lambda piece: piece[2])
     train = scenario.trains[entry.train]
     needed_kn = _starting_force_n(train, permille) / 1e3
-    rail = Rail[scenario.simulation.rail.upper()]
-    available_kn = plain(adhesion_limit)(si(train, "adhesive_mass_t"), 0.0, rail) / 1e3
+    available_kn = float(adhesion(train, np.zeros(1), scenario.simulation)[0]) / 1e3
     if needed_kn > available_kn:
         yield (
             f"traffic.{i} ({entry.name}): between {kilometres(start_km)} and {kilometres(end_km)} km "
             f"the gradient is {permille:g} ‰, on which {entry.train} needs {needed_kn:.0f} kN to start; "
-            f"{scenario.simulation.rail} rails allow {available_kn:.0f} kN"
+            f"{_rails(train, scenario)} allow {available_kn:.0f} kN"
         )
+
+
+def _rails(train: Train, scenario: Scenario) -> str:
+    return f"{scenario.simulation.rail} rails" if train.adhesion is None else "the rails"
 
 
 def _starting_force_n(train: Train, permille: float) -> float:

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import at, inlined
 from tpss.physics.adhesion import Rail
 from tpss.record import Record, Records
 from tpss.vehicle.train_type import TrainType
@@ -86,17 +85,3 @@ class DrivingData(NamedTuple):
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]
-
-
-@inlined
-def gradients_of(kind: TrainType, profiles: Profiles) -> Profile:
-    """Gradients as a train of a type feels them, over the position of its head."""
-    row = at(kind.profile)
-    return Profile(profiles.from_m[row], profiles.value[row])
-
-
-@inlined
-def limits_of(kind: TrainType, profiles: Profiles) -> Profile:
-    """Speed limits that a train of a type has to keep, over the position of its head."""
-    row = at(kind.profile)
-    return Profile(profiles.from_m[row], profiles.value[row])

@@ -1,7 +1,7 @@
 """The driver of each train: which speed to reach in this step, and which force that takes."""
 
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
-from tpss.driving.data import Driver, DrivingData, Floats, gradients_of, limits_of
+from tpss.driving.data import Driver, DrivingData, Floats
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
 from tpss.driving.motion import force_to_target, set_target, update_resistances
 from tpss.driving.stops import distance_to_stop
@@ -9,8 +9,8 @@ from tpss.driving.within_step import aim_to_limit
 from tpss.kernel import at, inlined
 from tpss.numerics.curve import Points
 from tpss.numerics.staircase import index_at
-from tpss.physics.adhesion import adhesion_limit
 from tpss.physics.locomotive import acceleration
+from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.demand import (
     FULL_EFFORT_N,
     certify_free_band,
@@ -48,9 +48,9 @@ def target_speed(train: Train, kind: TrainType, data: DrivingData) -> float:
     ----------
     [Boullanger2009]_, section 2.3.1 and figure 3-7.
     """
-    motion, limits, h = train.motion, limits_of(kind, data.limits), data.options.step_s
+    motion, row, h = train.motion, at(kind.profile), data.options.step_s
     v, retardation = motion.speed_m_s, kind.highest_retardation_m_s2
-    limit = limits.value[index_at(motion.position_m, limits.from_m)]
+    limit = data.limits.value[row][index_at(motion.position_m, data.limits.from_m[row])]
     target = min(limit, kind.highest_speed_m_s)
     if data.options.driver == Driver.AGGRESSIVE:
         fastest, coasting = fastest_and_coasting(train, kind, h)
@@ -115,9 +115,10 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
     decision.course = Course.UNIFORM
     # Adhesion depends on the speed alone, as do the terms that are kept.
     if speed_m_s != demand.speed_m_s:
-        speed = speed_m_s * 3.6 if options.adhesion_in_km_h else speed_m_s
-        demand.adhesion_n = adhesion_limit(kind.adhesive_mass_kg, speed, options.rail)
+        demand.adhesion_n = adhesion_of(
+            kind, speed_m_s, options.rail, options.adhesion_in_km_h, points
+        )
     if speed_m_s != demand.speed_m_s or not within_free_band(demand):
         update_speed_terms(speed_m_s, kind, demand, points, scratch)
-    update_resistances(train, kind, gradients_of(kind, data.gradients), options)
+    update_resistances(train, kind, data.gradients, options)
     decision.decided = False

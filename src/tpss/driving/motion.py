@@ -1,8 +1,8 @@
 """Resistances, targets and steps of constant acceleration, which all drivers and manners share."""
 
-from tpss.driving.data import DrivingData, Options, Profile, gradients_of
+from tpss.driving.data import DrivingData, Options, Profiles
 from tpss.driving.regulated import ideal_force, wanted_acceleration
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.numerics.staircase import index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.locomotive import acceleration
@@ -12,7 +12,9 @@ from tpss.vehicle.train_type import TrainType
 
 
 @inlined
-def update_resistances(train: Train, kind: TrainType, gradients: Profile, options: Options) -> None:
+def update_resistances(
+    train: Train, kind: TrainType, gradients: Profiles, options: Options
+) -> None:
     """Find the forces on a train that do not depend on what its driver does, for this step.
 
     A standing train is held by its brakes; no running resistance is billed.
@@ -21,12 +23,12 @@ def update_resistances(train: Train, kind: TrainType, gradients: Profile, option
     ----------
     [Boullanger2009]_, eq. (2.8)-(2.10), (F.2)-(F.4).
     """
-    motion, forces = train.motion, train.forces
-    speed = motion.speed_m_s
-    motion.gradient = index_from(motion.gradient, motion.position_m, gradients.from_m)
+    motion, forces, row = train.motion, train.forces, at(kind.profile)
+    speed, from_m = motion.speed_m_s, gradients.from_m[row]
+    motion.gradient = index_from(motion.gradient, motion.position_m, from_m)
     distance_m = speed * options.step_s if options.mean_gradient else 0.0
     slope = mean_gradient(
-        motion.gradient, motion.position_m, distance_m, gradients.from_m, gradients.value
+        motion.gradient, motion.position_m, distance_m, from_m, gradients.value[row]
     )
     standing = motion.phase == Phase.DWELLING
     forces.running_resistance_n = 0.0 if standing else running_resistance(speed, kind.resistance)
@@ -38,10 +40,9 @@ def update_resistances(train: Train, kind: TrainType, gradients: Profile, option
 def update_gradient(train: Train, kind: TrainType, distance_m: float, data: DrivingData) -> None:
     """Update the resistances for a step in which the train covers `distance_m`."""
     if data.options.mean_gradient:
-        profile, motion, forces = gradients_of(kind, data.gradients), train.motion, train.forces
-        slope = mean_gradient(
-            motion.gradient, motion.position_m, distance_m, profile.from_m, profile.value
-        )
+        motion, forces, row = train.motion, train.forces, at(kind.profile)
+        from_m, gradient = data.gradients.from_m[row], data.gradients.value[row]
+        slope = mean_gradient(motion.gradient, motion.position_m, distance_m, from_m, gradient)
         forces.gradient_n = gradient_force(kind.mass_kg, slope)
         train.demand.resistance_n = forces.running_resistance_n + forces.gradient_n
 

@@ -9,7 +9,7 @@ from tpss.driving.braking import (
     plan_length,
     shortest_stop,
 )
-from tpss.driving.data import DrivingData, limits_of
+from tpss.driving.data import DrivingData
 from tpss.driving.motion import (
     apply_solution_uniformly,
     force_to_target,
@@ -18,7 +18,7 @@ from tpss.driving.motion import (
 )
 from tpss.driving.speed_limits import SLACK_M, UNIFORM, respect_limits_ahead
 from tpss.driving.stops import distance_to_stop, stand_at_stop
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.vehicle.train import Phase, Plan, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -32,10 +32,10 @@ def least_stopping_distance(speed_m_s: float, retardation_m_s2: float, step_s: f
 @inlined
 def allowed_speed(train: Train, kind: TrainType, target_m_s: float, data: DrivingData) -> float:
     """Highest speed after this step, up to the target, that lower limits ahead allow. [m/s]"""
-    limits = limits_of(kind, data.limits)
+    row = at(kind.profile)
     return respect_limits_ahead(
         train.motion.position_m, train.motion.speed_m_s, target_m_s,
-        limits.from_m, limits.value,
+        data.limits.from_m[row], data.limits.value[row],
         kind.highest_retardation_m_s2, data.options.step_s, UNIFORM,
     )  # fmt: skip
 

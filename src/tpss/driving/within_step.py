@@ -11,7 +11,7 @@ from tpss.driving.course import (
     part_of_step,
     stopping_distance,
 )
-from tpss.driving.data import DrivingData, limits_of
+from tpss.driving.data import DrivingData
 from tpss.driving.motion import (
     apply_solution_uniformly,
     drive_uniformly,
@@ -27,7 +27,7 @@ from tpss.driving.speed_limits import (
     slows_down,
 )
 from tpss.driving.stops import distance_to_stop, stand_at_stop
-from tpss.kernel import inlined, kernel
+from tpss.kernel import at, inlined, kernel
 from tpss.physics.locomotive import acceleration
 from tpss.vehicle.train import Course, Phase, Train, brakes_within_step
 from tpss.vehicle.train_type import TrainType
@@ -40,16 +40,17 @@ def allowed_speed(train: Train, kind: TrainType, target_m_s: float, data: Drivin
     A train that has to slow down for one is put on its course.  One that cannot hold its speed aims at
     the same speed uniformly, which takes less distance.
     """
-    limits, v, decision = limits_of(kind, data.limits), train.motion.speed_m_s, train.decision
+    from_m, limit_m_s = data.limits.from_m[at(kind.profile)], data.limits.value[at(kind.profile)]
+    v, decision = train.motion.speed_m_s, train.decision
     holds = train.motion.phase == Phase.DRIVING and decision.course != Course.LIMIT_FIRST
     slowing = HOLD_FIRST if holds else UNIFORM
     allowed = respect_limits_ahead(
-        train.motion.position_m, v, target_m_s, limits.from_m, limits.value,
+        train.motion.position_m, v, target_m_s, from_m, limit_m_s,
         kind.highest_retardation_m_s2, data.options.step_s, slowing,
     )  # fmt: skip
     if allowed == OUT_OF_REACH:
         return respect_limits_ahead(
-            train.motion.position_m, v, target_m_s, limits.from_m, limits.value,
+            train.motion.position_m, v, target_m_s, from_m, limit_m_s,
             kind.highest_retardation_m_s2, data.options.step_s, UNIFORM,
         )  # fmt: skip
     if holds and decision.course == Course.UNIFORM and allowed < min(v, target_m_s):
@@ -80,9 +81,9 @@ def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
     """
     h, retardation = data.options.step_s, kind.highest_retardation_m_s2
     v, distance_m = train.motion.speed_m_s, distance_to_stop(train, data.stops)
-    limits, decision = limits_of(kind, data.limits), train.decision
-    position_m = train.motion.position_m
-    limited = slows_down(v, position_m, position_m + distance_m, limits.from_m, limits.value)
+    from_m, limit_m_s = data.limits.from_m[at(kind.profile)], data.limits.value[at(kind.profile)]
+    position_m, decision = train.motion.position_m, train.decision
+    limited = slows_down(v, position_m, position_m + distance_m, from_m, limit_m_s)
     if decision.course != Course.EVEN and not limited:
         decision.course = Course.LATEST
         hold_s, brake_s = latest_braking(v, distance_m, retardation)
@@ -96,7 +97,7 @@ def aim_to_stop(train: Train, kind: TrainType, data: DrivingData) -> bool:
         _follow(0.0, even_braking(v, distance_m, retardation), train, kind, data)
         target = decision.target_speed_m_s
         if limited and target > respect_limits_ahead(
-            position_m, v, target, limits.from_m, limits.value, retardation, h, UNIFORM
+            position_m, v, target, from_m, limit_m_s, retardation, h, UNIFORM
         ):
             train.motion.phase = Phase.DRIVING
             decision.course = Course.LIMIT_FIRST

@@ -5,8 +5,10 @@ import numpy.typing as npt
 
 from tpss.kernel import plain
 from tpss.model.trains import build_train_types
+from tpss.numerics.curve import curve_at
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail, adhesion_limit
+from tpss.physics.constants import GRAVITY_M_S2
 from tpss.physics.running_resistance import running_resistance
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
@@ -38,6 +40,12 @@ def level_resistance(train: Train, speed_m_s: Floats) -> Floats:
 
 def adhesion(train: Train, speed_m_s: Floats, simulation: Simulation) -> Floats:
     """Force that the rails pass on. [N]"""
+    if train.adhesion is not None:
+        types, points = build_train_types([train])
+        curve, weight_n = types[0].adhesion, types[0].adhesive_mass_kg * GRAVITY_M_S2
+        return np.array(
+            [weight_n * plain(curve_at)(v, curve.first, curve.points, points) for v in speed_m_s]
+        )
     rail = Rail[simulation.rail.upper()]
     factor = 1.0 if simulation.adhesion_speed_unit == "m/s" else 3.6
     return np.array(

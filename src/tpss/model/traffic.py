@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tpss.driving.data import Braking, Driver, limits_of
+from tpss.driving.data import Braking, Driver, Profile
 from tpss.driving.manners import stopping_distance
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
@@ -64,7 +64,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     position_m, speed = service.initial[i]
     key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
     kind, h = model.types[service.train_type], model.options.step_s
-    limits = plain(limits_of)(kind, model.limits)
+    limits = Profile(*(values[kind.profile] for values in model.limits))
     retardation = kind.highest_retardation_m_s2
     here = plain(index_at)(position_m, limits.from_m)
     limit = min(limits.value[here], kind.highest_speed_m_s)

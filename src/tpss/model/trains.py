@@ -77,6 +77,7 @@ def _train_type(train: Train, lengths_m: list[float], book: CurveBook) -> Any:
         highest_retardation_m_s2=si(train, "max_retardation_m_s2"),
         highest_speed_m_s=si(train, "max_speed_kmh"),
         profile=lengths_m.index(si(train, "length_m")),
+        adhesion=CurvePlace.row() if train.adhesion is None else _over_speed(train.adhesion, book),
         efficiency=_over_speed(train.efficiency, book),
         effort=_effort(train, book),
         line_current=_line_current(train),

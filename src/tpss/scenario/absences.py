@@ -79,9 +79,10 @@ ABSENCES = (
     Absence(r"tunnel", "tunnels"),
     Absence(r"signal|block|interlocking", "signals and blocks"),
     Absence(
-        r"adhesion(?!_speed)|friction|adhesion_curve",
-        "an adhesion of one's own",
-        'choose simulation.rail = "dry" or "wet", and adhesive_mass_t',
+        r"adhesion(?!_speed)|friction",
+        "an adhesion of the whole line",
+        "choose simulation.rail, or give adhesion of a train: a number or a curve over speed",
+        ("simulation", "line"),
     ),
     Absence(
         r"(limits|speed_limits|stations|timetable)_file",

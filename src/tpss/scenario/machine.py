@@ -11,6 +11,7 @@ MOST_VOLTAGES = 16
 """Rows that a table of tractive effort may have."""
 
 Ratio = Annotated[Real, Field(ge=0.1, le=1)]
+Coefficient = Annotated[Real, Field(ge=0.01, le=1)]
 
 Speeds = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=500)], ...],
@@ -43,6 +44,12 @@ class Curve(Part):
         return value
 
 
+class AdhesionCurve(Curve):
+    """An adhesion coefficient over speed; between its points it is interpolated without overshoot."""
+
+    value: tuple[Coefficient, ...] = Field(description="Coefficients at these speeds.")
+
+
 def _is_a_table(value: object) -> bool:
     return isinstance(value, dict | Part)
 
@@ -52,6 +59,13 @@ RatioOverSpeed = Annotated[
     Discriminator(lambda value: "curve" if _is_a_table(value) else "number"),
 ]
 """A number, or a curve over speed."""
+
+
+AdhesionOverSpeed = Annotated[
+    Annotated[Coefficient, Tag("number")] | Annotated[AdhesionCurve, Tag("curve")],
+    Discriminator(lambda value: "curve" if _is_a_table(value) else "number"),
+]
+"""A coefficient, or a curve over speed."""
 
 
 def _depth(value: object) -> str:

@@ -8,6 +8,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from tpss import library
 from tpss.scenario.fields import Name, Part, Real, entry_of, fault
 from tpss.scenario.machine import (
+    AdhesionOverSpeed,
     CurrentLimitation,
     EffortTable,
     RatioOverSpeed,
@@ -42,6 +43,11 @@ class Train(Part):
     )
     mass_t: Real = Field(ge=1, le=20_000, description="Mass of the whole train.")
     adhesive_mass_t: Real = Field(ge=1, le=20_000, description="Mass on driven axles.")
+    adhesion: AdhesionOverSpeed | None = Field(
+        default=None,
+        description="Adhesion coefficient between the driven wheels and the rails: a number, or a "
+        "curve over speed; leave it out: by `simulation.rail`.",
+    )
     length_m: Real = Field(
         default=0.0,
         ge=0,

@@ -80,6 +80,8 @@ class TrainType(Record):
     """Row of the line's profiles, which are laid out for each length of train."""
     resistance: DavisCoefficients
     """Running resistance on straight level track."""
+    adhesion: Curve
+    """Adhesion coefficient over speed, μ; without points that of the rails holds. [1]"""
     efficiency: Curve
     """Efficiency over speed, from pantograph to motor shaft. [1]"""
     power_factor: Curve
