@@ -190,6 +190,8 @@ def test_derived_scenarios_run(tmp_path):
 def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
     assert set(PLACES) == {
         "line.stations.*.position_km",
+        "line.curves.*.from_km",
+        "line.curves.*.to_km",
         "line.speed_limits.*.from_km",
         "supply.converter_stations.*.position_km",
         "supply.transformer_stations.*.position_km",
