@@ -293,7 +293,11 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
     inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
     if model.options.driver == Driver.AGGRESSIVE:
-        inertia_kg = np.where(state == TrainState.COASTING, kind.coasting_inertia_kg, inertia_kg)
+        # At its limit and above a driver switches off; below, the machine may give nothing.
+        at = np.searchsorted(model.limits.from_m, trains["position"], side="right") - 1
+        limit = np.minimum(model.limits.value[np.maximum(at, 0)], kind.highest_speed_m_s)
+        coasts = (state == TrainState.COASTING) & (trains["speed"] >= limit)
+        inertia_kg = np.where(coasts, kind.coasting_inertia_kg, inertia_kg)
     rest = rest - inertia_kg * trains["acceleration"]
     driven = (
         (state == TrainState.MOTORING)

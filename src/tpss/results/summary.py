@@ -23,7 +23,7 @@ def summarise(
         "name": scenario.name,
         "description": scenario.description,
         "status": figures.status,
-        **explain(outcome, model),
+        **explain(outcome, model, [station.name for station in figures.stations]),
         "time_step_min": model.options.step_s / 60.0,
         "duration_min": figures.duration_min,
         "studied_train": figures.studied_train,
