@@ -143,7 +143,7 @@ class Homotopy:
                 return self.equations.correct(voltage, 1.0)
             if t < 0.0 or np.abs(voltage).min() < 0.1 or np.abs(voltage).max() > 3.0:
                 return None
-            tangent, sign = self.tangent(voltage, t)
+            tangent, _ = self.tangent(voltage, t)
             tangent, point = tangent * begun, found
             arc = min(LONGEST_ARC, 1.5 * arc)
         return None
@@ -226,7 +226,10 @@ def outcome_of(seed: int) -> tuple[str, str]:
     ending = Ending(int(line.flow.search[0].ending)).name
     ending += " WITHOUT LOAD" if line.flow.search[0].without_load else ""
     begun = without_load(equations)
-    ends = [None if begun is None else Homotopy(equations).follow(begun), loaded_then_apart(equations)]
+    ends = [
+        None if begun is None else Homotopy(equations).follow(begun),
+        loaded_then_apart(equations),
+    ]
     false = any(end is not None and is_sound(equations, end) for end in ends)
     return "false" if false else "confirmed", ending
 

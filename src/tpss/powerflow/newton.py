@@ -355,7 +355,8 @@ def newton(
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
         `LINKED` to begin with the trains' voltages too, in whole steps.
     """
-    kind, passes, after_flat = start, 0, False
+    kind: int = start
+    passes, after_flat = 0, False
     merit, sign, size, trials = math.inf, 1.0, 1.0, 1
     while passes < MOST_PASSES:
         if passes > 0:

@@ -3,8 +3,8 @@ r"""Paths of solutions: from a state that is known to one that is wanted, by ste
 A share t of something is raised from 0 to 1, and the solution x is followed on its way:
 
     `LOADS`                 the loads, t S;              at t = 0 is the state without load
-    `SOURCES_UNLOADED`      how unlike the sources are;  at t = 0 are sources of one voltage without load,
-                                                         and no load: that voltage is everywhere
+    `SOURCES_UNLOADED`      how unlike the sources are, without load;
+                            at t = 0 they have one voltage, which is everywhere
     `LOADS_OF_LIKE_SOURCES` the loads, while the sources are of one voltage
     `SOURCES_LOADED`        how unlike the sources are, while the loads are whole
 
@@ -24,9 +24,9 @@ astray in proportion to h, so a small step gets past it with linked Newton steps
 next line is that of the other side.
 
 What ends a path at t* < 1 is told by what happens at its end.  Beside a turning point, x is x* ± c √(t* - t):
-a little before it, at t, there is a second solution with the other sign of the determinant, opposite to
-the first one, x' ≈ 2 x(t*) - x(t).  If Newton's method finds one from there, the branch has turned.  Where
-the triangle of a machine's load angle shrinks to a point, there is no solution beyond either.  A
+a little before it, at t, there is a second solution with the other sign of the determinant, opposite
+to the first one, x' ≈ 2 x(t*) - x(t).  If Newton's method finds one from there, the branch has turned.
+Where the triangle of a machine's load angle shrinks to a point, there is no solution beyond either.  A
 voltage that leaves its band, or a source out of step, does not end the path: it is followed beyond, as
 it may return.  Otherwise the path is lost, and nothing is known of what lies ahead.
 
@@ -234,7 +234,7 @@ def follow(
     share : float
         Where the path ends; the state is that there.
     status : int
-        The `Solution` of the last step: at share 1 that of the solution, before it of what did not go on.
+        The `Solution` of the last step: where the path ends before 1, of what did not go on.
     passes : int
     """
     # 1. Where it begins.

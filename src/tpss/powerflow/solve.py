@@ -45,7 +45,7 @@ UNSUSPICIOUS = 0.5
 """Changes of the stations' powers up to this are not looked into. [p.u. of the base power]"""
 
 OF_DRAWN = 4.0
-"""How many times what the trains draw, now or a step ago, they may change by besides: lines lose power."""
+"""How many times what the trains draw, now or a step ago, they may change by besides."""
 
 SAME_ROOT = 1e-6
 """Solutions closer than this are the same one. [p.u. of the base voltage]"""
@@ -141,7 +141,7 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
         return True, passes
     ending, more = ending_of_path(reached, SOURCES_UNLOADED, network, flow, loads)
     passes += more
-    flow.search[0].ending = ending
+    flow.search[0].ending = ending  # type: ignore[assignment]
     flow.search[0].without_load = True
     start_flat(network, flow)
     status, more = newton(0.0, WARM, network, flow, loads)
@@ -151,9 +151,7 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
 
 
 @kernel
-def raise_loads(
-    share: float, network: Network, flow: Flow, loads: Loads
-) -> tuple[float, int, int]:
+def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int, int]:
     """Follow the path of the loads from a share of them; return its end, why, and the passes.
 
     The share is that up to which all states are plausible, unless the whole load has a plausible one.
@@ -210,7 +208,7 @@ def search(carried: float, network: Network, flow: Flow, loads: Loads) -> tuple[
         if share == 1.0:
             outcome.ending, outcome.without_load = Ending.FOUND, False
             return share, passes
-        outcome.ending, outcome.without_load = ending, False
+        outcome.ending, outcome.without_load = ending, False  # type: ignore[assignment]
     # 3. The sources, after the loads.
     set_aside(flow)
     found, more = bring_loaded_sources_apart(network, flow, loads)
@@ -295,7 +293,8 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
     passes : int
         Evaluations of the whole network.
     """
-    status, passes, share = Solution.NOT_CONVERGED, 0, 1.0
+    passes, share = 0, 1.0
+    status: int = Solution.NOT_CONVERGED
     if warm:
         status, passes = newton(1.0, WARM, network, flow, loads)
     if status != Solution.SOLVED:

@@ -145,7 +145,9 @@ def _no_state_without_load(
         which = " and ".join(stations[s] for s in order[:2])
         why = f"the no-load voltages or angles of the stations are too far apart, most of all of {which}"
     if ending == Ending.LOST:
-        problem = f"At {time_min:.2f} min no state of the supply was found even without trains; {why}."
+        problem = (
+            f"At {time_min:.2f} min no state of the supply was found even without trains; {why}."
+        )
     else:
         problem = f"At {time_min:.2f} min the supply has no state even without trains: {why}."
     return {"problem": problem, "advice": _ALIGN}

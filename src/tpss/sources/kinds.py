@@ -89,7 +89,7 @@ def is_plausible(voltage: complex, current: complex, running: float, source: Sou
 
 @kernel
 def reserve(voltage: complex, current: complex, running: float, source: Source) -> float:
-    """How far a source is from the end of the states that its law admits: 1 without load, 0 there. [1]"""
+    """How far a source is from the end of what its law admits: 1 without load, 0 there. [1]"""
     if source.kind == SourceKind.CONVERTER:
         return converter_reserve(voltage, current, running, source.converter)
     return 1.0
