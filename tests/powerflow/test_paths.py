@@ -4,17 +4,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from collapses import run
 
 import tpss
 from tpss.powerflow.network import Ending
 from tpss.powerflow.solve import solve
 
+from collapses import run
 from networks import BT, ROTARY, constant_loads, network_of, place, simple_line, sources
 from scenarios import short_line
 
 CASES = Path(__file__).parent / "cases"
-LINES = range(70_000, 70_010)
+LINES = range(70_000, 70_008)
 
 
 def test_no_collapse_of_an_odd_line_is_a_false_one():
@@ -83,7 +83,7 @@ def test_odd_scenarios_end_as_they_should(name, status, words):
 
 
 def test_the_root_after_a_switch_is_that_of_the_path_from_no_load():
-    """Newton's method from the step before finds 39 MW and 35 MW of two stations for a train of 0.5 MW."""
+    """Newton's method from the step before finds 39 MW and 35 MW, for a train of 0.5 MW."""
     result = tpss.simulate(tpss.load_scenario(CASES / "two_roots.toml"))
     fed_w = result.dataset.station_active_power.sel(station=["C2", "C3"])
     assert float(abs(fed_w).max()) < 1e6
@@ -96,13 +96,6 @@ def test_a_machine_beyond_ninety_degrees_is_no_state():
     share, _ = solve(False, case.network, case.flow, case.loads)
     assert share < 0.7
     assert case.flow.search[0].ending in (Ending.OUT_OF_STEP, Ending.LEFT_BAND)
-
-
-def test_stations_in_opposition_have_no_state_even_without_trains():
-    case = simple_line(2e3, [1e3], [1e6 + 0j], ROTARY, unlike(grid_angle_rad=3.0))
-    share, _ = solve(False, case.network, case.flow, case.loads)
-    assert share < 1.0
-    assert case.flow.search[0].without_load
 
 
 @pytest.mark.parametrize("apart_deg", [0.0, 10.0, 20.0])

@@ -355,8 +355,7 @@ def newton(
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
         `LINKED` to begin with the trains' voltages too, in whole steps.
     """
-    kind: int = start
-    passes, after_flat = 0, False
+    kind, passes, after_flat = start, 0, False
     merit, sign, size, trials = math.inf, 1.0, 1.0, 1
     while passes < MOST_PASSES:
         if passes > 0:
@@ -367,7 +366,7 @@ def newton(
         if kind >= LINKED:
             if not math.isfinite(trial):
                 break
-            kind = _go_on_linked(kind, solved, network, flow)
+            kind = _go_on_linked(kind, solved, network, flow)  # type: ignore[assignment]
             size = 1.0
             continue
         if kind == CHECK:

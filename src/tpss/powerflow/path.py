@@ -23,7 +23,7 @@ branch, and close to where it began: else h is halved.  Where a demand's slope j
 astray in proportion to h, so a small step gets past it with linked Newton steps (`chain.Pass`), and the
 next line is that of the other side.
 
-What ends a path at t* < 1 is told by what happens at its end.  Beside a turning point, x is x* ± c √(t* - t):
+What ends a path at t* < 1 is told by what happens there.  Beside a turn, x is x* ± c √(t* - t):
 a little before it, at t, there is a second solution with the other sign of the determinant, opposite
 to the first one, x' ≈ 2 x(t*) - x(t).  If Newton's method finds one from there, the branch has turned.
 Where the triangle of a machine's load angle shrinks to a point, there is no solution beyond either.  A
