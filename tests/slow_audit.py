@@ -279,6 +279,13 @@ def _curve(x: Floats, points: Any) -> Floats:
     return np.asarray(values + step * slopes, dtype=float)
 
 
+def _limits(position_m: Floats, kind: Any, model: Model) -> Floats:
+    """Speed limits that trains of their lengths have to keep. [m/s]"""
+    limits, row = model.limits, np.broadcast_to(kind.profile, position_m.shape)
+    begun = (limits.from_m[row] <= position_m[..., np.newaxis]).sum(axis=-1)
+    return np.asarray(limits.value[row, np.maximum(begun - 1, 0)], dtype=float)
+
+
 def force_balance(outcome: Outcome, model: Model) -> float:
     """Largest |F - F_res - F_brake - M a| of a moving train, relative to its weight. [1]
 
@@ -293,7 +300,10 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
     inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
     if model.options.driver == Driver.AGGRESSIVE:
-        inertia_kg = np.where(state == TrainState.COASTING, kind.coasting_inertia_kg, inertia_kg)
+        # At its limit and above a driver switches off; below, the machine may give nothing.
+        limit = np.minimum(_limits(trains["position"], kind, model), kind.highest_speed_m_s)
+        coasts = (state == TrainState.COASTING) & (trains["speed"] >= limit)
+        inertia_kg = np.where(coasts, kind.coasting_inertia_kg, inertia_kg)
     rest = rest - inertia_kg * trains["acceleration"]
     driven = (
         (state == TrainState.MOTORING)

@@ -2,8 +2,9 @@
 
 from tpss.audit.balances import Balances, worst
 from tpss.driving.data import Braking, Driver
-from tpss.kernel import inlined
+from tpss.kernel import at, inlined
 from tpss.numerics.curve import curve_at
+from tpss.numerics.staircase import index_at
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
@@ -88,6 +89,24 @@ def _braking_motion_error(
 
 
 @inlined
+def _driver_coasts(before: TrainRow, kind: TrainType, model: Model) -> bool:
+    """Whether a train without force and brakes is one whose driver has switched off.
+
+    The original driver does so at the speed limit and above.  Below it he asks for all that the machine
+    gives, which may be nothing: then the train rolls as one that pulls.
+
+    References
+    ----------
+    [Boullanger2009]_, section 2.3.1.
+    """
+    if model.options.driver != Driver.AGGRESSIVE:
+        return False
+    limits, row = model.limits, at(kind.profile)
+    limit = limits.value[row][index_at(before.position, limits.from_m[row])]
+    return before.speed >= min(limit, kind.highest_speed_m_s)
+
+
+@inlined
 def _audit_motion(
     step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
 ) -> None:
@@ -104,7 +123,7 @@ def _audit_motion(
     state = recording.train_state[step, i]
     if state in (TrainState.MOTORING, TrainState.COASTING, TrainState.BRAKING):
         inertia_kg = kind.inertia_kg
-        if model.options.driver == Driver.AGGRESSIVE and state == TrainState.COASTING:
+        if state == TrainState.COASTING and _driver_coasts(before, kind, model):
             inertia_kg = kind.coasting_inertia_kg
         rest = before.tractive_force - before.braking_force - before.running_resistance
         rest -= before.gradient_force + inertia_kg * before.acceleration

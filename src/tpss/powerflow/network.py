@@ -5,6 +5,7 @@ one node or section together; to compiled code an array of them is one argument.
 """
 
 from collections.abc import Sequence
+from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
 from tpss.powerflow.system import System
-from tpss.record import Record, Records
+from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
@@ -29,6 +30,21 @@ SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
 
 EPSILON = float(np.finfo(float).eps)
+
+
+class Ending(IntEnum):
+    """How a search for a solution ended that no usual start has found."""
+
+    FOUND = 0
+    """With a solution, or there was no search."""
+    TURNED = 1
+    """The branch of solutions turns back at the share of the load that is told."""
+    LEFT_BAND = 2
+    """There a voltage leaves the plausible band."""
+    OUT_OF_STEP = 3
+    """There a source leaves the states that its law admits."""
+    LOST = 4
+    """The branch was followed no further, and no end of it was seen."""
 
 
 class Section(Record):
@@ -88,6 +104,12 @@ class NodeFlow(Unknown):
     """Voltage of the last time step. [V]"""
     before_v: complex
     """Voltage of the one before. [V]"""
+    last_leaving_a: complex
+    """Current into sections and branches in the last time step. [A]"""
+    passed_v: complex
+    """Voltage at the point before the last good one on a path of solutions. [V]"""
+    aside_v: complex
+    """Voltage of a solution that is put aside while another one is looked for. [V]"""
 
 
 class SectionFlow(Record):
@@ -115,6 +137,10 @@ class SectionFlow(Record):
     """Current of the last time step. [A]"""
     before_a: complex
     """Current of the one before. [A]"""
+    passed_a: complex
+    """Current at the point before the last good one on a path of solutions. [A]"""
+    aside_a: complex
+    """Current of a solution that is put aside while another one is looked for. [A]"""
     first: int
     """Bounds of its trains in `Flow.standing`."""
     end: int
@@ -143,6 +169,25 @@ class Standing(Record):
     """Line between the train and the train or node before it. [m]"""
     voltage_v: complex
     """Voltage at its pantograph. [V]"""
+    good_v: complex
+    """The one at the last good point of a path of solutions. [V]"""
+    passed_v: complex
+    """The one at the point before that. [V]"""
+
+
+class Search(Record):
+    """How the last search for a solution ended that no usual start has found."""
+
+    ending: Ending
+    """How it ended."""
+    without_load: bool
+    """Whether it ended so before there was any load: the sources of a network alone have no state."""
+    moved_v: float
+    """Largest change of a train's voltage by the last linked step. [V]"""
+    drawn_va: float
+    """Powers that the trains draw at the last solution, summed without sign. [VA]"""
+    last_drawn_va: float
+    """The same in the last time step. [VA]"""
 
 
 class Network(NamedTuple):
@@ -172,6 +217,10 @@ class Flow(NamedTuple):
     blocks: Records[Block]
     sensitivity: Complexes
     """Of a chain's voltage and current to its start voltage and current, shape (2, 2, 2)."""
+    laws: Records[Source]
+    """The sources as they are while they are brought apart from like ones."""
+    search: Records[Search]
+    """One record."""
 
 
 class Loads(NamedTuple):
@@ -283,6 +332,8 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         sources=SourceFlow.blank(network.sources.size),
         blocks=Block.blank(network.admittance_s.size),
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
+        laws=copy_of_records(network.sources),
+        search=Search.blank(1),
     )
     flow.sources.running[:] = network.sources["installed"]
     flow.standing.train[:] = np.arange(n_trains)

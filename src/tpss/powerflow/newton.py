@@ -28,6 +28,11 @@ The determinant of the whole Jacobian is, but for a positive factor, the product
 the pivots.  From zero load on it stays positive until the solution branch turns, so its sign
 distinguishes the stable branch from the one beyond the turning point.
 
+A step is halved until it lowers the sum of squares.  Where the slope of a demand jumps (a current
+limitation begins, a machine reaches its limit) that may be in vain: the slope of this side leads
+across, and beyond it another one holds.  Linked steps (`Pass.LINKED`, see `chain`) are taken whole:
+the next one begins on the other side, with its slope, and from close by they end on the right one.
+
 References
 ----------
 [Boullanger2009]_, eq. (3.5), (F.29)-(F.41).
@@ -47,7 +52,16 @@ from tpss.numerics.pairs import (
     scaled,
     squared,
 )
-from tpss.powerflow.chain import CHECK, FLAT, WARM, Pass, run_chain
+from tpss.powerflow.chain import (
+    CHECK,
+    FLAT,
+    LINKED,
+    MOVE,
+    WARM,
+    Pass,
+    run_chain,
+    run_linked_chain,
+)
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
 
@@ -58,6 +72,9 @@ its sign over so short a distance except at the turning point itself. [p.u.]"""
 MOST_PASSES = 40
 MOST_HALVINGS = 12
 
+SETTLED = 1e-7
+"""Linked passes end where no train's voltage moves further. [p.u.]"""
+
 
 class Solution(IntEnum):
     """How Newton's method ended."""
@@ -65,9 +82,11 @@ class Solution(IntEnum):
     SOLVED = 0
     NOT_CONVERGED = 1
     IMPLAUSIBLE = 2
-    """A voltage outside the plausible band, or a source in a state that its law does not admit."""
+    """A voltage outside the plausible band."""
     WRONG_BRANCH = 3
     """A solution beyond the turning point of the branch that begins at no load."""
+    OUT_OF_STEP = 4
+    """A source in a state that its law does not admit."""
 
 
 @kernel
@@ -148,7 +167,7 @@ def _evaluate_node(n: int, start: Pass, network: Network, flow: Flow) -> float:
     if s < 0:
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
-    derivatives, running = start != CHECK, flow.sources[at(s)].running
+    derivatives, running = start != CHECK and start != MOVE, flow.sources[at(s)].running
     value, by_voltage, by_current = residual(
         node.voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
     )
@@ -176,21 +195,24 @@ def evaluate(
     merit : float
         Sum of squares that a step has to lower; infinite where the pass has no result.
     sign : float
-        Sign of the product of the sections' determinants (not with `CHECK`).
+        Sign of the product of the sections' determinants (not with `CHECK` and `MOVE`).
     """
     # 1. Lumped branches.
     _leave_by_branches(network, flow)
-    if start != CHECK:
+    if start != CHECK and start != MOVE:
         _stamp_branches(network, flow)
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
         section, solution = network.sections[at(s)], flow.sections[at(s)]
-        gap = run_chain(s, scale, start, network, flow, loads)
+        if start >= LINKED:
+            gap = run_linked_chain(s, scale, start, network, flow, loads)
+        else:
+            gap = run_chain(s, scale, start, network, flow, loads)
         solution.gap_v = gap - flow.nodes[at(section.end_node)].voltage_v
         flow.nodes[at(section.start_node)].leaving_current_a += solution.current_a
         flow.nodes[at(section.end_node)].leaving_current_a -= solution.end_current_a
-        if start != CHECK:
+        if start != CHECK and start != MOVE:
             sign *= _stamp_section(s, network, flow)
         square = squared(solution.gap_v) * network.system.per_square_volt
         largest = max(largest, square * section.gap_weight)
@@ -226,6 +248,15 @@ def _mark_base(flow: Flow) -> None:
         flow.nodes[at(node)].base_v = flow.nodes[at(node)].voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].base_a = flow.sections[at(s)].current_a
+
+
+@inlined
+def _stay(flow: Flow) -> None:
+    """Make the step none: at a solution there may be no direction, as pivots may be singular."""
+    for n in range(flow.nodes.size):
+        flow.nodes[at(n)].direction_v = 0.0
+    for s in range(flow.sections.size):
+        flow.sections[at(s)].direction_a = 0.0
 
 
 @inlined
@@ -287,9 +318,28 @@ def sources_are_plausible(network: Network, flow: Flow) -> bool:
 def _conclude(sign: float, network: Network, flow: Flow) -> Solution:
     """Status of a state without mismatch."""
     _close_gaps(flow)
-    if not (voltages_are_plausible(network, flow) and sources_are_plausible(network, flow)):
+    if not sign > 0.0:
+        return Solution.WRONG_BRANCH
+    if not voltages_are_plausible(network, flow):
         return Solution.IMPLAUSIBLE
-    return Solution.SOLVED if sign > 0.0 else Solution.WRONG_BRANCH
+    return Solution.SOLVED if sources_are_plausible(network, flow) else Solution.OUT_OF_STEP
+
+
+@inlined
+def _go_on_linked(kind: Pass, solved: bool, network: Network, flow: Flow) -> int:
+    """Find the next step after a linked pass, or whether the trains have settled after its move.
+
+    Return the kind of the next pass.
+    """
+    if kind == LINKED:
+        _find_direction(network, flow)
+        if solved:
+            _stay(flow)
+        _mark_base(flow)
+        flow.search[0].moved_v = 0.0
+        return MOVE
+    settled = flow.search[0].moved_v < SETTLED * network.system.base_voltage_v
+    return WARM if settled else LINKED
 
 
 @kernel
@@ -304,6 +354,7 @@ def newton(
         Factor on all loads. [1]
     start : Pass
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
+        `LINKED` to begin with the trains' voltages too, in whole steps.
     """
     kind, passes, after_flat = start, 0, False
     merit, sign, size, trials = math.inf, 1.0, 1.0, 1
@@ -313,6 +364,12 @@ def newton(
         mismatch, trial, chains = evaluate(scale, kind, network, flow, loads)
         passes += 1
         solved = mismatch < network.tolerance and kind != FLAT
+        if kind >= LINKED:
+            if not math.isfinite(trial):
+                break
+            kind = _go_on_linked(kind, solved, network, flow)  # type: ignore[assignment]
+            size = 1.0
+            continue
         if kind == CHECK:
             if not solved:
                 kind = WARM  # the derivatives at the same place

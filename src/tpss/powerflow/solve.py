@@ -2,20 +2,53 @@
 
 1. Newton from the last step's state.
 2. Newton from a flat start (all voltages at their base value).
-3. Load continuation: all loads are raised together from zero, by steps that shrink where Newton
-   fails.  What it reaches is on the stable branch; where it ends below the full load, no solution
-   exists on that branch, and the share of the load that could be carried is the result.
+3. Load continuation from base voltage: all loads are raised together from zero, by steps that shrink
+   where Newton fails.
+4. The paths of `powerflow.path`, with ever smaller steps: the state without load from that of like
+   sources; from there the loads, to the whole of them or to the end of the path, also through states
+   that are implausible; and once more, with the loads raised first and the sources brought apart then.
+   Where no path leads to the whole load, the share at which that of the loads ends is the result, and
+   `Flow.search` says how it ended.
+
+What 1 to 3 find has the sign of the determinant that belongs to the stable branch, but another branch
+may have it as well: stations out of phase can feed each other.  So where the stations' powers have
+changed by more than the trains draw, the solution is held against the one to which the path from the
+state without load leads, and that one counts.
 """
 
 from tpss.kernel import at, inlined, kernel
+from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
-from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.network import Ending, Flow, Loads, Network
 from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.path import (
+    BEYOND,
+    LOADS,
+    LOADS_OF_LIKE_SOURCES,
+    SOURCES_LOADED,
+    SOURCES_UNLOADED,
+    STRICT,
+    ending_of_path,
+    follow,
+    predict_on_path,
+    set_aside,
+    start_alike,
+    take_back,
+)
 
 FIRST_STEP = 0.25
 STEP_GROWTH = 1.5
 SHORTEST_STEP = 1e-4
 """Continuation gives up where the load can grow by less than this share. [1]"""
+
+UNSUSPICIOUS = 0.5
+"""Changes of the stations' powers up to this are not looked into. [p.u. of the base power]"""
+
+OF_DRAWN = 4.0
+"""How many times what the trains draw, now or a step ago, they may change by besides."""
+
+SAME_ROOT = 1e-6
+"""Solutions closer than this are the same one. [p.u. of the base voltage]"""
 
 
 @inlined
@@ -36,6 +69,8 @@ def remember(first: int, flow: Flow) -> None:
         node = flow.nodes[at(n)]
         node.before_v = node.voltage_v if first else node.last_v
         node.last_v = node.voltage_v
+        node.last_leaving_a = node.leaving_current_a
+    flow.search[0].last_drawn_va = flow.search[0].drawn_va
     for s in range(flow.sections.size):
         section = flow.sections[at(s)]
         section.before_a = section.current_a if first else section.last_a
@@ -94,6 +129,153 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
     return share, passes
 
 
+@kernel
+def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple[bool, int]:
+    """Bring the sources apart without load; return whether that succeeded, and the passes.
+
+    Where their path ends before, `flow.search` says how, and Newton's method tries it from base voltage.
+    """
+    start_alike(network, flow)
+    reached, _, passes = follow(0.0, SOURCES_UNLOADED, BEYOND, network, flow, loads)
+    if reached == 1.0:
+        return True, passes
+    ending, more = ending_of_path(reached, SOURCES_UNLOADED, network, flow, loads)
+    passes += more
+    flow.search[0].ending = ending  # type: ignore[assignment]
+    flow.search[0].without_load = True
+    start_flat(network, flow)
+    status, more = newton(0.0, WARM, network, flow, loads)
+    if status != Solution.SOLVED:
+        predict_on_path(0.0, flow)
+    return status == Solution.SOLVED, passes + more
+
+
+@kernel
+def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int, int]:
+    """Follow the path of the loads from a share of them; return its end, why, and the passes.
+
+    The share is that up to which all states are plausible, unless the whole load has a plausible one.
+    """
+    share, status, passes = follow(share, LOADS, STRICT, network, flow, loads)
+    if share == 1.0:
+        return share, Ending.FOUND, passes
+    if status != Solution.IMPLAUSIBLE and status != Solution.OUT_OF_STEP:
+        ending, more = ending_of_path(share, LOADS, network, flow, loads)
+        return share, ending, passes + more
+    set_aside(flow)
+    whole, after, more = follow(share, LOADS, BEYOND, network, flow, loads)
+    passes += more
+    if whole == 1.0 and after == Solution.SOLVED:
+        return whole, Ending.FOUND, passes
+    take_back(flow)
+    ending = Ending.LEFT_BAND if status == Solution.IMPLAUSIBLE else Ending.OUT_OF_STEP
+    return share, ending, passes
+
+
+@kernel
+def bring_loaded_sources_apart(network: Network, flow: Flow, loads: Loads) -> tuple[bool, int]:
+    """Raise the loads of like sources, then bring these apart; return whether there is a solution."""
+    start_alike(network, flow)
+    reached, _, passes = follow(0.0, LOADS_OF_LIKE_SOURCES, BEYOND, network, flow, loads)
+    if reached < 1.0:
+        return False, passes
+    reached, status, more = follow(0.0, SOURCES_LOADED, BEYOND, network, flow, loads)
+    return reached == 1.0 and status == Solution.SOLVED, passes + more
+
+
+@kernel
+def search(carried: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+    """Look for a solution by paths; return the share of the load that is carried, and the passes.
+
+    Parameters
+    ----------
+    carried : float
+        Share whose solution the state is, for the case that there is none without load. [1]
+    """
+    outcome = flow.search[0]
+    outcome.ending, outcome.without_load = Ending.FOUND, False
+    # 1. The state without load.
+    set_aside(flow)
+    share = 0.0
+    known, passes = find_state_without_load(network, flow, loads)
+    if not known and carried > 0.0:
+        take_back(flow)
+        known, share = True, carried
+    # 2. The loads.
+    if known:
+        share, ending, more = raise_loads(share, network, flow, loads)
+        passes += more
+        if share == 1.0:
+            outcome.ending, outcome.without_load = Ending.FOUND, False
+            return share, passes
+        outcome.ending, outcome.without_load = ending, False  # type: ignore[assignment]
+    # 3. The sources, after the loads.
+    set_aside(flow)
+    found, more = bring_loaded_sources_apart(network, flow, loads)
+    passes += more
+    if found:
+        outcome.ending, outcome.without_load = Ending.FOUND, False
+        return 1.0, passes
+    # 4. The end of the loads' path; the last trials have left their voltages at the trains.
+    take_back(flow)
+    if known:
+        newton(share, WARM, network, flow, loads)
+    return share, passes
+
+
+@inlined
+def drawn_power(flow: Flow, loads: Loads) -> float:
+    """Powers that the trains on the line draw, active and reactive ones summed without sign. [VA]"""
+    drawn_va = 0.0
+    for s in range(flow.sections.size):
+        for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):
+            demand = loads.trains[at(flow.standing[at(k)].train)].demand
+            drawn_va += abs(demand.active_power_w) + abs(demand.reactive_power_var)
+    return drawn_va
+
+
+@inlined
+def stations_jumped(network: Network, flow: Flow, loads: Loads) -> bool:
+    """Whether the stations' powers have changed since the last time step by more than trains explain."""
+    drawn_va, change_va = drawn_power(flow, loads), 0.0
+    for s in range(network.sources.size):
+        node = flow.nodes[at(network.sources[at(s)].node)]
+        before = node.last_v * node.last_leaving_a.conjugate()
+        change_va += magnitude(node.voltage_v * node.leaving_current_a.conjugate() - before)
+    flow.search[0].drawn_va = drawn_va
+    explained_va = OF_DRAWN * max(drawn_va, flow.search[0].last_drawn_va)
+    return change_va > explained_va + UNSUSPICIOUS * network.system.base_power_va
+
+
+@kernel
+def differs_from_aside(network: Network, flow: Flow) -> bool:
+    """Whether a state is another one than that put aside."""
+    largest_v = 0.0
+    for n in range(flow.nodes.size):
+        node = flow.nodes[at(n)]
+        largest_v = max(largest_v, magnitude(node.voltage_v - node.aside_v))
+    return largest_v > SAME_ROOT * network.system.base_voltage_v
+
+
+@kernel
+def take_root_of_path(network: Network, flow: Flow, loads: Loads) -> int:
+    """Take the solution to which the path from no load leads, if it does; return the passes.
+
+    Where it is the one that there is, or the path does not reach the whole load, that one stays.
+    """
+    set_aside(flow)
+    known, passes = find_state_without_load(network, flow, loads)
+    flow.search[0].ending = Ending.FOUND
+    if known:
+        share, status, more = follow(0.0, LOADS, BEYOND, network, flow, loads)
+        passes += more
+        if share == 1.0 and status == Solution.SOLVED and differs_from_aside(network, flow):
+            return passes
+    take_back(flow)
+    _, more = newton(1.0, WARM, network, flow, loads)
+    return passes + more
+
+
 @inlined
 def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Solve a load flow.
@@ -107,19 +289,24 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
     -------
     share : float
         1.0, or the share of all loads beyond which no solution was found; `flow` then holds the
-        state at that share.
+        state at that share, and in `search` why that is the end.
     passes : int
         Evaluations of the whole network.
     """
-    passes = 0
+    passes, share = 0, 1.0
+    status: int = Solution.NOT_CONVERGED
     if warm:
         status, passes = newton(1.0, WARM, network, flow, loads)
-        if status == Solution.SOLVED:
-            return 1.0, passes
-    start_flat(network, flow)
-    status, more = newton(1.0, FLAT, network, flow, loads)
-    passes += more
-    if status == Solution.SOLVED:
-        return 1.0, passes
-    share, more = continue_from_zero(network, flow, loads)
-    return share, passes + more
+    if status != Solution.SOLVED:
+        start_flat(network, flow)
+        status, more = newton(1.0, FLAT, network, flow, loads)
+        passes += more
+    if status != Solution.SOLVED:
+        share, more = continue_from_zero(network, flow, loads)
+        passes += more
+        if share < 1.0:
+            share, more = search(share, network, flow, loads)
+            return share, passes + more
+    if stations_jumped(network, flow, loads):
+        passes += take_root_of_path(network, flow, loads)
+    return share, passes

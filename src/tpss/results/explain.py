@@ -1,14 +1,16 @@
 """Explanations of a run: why it ended early, what would help, what was limited."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
 
+from tpss.powerflow.network import Ending
 from tpss.results.advice import STRENGTHEN, forces_on, stall_advice, what_binds
 from tpss.run.run import INTERRUPTED, Outcome, Run, on_line
 from tpss.scenario.scenario import Scenario
+from tpss.sources.kinds import SourceKind
 from tpss.step.model import Model, RunControl
 from tpss.step.state import Status
 
@@ -23,6 +25,15 @@ _FEED_LESS = (
 _UNLOADED = (
     "Less traffic does not help. Feed the line near its open end, shorten it there, or lower what "
     "raises the voltage: the catenary's capacitance_nf_per_km, or no_load_voltage_kv of the stations."
+)
+_TRIED = (
+    "Tried were a start from the step before, from base voltage, the loads raised together from zero by "
+    "ever smaller steps, and stations made alike and brought apart."
+)
+_TRY_OTHERS = "Try a shorter time step."
+_ALIGN = (
+    "Bring the stations' no_load_voltage_kv and grid_angle_deg closer together, lower their reactances, "
+    "run more converters, or lower the catenary's and the cables' capacitance."
 )
 
 _LIMITED = {
@@ -41,8 +52,12 @@ _LIMITED = {
 def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str]:
     """Problem and advice of a run that did not finish; empty for one that did."""
     time_min = outcome.steps * model.options.step_s / 60.0
+    stations = [station.name for station in scenario.supply.stations]
     if outcome.status == "collapsed":
-        return _collapse(outcome, model, time_min)
+        if outcome.state.flow.search[0].without_load:
+            unloaded = _collapse_without_load(model, time_min)
+            return unloaded or _no_state_without_load(outcome, model, time_min, stations)
+        return _collapse(outcome, model, time_min, stations)
     if outcome.status == "stalled":
         return _stall(outcome, model, scenario, time_min)
     if outcome.status == INTERRUPTED:
@@ -51,9 +66,11 @@ def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str
     return {}
 
 
-def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]:
+def _collapse(
+    outcome: Outcome, model: Model, time_min: float, stations: Sequence[str]
+) -> dict[str, str]:
     flow, state = outcome.state.flow, outcome.state
-    share = float(state.clock[0].carried_share)
+    share, ending = float(state.clock[0].carried_share), flow.search[0].ending
     places = flow.standing[: on_line(state).sum()]
     drawing = state.trains["demand"][places["train"]]
     active_mw = drawing["active_power_w"].sum() / 1e6
@@ -62,13 +79,25 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
         return unloaded
     system = model.network.system
     lowest_kv, highest_kv = system.lowest_voltage_v / 1e3, system.highest_voltage_v / 1e3
-    problem = (
-        f"At {time_min:.2f} min the line cannot carry its load: {len(places)} trains demand "
-        f"{active_mw:.2f} MW and {reactive_mvar:.2f} Mvar, and beyond {100 * share:.1f} % of that the "
-        f"load flow has no stable solution with all voltages between {lowest_kv:.2f} and "
-        f"{highest_kv:.2f} kV."
-    )
+    asked = f"{len(places)} trains demand {active_mw:.2f} MW and {reactive_mvar:.2f} Mvar"
+    band = f"with all voltages between {lowest_kv:.2f} and {highest_kv:.2f} kV"
+    cannot = f"At {time_min:.2f} min the line cannot carry its load: {asked}, and beyond "
     advice = STRENGTHEN
+    if ending == Ending.LOST:
+        problem = (
+            f"At {time_min:.2f} min no solution of the load flow was found: {asked}. {_TRIED} The loads "
+            f"could be raised to {100 * share:.1f} % {band}, and why not further is not known."
+        )
+        advice = f"{_TRY_OTHERS} {STRENGTHEN}"
+    elif ending == Ending.OUT_OF_STEP:
+        problem = (
+            f"{cannot}{100 * share:.1f} % of that {_least_in_step(outcome, model, stations)} falls out "
+            "of step: the load angle of its machines would pass 90 degrees."
+        )
+    else:
+        problem = (
+            f"{cannot}{100 * share:.1f} % of that the load flow has no stable solution {band}."
+        )
     if len(places) and share > 0.0:
         voltage_kv = np.abs(places["voltage_v"]) / 1e3
         too_high = voltage_kv.max() > ALMOST * highest_kv
@@ -85,18 +114,15 @@ def _collapse(outcome: Outcome, model: Model, time_min: float) -> dict[str, str]
 
 def _collapse_without_load(model: Model, time_min: float) -> dict[str, str] | None:
     """What to say of a line whose voltage leaves the band without any train; None of another."""
-    system = model.network.system
-    if _voltage_without_load(model, system.highest_voltage_v) is not None:
+    highest_kv = model.network.system.highest_voltage_v / 1e3
+    found = _voltage_without_load(model, math.inf)
+    if found is None or found[0] <= model.network.system.highest_voltage_v:
         return None
-    highest_kv = system.highest_voltage_v / 1e3
+    voltage_v, position_m = found
     problem = (
         f"At {time_min:.2f} min the line has no solution with all voltages below {highest_kv:.2f} kV, "
-        "not even without trains"
+        f"not even without trains: it would have {voltage_v / 1e3:.2f} kV at {position_m / 1e3:.2f} km"
     )
-    found = _voltage_without_load(model, math.inf)
-    if found is not None:
-        voltage_v, position_m = found
-        problem += f": it would have {voltage_v / 1e3:.2f} kV at {position_m / 1e3:.2f} km"
     if model.network.sections["susceptance_s_per_m"].max() > 0.0:
         problem += ". The charging current of its catenary raises the voltage"
     return {"problem": f"{problem}.", "advice": _UNLOADED}
@@ -119,6 +145,45 @@ def _voltage_without_load(model: Model, highest_v: float) -> tuple[float, float]
     highest = int(voltages_v.argmax())
     places_m = np.concatenate([sections["start_m"], sections["end_m"]])
     return float(voltages_v[highest]), float(places_m[highest])
+
+
+def _no_state_without_load(
+    outcome: Outcome, model: Model, time_min: float, stations: Sequence[str]
+) -> dict[str, str]:
+    """Words for a supply whose stations do not agree on a state, whatever the trains do."""
+    ending = outcome.state.flow.search[0].ending
+    if ending == Ending.OUT_OF_STEP:
+        which = _least_in_step(outcome, model, stations)
+        why = f"{which} falls out of step, as the load angle of its machines would pass 90 degrees"
+    else:
+        law = model.network.sources.converter
+        phasor = np.where(
+            model.network.sources.kind == SourceKind.GRID,
+            model.network.sources.grid.no_load_voltage_v,
+            law.no_load_voltage_v * np.exp(1j * law.grid_angle_rad),
+        )
+        order = np.argsort(-np.abs(phasor - phasor.mean()), kind="stable")
+        which = " and ".join(stations[s] for s in order[:2])
+        why = f"the no-load voltages or angles of the stations are too far apart, most of all of {which}"
+    if ending == Ending.LOST:
+        problem = (
+            f"At {time_min:.2f} min no state of the supply was found even without trains; {why}."
+        )
+    else:
+        problem = f"At {time_min:.2f} min the supply has no state even without trains: {why}."
+    return {"problem": problem, "advice": _ALIGN}
+
+
+def _least_in_step(outcome: Outcome, model: Model, stations: Sequence[str]) -> str:
+    """Name of the station whose machines are closest to a load angle of 90 degrees, or beyond."""
+    flow, sources = outcome.state.flow, model.network.sources
+    nodes, law, running = flow.nodes[sources.node], sources.converter, flow.sources.running
+    with np.errstate(all="ignore"):
+        reactive_var = (nodes.voltage_v * nodes.leaving_current_a.conj()).imag / running
+        own_v = law.no_load_voltage_v - law.droop_v_per_var * reactive_var
+        along = (own_v**2 + law.generator_reactance_ohm * reactive_var) / own_v**2
+    along[(sources.kind != SourceKind.CONVERTER) | np.isnan(along)] = np.inf
+    return stations[int(np.argmin(along))]
 
 
 def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) -> dict[str, str]:

@@ -11,7 +11,7 @@ the extraction of the thesis has lost the signs, and with Q_50 = 0 nothing depen
 import math
 
 from tpss.kernel import inlined
-from tpss.numerics.pairs import Pair, scaled
+from tpss.numerics.pairs import Pair, magnitude, scaled
 from tpss.record import Record
 
 
@@ -149,10 +149,51 @@ def converter_residual(
 def converter_is_plausible(
     voltage: complex, current: complex, converters: float, law: ConverterLaw
 ) -> bool:
-    """Whether the droop leaves the station a positive voltage.
+    r"""Whether the droop leaves the station a positive voltage, and its machines are in step.
 
     The law continues through zero.  Stations out of phase can meet it with a voltage of turned sign, at
-    some hundred times the reactive power of their machines.
+    some hundred times the reactive power of their machines.  A machine whose load angle (2.3) is beyond
+    90° would fall out of step; there the side of the triangle along the voltage,
+    :math:`U_g^2 + X_q^g Q_G / \#conv`, is negative.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1) and (2.3).
     """
     reactive_var = (voltage * current.conjugate()).imag
-    return converter_voltage(reactive_var, converters, law)[0] > 0.0
+    own_v, _ = converter_voltage(reactive_var, converters, law)
+    along = own_v * own_v + law.generator_reactance_ohm / converters * reactive_var
+    return own_v > 0.0 and along > 0.0
+
+
+@inlined
+def converter_reserve(
+    voltage: complex, current: complex, converters: float, law: ConverterLaw
+) -> float:
+    r"""How far machines are from falling out of step: what is left of the triangle of angle (2.3). [1]
+
+    .. math:: \sqrt{(U_g^2 + X Q)^2 + (X P)^2} / U_g^2, \quad X = X_q^g / \#conv
+
+    1 without load.  Where it is 0 there is no angle, and no solution beyond.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.3).
+    """
+    power = voltage * current.conjugate()
+    own_v, _ = converter_voltage(power.imag, converters, law)
+    x = law.generator_reactance_ohm / converters
+    return magnitude(complex(own_v * own_v + x * power.imag, x * power.real)) / (own_v * own_v)
+
+
+@inlined
+def unloaded_converter(law: ConverterLaw) -> tuple[float, float]:
+    """Magnitude and angle of a station's voltage without load. [V], [rad]"""
+    return law.no_load_voltage_v, law.grid_angle_rad
+
+
+@inlined
+def set_unloaded_converter(magnitude_v: float, angle_rad: float, law: ConverterLaw) -> None:
+    """Give a station another voltage without load."""
+    law.no_load_voltage_v = magnitude_v
+    law.grid_angle_rad = angle_rad

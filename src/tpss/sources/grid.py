@@ -12,7 +12,7 @@ Limits of validity: the voltages of the grid's three phases stay balanced.
 import math
 
 from tpss.kernel import inlined
-from tpss.numerics.pairs import Pair, scaled, squared
+from tpss.numerics.pairs import Pair, magnitude, scaled, squared
 from tpss.record import Record
 
 
@@ -64,3 +64,18 @@ def grid_losses(current: complex, transformers: float, law: GridLaw) -> float:
     [Steimel2014]_, as `grid_impedance`.
     """
     return grid_impedance(transformers, law).real * squared(current)
+
+
+@inlined
+def unloaded_grid(law: GridLaw) -> tuple[float, float]:
+    """Magnitude and angle of a station's voltage without load. [V], [rad]"""
+    voltage = law.no_load_voltage_v
+    return magnitude(voltage), math.atan2(voltage.imag, voltage.real)
+
+
+@inlined
+def set_unloaded_grid(magnitude_v: float, angle_rad: float, law: GridLaw) -> None:
+    """Give a station another voltage without load."""
+    law.no_load_voltage_v = complex(
+        magnitude_v * math.cos(angle_rad), magnitude_v * math.sin(angle_rad)
+    )

@@ -10,8 +10,21 @@ from enum import IntEnum
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import Pair, magnitude
 from tpss.record import Record
-from tpss.sources.converter import ConverterLaw, converter_is_plausible, converter_residual
-from tpss.sources.grid import GridLaw, grid_losses, grid_residual
+from tpss.sources.converter import (
+    ConverterLaw,
+    converter_is_plausible,
+    converter_reserve,
+    converter_residual,
+    set_unloaded_converter,
+    unloaded_converter,
+)
+from tpss.sources.grid import (
+    GridLaw,
+    grid_losses,
+    grid_residual,
+    set_unloaded_grid,
+    unloaded_grid,
+)
 
 
 class SourceKind(IntEnum):
@@ -74,6 +87,31 @@ def is_plausible(voltage: complex, current: complex, running: float, source: Sou
     if source.kind == SourceKind.CONVERTER:
         return converter_is_plausible(voltage, current, running, source.converter)
     return True
+
+
+@kernel
+def reserve(voltage: complex, current: complex, running: float, source: Source) -> float:
+    """How far a source is from the end of what its law admits: 1 without load, 0 there. [1]"""
+    if source.kind == SourceKind.CONVERTER:
+        return converter_reserve(voltage, current, running, source.converter)
+    return 1.0
+
+
+@kernel
+def unloaded(source: Source) -> tuple[float, float]:
+    """Magnitude and angle of a source's voltage without load. [V], [rad]"""
+    if source.kind == SourceKind.GRID:
+        return unloaded_grid(source.grid)
+    return unloaded_converter(source.converter)
+
+
+@kernel
+def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
+    """Give a source another voltage without load; all else of its law stays."""
+    if source.kind == SourceKind.GRID:
+        set_unloaded_grid(magnitude_v, angle_rad, source.grid)
+    else:
+        set_unloaded_converter(magnitude_v, angle_rad, source.converter)
 
 
 @inlined
