@@ -88,7 +88,11 @@ def test_every_citation_stands_in_the_bibliography():
 
 COMPUTE_NO_EQUATION = {
     "physics": {"bridge_outside_training"},
-    "sources": {"converter_is_plausible", "residual", "is_plausible", "losses"},
+    "sources": {
+        "residual", "is_plausible", "losses", "reserve",
+        "unloaded", "unloaded_converter", "unloaded_grid",
+        "set_unloaded", "set_unloaded_converter", "set_unloaded_grid",
+    },
     "vehicle": {
         # Which law holds, and what is evaluated when.
         "update_effort", "highest_force", "_described_force", "effort_extrapolates", "motors_force",

@@ -51,7 +51,7 @@ def test_a_line_of_one_section_has_no_border(as_run):
 )  # fmt: skip
 def test_order_is_by_section_then_place_then_number(as_run, section, place_m, train, behind):
     other = Standing.array([Standing.row(train=3, section=1, place_m=12e3, piece_m=0.0,
-                                         voltage_v=0j)])[0]  # fmt: skip
+                                         voltage_v=0j, good_v=0j, passed_v=0j)])[0]  # fmt: skip
     assert as_run(stands_behind)(section, place_m, train, other) == behind
 
 
