@@ -190,7 +190,7 @@ def start_alike(network: Network, flow: Flow) -> None:
         flow.sections[at(s)].current_a = 0.0
 
 
-@kernel
+@inlined
 def solve_on_way(
     share: float, start: Pass, way: Way, network: Network, flow: Flow, loads: Loads
 ) -> tuple[int, int]:
@@ -263,7 +263,7 @@ def follow(
     return share, status, passes
 
 
-@kernel
+@inlined
 def has_turned(
     share: float, way: Way, network: Network, flow: Flow, loads: Loads
 ) -> tuple[bool, int]:
@@ -284,7 +284,7 @@ def has_turned(
     return turned, passes
 
 
-@kernel
+@inlined
 def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, loads: Loads) -> bool:
     """Whether a source ends a path at the last good point, at a share of what the way raises."""
     solve_on_way(share, LINKED, way, network, flow, loads)
@@ -296,7 +296,7 @@ def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, load
     return False
 
 
-@kernel
+@inlined
 def ending_of_path(
     share: float, way: Way, network: Network, flow: Flow, loads: Loads
 ) -> tuple[int, int]:

@@ -129,7 +129,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
     return share, passes
 
 
-@kernel
+@inlined
 def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple[bool, int]:
     """Bring the sources apart without load; return whether that succeeded, and the passes.
 
@@ -150,7 +150,7 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
     return status == Solution.SOLVED, passes + more
 
 
-@kernel
+@inlined
 def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int, int]:
     """Follow the path of the loads from a share of them; return its end, why, and the passes.
 
@@ -172,7 +172,7 @@ def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tup
     return share, ending, passes
 
 
-@kernel
+@inlined
 def bring_loaded_sources_apart(network: Network, flow: Flow, loads: Loads) -> tuple[bool, int]:
     """Raise the loads of like sources, then bring these apart; return whether there is a solution."""
     start_alike(network, flow)
