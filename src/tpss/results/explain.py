@@ -1,16 +1,18 @@
 """Explanations of a run: why it ended early, what would help, what was limited."""
 
+import cmath
 import math
 from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
 
+from tpss.kernel import plain
 from tpss.powerflow.network import Ending
 from tpss.results.advice import STRENGTHEN, forces_on, stall_advice, what_binds
 from tpss.run.run import INTERRUPTED, Outcome, Run, on_line
 from tpss.scenario.scenario import Scenario
-from tpss.sources.kinds import SourceKind
+from tpss.sources.kinds import SourceKind, unloaded
 from tpss.step.model import Model, RunControl
 from tpss.step.state import Status
 
@@ -156,22 +158,27 @@ def _no_state_without_load(
         which = _least_in_step(outcome, model, stations)
         why = f"{which} falls out of step, as the load angle of its machines would pass 90 degrees"
     else:
-        law = model.network.sources.converter
-        phasor = np.where(
-            model.network.sources.kind == SourceKind.GRID,
-            model.network.sources.grid.no_load_voltage_v,
-            law.no_load_voltage_v * np.exp(1j * law.grid_angle_rad),
-        )
-        order = np.argsort(-np.abs(phasor - phasor.mean()), kind="stable")
-        which = " and ".join(stations[s] for s in order[:2])
-        why = f"the no-load voltages or angles of the stations are too far apart, most of all of {which}"
+        why = _why_unlike(model, stations)
     if ending == Ending.LOST:
         problem = (
             f"At {time_min:.2f} min no state of the supply was found even without trains; {why}."
         )
     else:
         problem = f"At {time_min:.2f} min the supply has no state even without trains: {why}."
-    return {"problem": problem, "advice": _ALIGN}
+    return {"problem": problem, "advice": _ALIGN if len(stations) > 1 else _UNLOADED}
+
+
+def _why_unlike(model: Model, stations: Sequence[str]) -> str:
+    """Which stations differ most without load; one alone has nothing to carry but charging currents."""
+    if len(stations) == 1:
+        return f"the charging current of catenary and cables is more than {stations[0]} can take"
+    sources = [model.network.sources[s] for s in range(len(stations))]
+    phasors = np.array([cmath.rect(*plain(unloaded)(source)) for source in sources])
+    order = np.argsort(-np.abs(phasors - phasors.mean()), kind="stable")
+    which = " and ".join(stations[s] for s in order[:2])
+    return (
+        f"the no-load voltages or angles of the stations are too far apart, most of all of {which}"
+    )
 
 
 def _least_in_step(outcome: Outcome, model: Model, stations: Sequence[str]) -> str:
