@@ -69,7 +69,11 @@ def unlike(**changes):
         ("two_roots", "finished", ""),
         ("falls_out_of_step", "collapsed", "beyond 3.9 % of that C2 falls out of step"),
         ("out_of_step", "collapsed", "C0 falls out of step"),
-        ("out_of_step_without_load", "collapsed", "even without trains"),
+        (
+            "out_of_step_without_load",
+            "collapsed",
+            "all that C0 carries then is the charging current",
+        ),
         ("no_force_below_the_limit", "finished", ""),
     ],
 )

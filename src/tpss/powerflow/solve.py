@@ -87,29 +87,13 @@ def start_flat(network: Network, flow: Flow) -> None:
 
 
 @kernel
-def _keep(flow: Flow) -> None:
-    for n in range(flow.nodes.size):
-        flow.nodes[at(n)].good_v = flow.nodes[at(n)].voltage_v
-    for s in range(flow.sections.size):
-        flow.sections[at(s)].good_a = flow.sections[at(s)].current_a
-
-
-@kernel
-def _restore(flow: Flow) -> None:
-    for n in range(flow.nodes.size):
-        flow.nodes[at(n)].voltage_v = flow.nodes[at(n)].good_v
-    for s in range(flow.sections.size):
-        flow.sections[at(s)].current_a = flow.sections[at(s)].good_a
-
-
-@kernel
 def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Raise all loads from zero; return the share of the load that is carried, and the passes.
 
     The state ends at the solution for that share, whether it is 1 or less.
     """
     start_flat(network, flow)
-    _keep(flow)
+    set_aside(flow)
     share, step, passes = 0.0, FIRST_STEP, 0
     while share < 1.0 and step >= SHORTEST_STEP:
         target = min(1.0, share + step)
@@ -117,11 +101,11 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
         status, more = newton(target, start, network, flow, loads)
         passes += more
         if status == Solution.SOLVED:
-            _keep(flow)
+            set_aside(flow)
             share = target
             step *= STEP_GROWTH
         else:
-            _restore(flow)
+            take_back(flow)
             step /= 2.0
     if 0.0 < share < 1.0:
         # The last trial has left its voltages at the trains; find those of the share again.

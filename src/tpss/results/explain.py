@@ -171,7 +171,7 @@ def _no_state_without_load(
 def _why_unlike(model: Model, stations: Sequence[str]) -> str:
     """Which stations differ most without load; one alone has nothing to carry but charging currents."""
     if len(stations) == 1:
-        return f"the charging current of catenary and cables is more than {stations[0]} can take"
+        return f"all that {stations[0]} carries then is the charging current of catenary and cables"
     sources = [model.network.sources[s] for s in range(len(stations))]
     phasors = np.array([cmath.rect(*plain(unloaded)(source)) for source in sources])
     order = np.argsort(-np.abs(phasors - phasors.mean()), kind="stable")
