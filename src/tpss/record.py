@@ -13,7 +13,7 @@ elements have the fields as attributes, in compiled and in plain Python.
 from collections.abc import Iterable
 from enum import IntEnum
 from inspect import get_annotations
-from typing import Any, ClassVar, Generic, Self, TypeVar, overload
+from typing import Any, ClassVar, Protocol, Self, TypeVar, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ _R = TypeVar("_R", covariant=True)
 _Index = int | np.integer[Any]
 
 
-class Records(Generic[_R]):
+class Records(Protocol[_R]):
     """Array of records, as mypy sees it; in fact a `numpy.recarray`.
 
     An index gives a record; a name, a slice or a mask what it gives of any array.
@@ -35,12 +35,7 @@ class Records(Generic[_R]):
     def __getitem__(self, index: _Index | tuple[_Index, _Index]) -> _R: ...
     @overload
     def __getitem__(self, index: str | slice | npt.NDArray[Any] | tuple[Any, ...]) -> Any: ...
-    def __getitem__(self, index: Any) -> Any:
-        """A record, or a part of the array."""
-        raise NotImplementedError("mypy's picture of a numpy.recarray")
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(name)
+    def __getattr__(self, name: str) -> Any: ...
 
 
 class Record:

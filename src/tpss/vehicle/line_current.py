@@ -28,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
+from tpss.numerics.ramp import ramp
 from tpss.physics.locomotive import active_power
 from tpss.physics.reactive_power import ReactiveModel
 from tpss.vehicle.billing import billed_power, motors_current
@@ -55,13 +56,10 @@ def highest_line_current(voltage_v: float, limit: LineCurrentLimit) -> tuple[flo
     ----------
     [EN50388]_, current limitation of trains at low voltage.
     """
-    low_v, full_v = limit.no_traction_voltage_v, limit.full_current_voltage_v
-    if voltage_v >= full_v:
-        return limit.highest_current_a, 0.0
-    if voltage_v <= low_v:
-        return limit.auxiliary_current_a, 0.0
-    slope = (limit.highest_current_a - limit.auxiliary_current_a) / (full_v - low_v)
-    return limit.auxiliary_current_a + slope * (voltage_v - low_v), slope
+    return ramp(
+        voltage_v, limit.no_traction_voltage_v, limit.full_current_voltage_v,
+        limit.auxiliary_current_a, limit.highest_current_a,
+    )  # fmt: skip
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Powers of the feeding stations, their loading, and the number of running converters."""
+"""Powers of the feeding stations, their loading, and the number of running units."""
 
 from collections.abc import Callable, Mapping
 
@@ -33,7 +33,7 @@ def station_powers(runs: Mapping[str, Result]) -> Drawing:
 
 
 def station_loading(runs: Result | Mapping[str, Result]) -> Drawing:
-    """Loading of the running converters of each station, and how many run, over time.
+    """Loading of the running converters or transformers of each station, and how many run, over time.
 
     Parameters
     ----------
@@ -52,10 +52,8 @@ def station_loading(runs: Result | Mapping[str, Result]) -> Drawing:
     most = max(each.installed for supply in supplies for each in supply.stations)
     span, tick = (0.0, most + 0.5), 1.0 + most // 8
     panels = [
-        Panel(
-            "loading [%]", [*loading, rating], "loading of running\nconverters [%]", from_zero=True
-        ),
-        Panel("converters running", running, "converters\nrunning", span=span, tick=tick),
+        Panel("loading [%]", [*loading, rating], "loading of running\nunits [%]", from_zero=True),
+        Panel("units running", running, "units\nrunning", span=span, tick=tick),
     ]
     return Drawing(TIME, panels, panel_inch=1.8)
 

@@ -12,6 +12,7 @@ power passes its limit by the share by which the speed grows.
 import math
 
 from tpss.kernel import inlined
+from tpss.numerics.ramp import ramp
 from tpss.record import Record
 
 
@@ -76,9 +77,4 @@ def voltage_share(voltage_v: float, limits: EffortLimits) -> tuple[float, float]
     ----------
     [EN50388]_, which limits the current of a train at low voltage in this manner.
     """
-    if voltage_v >= limits.full_voltage_v:
-        return 1.0, 0.0
-    if voltage_v <= limits.zero_voltage_v:
-        return 0.0, 0.0
-    slope = 1.0 / (limits.full_voltage_v - limits.zero_voltage_v)
-    return (voltage_v - limits.zero_voltage_v) * slope, slope
+    return ramp(voltage_v, limits.zero_voltage_v, limits.full_voltage_v, 0.0, 1.0)
