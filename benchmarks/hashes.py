@@ -25,7 +25,12 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 CURRENT_LIMITATION = {"max_current_a": 120.0, "un_kv": 15.0, "umin2_kv": 11.0, "knee_factor": 0.9}
 
-VARIANTS: dict[str, dict[str, object]] = {
+IN_WHOLE_STEPS: dict[str, object] = {
+    "simulation.motion": "stepped",
+    "simulation.braking": "whole-steps",
+}
+
+STEPPED: dict[str, dict[str, object]] = {
     "as it is": {},
     "within-step": {"simulation.braking": "within-step"},
     "within-step, 1 min": {"simulation.braking": "within-step", "simulation.time_step_min": 1.0},
@@ -45,6 +50,21 @@ VARIANTS: dict[str, dict[str, object]] = {
     "filter": {"trains.*.filter_reactance_ohm": -0.45},
     "current limitation": {"trains.*.current_limitation": CURRENT_LIMITATION},
     "loading": {"supply.converter_stations.0.control": "loading"},
+}
+
+CONTINUOUS: dict[str, dict[str, object]] = {
+    f"continuous, {variant}": changes
+    for variant, changes in STEPPED.items()
+    if variant not in ("as it is", "within-step", "within-step, 1 min", "aggressive", "start")
+} | {
+    "continuous": {},
+    "continuous, 1 min": {"simulation.time_step_min": 1.0},
+    "continuous, 10 min": {"simulation.time_step_min": 10.0},
+}
+
+VARIANTS = {
+    **{variant: IN_WHOLE_STEPS | changes for variant, changes in STEPPED.items()},
+    **CONTINUOUS,
 }
 
 

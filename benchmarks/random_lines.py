@@ -198,7 +198,7 @@ def prepare(trains: Any, types: Any, scratch: Any, points: Any) -> None:
     """What stays fixed of all trains while they are solved, as the clock prepares it."""
     for k in range(trains.size):
         train, kind = trains[k], types[trains[k].train_type]
-        train.demand.speed_m_s = -1.0
+        train.demand.terms_speed_m_s = -1.0
         update_speed_terms(train.motion.speed_m_s, kind, train.demand, points, scratch)
         certify_free_band(kind, train.demand)
         update_cap_terms(kind, train.demand)

@@ -33,6 +33,6 @@ def demand_at(speed_kmh: float, kind: TrainType, points: Points, run=update_spee
     demand.voltage_v, demand.driven_share = 15e3, 1.0
     for name, value in terms.items():
         demand[name] = value
-    demand.speed_m_s = demand.free_band_v = -1.0
+    demand.terms_speed_m_s = demand.free_band_v = -1.0
     run(speed_kmh / 3.6, kind, demand, points, SCRATCH)
     return demand

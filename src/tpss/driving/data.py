@@ -31,13 +31,24 @@ class Braking(IntEnum):
     WITHIN_STEP = 1
 
 
+class MotionModel(IntEnum):
+    """How trains move within a step."""
+
+    STEPPED = 0
+    """At one acceleration, from the forces at its start; departures and dwells take whole steps."""
+    CONTINUOUS = 1
+    """Phase by phase, with the forces of each phase's mean speed; see `driving.passage`."""
+
+
 class Stop(Record):
     """A stop of a route."""
 
     position_m: float
     """Where it is. [m]"""
     dwell_steps: int
-    """Steps that a train stands there."""
+    """Steps that a train stands there, if it moves in steps."""
+    dwell_s: float
+    """Time that it stands there, if it moves continuously. [s]"""
     destination: bool
     """Whether the route ends there."""
 
@@ -72,6 +83,7 @@ class Options(NamedTuple):
     rail: Rail
     driver: Driver
     braking: Braking
+    motion: MotionModel
 
 
 class DrivingData(NamedTuple):

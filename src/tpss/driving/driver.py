@@ -1,7 +1,8 @@
 """The driver of each train: which speed to reach in this step, and which force that takes."""
 
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
-from tpss.driving.data import Driver, DrivingData, Floats
+from tpss.driving import continuous
+from tpss.driving.data import Driver, DrivingData, Floats, MotionModel
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
 from tpss.driving.motion import force_to_target, set_target, update_resistances
 from tpss.driving.stops import distance_to_stop
@@ -14,6 +15,7 @@ from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.demand import (
     FULL_EFFORT_N,
     certify_free_band,
+    take_speed_as_it_is,
     update_cap_terms,
     update_speed_terms,
     within_free_band,
@@ -83,7 +85,16 @@ def aim_at_speed(train: Train, kind: TrainType, data: DrivingData) -> None:
 
 @inlined
 def aim(train: Train, data: DrivingData) -> None:
-    """Set the target of a train, and the force that adhesion and driver allow at most.
+    """Set the target of a train, and the force that adhesion and driver allow at most."""
+    if data.options.motion == MotionModel.CONTINUOUS:
+        continuous.aim(train, data)
+    else:
+        _aim_stepped(train, data)
+
+
+@inlined
+def _aim_stepped(train: Train, data: DrivingData) -> None:
+    """`aim` of a train that moves in steps.
 
     References
     ----------
@@ -101,7 +112,16 @@ def aim(train: Train, data: DrivingData) -> None:
 
 @inlined
 def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) -> None:
-    """Find all about a train that stays fixed while this step is solved, but what its driver decides.
+    """Find all about a train that stays fixed while this step is solved, but what its driver decides."""
+    if data.options.motion == MotionModel.CONTINUOUS:
+        continuous.prepare(train, data, points, scratch)
+    else:
+        _prepare_stepped(train, data, points, scratch)
+
+
+@inlined
+def _prepare_stepped(train: Train, data: DrivingData, points: Points, scratch: Floats) -> None:
+    """`prepare` of a train that moves in steps.
 
     References
     ----------
@@ -110,15 +130,16 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
     kind, options, demand = data.types[at(train.train_type)], data.options, train.demand
     speed_m_s, decision = train.motion.speed_m_s, train.decision
     demand.mean_speed_weight_s = options.step_s / 2.0 if options.mean_power else 0.0
+    take_speed_as_it_is(demand)
     demand.driven_share = decision.moving_share = 1.0
     decision.hold_s = 0.0
     decision.course = Course.UNIFORM
     # Adhesion depends on the speed alone, as do the terms that are kept.
-    if speed_m_s != demand.speed_m_s:
+    if speed_m_s != demand.terms_speed_m_s:
         demand.adhesion_n = adhesion_of(
             kind, speed_m_s, options.rail, options.adhesion_in_km_h, points
         )
-    if speed_m_s != demand.speed_m_s or not within_free_band(demand):
+    if speed_m_s != demand.terms_speed_m_s or not within_free_band(demand):
         update_speed_terms(speed_m_s, kind, demand, points, scratch)
     update_resistances(train, kind, data.gradients, options)
     decision.decided = False

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.driving.data import Braking, Driver, Options, Stop
+from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.profiles import build_profiles, lengths_of
 from tpss.model.supply import SupplyPlan, build_supply
@@ -67,6 +67,7 @@ def _options(scenario: Scenario) -> Options:
         rail=switch(Rail[_member(simulation.rail)]),
         driver=switch(Driver[_member(simulation.driver)]),
         braking=switch(Braking[_member(simulation.braking)]),
+        motion=switch(MotionModel[_member(simulation.how_trains_move)]),
     )
 
 
@@ -83,8 +84,8 @@ def _stops(scenario: Scenario) -> Records[Stop]:
     rows: Any = Stop.blank(len(scenario.traffic), most)
     for route, entry in enumerate(scenario.traffic):
         for k, stop in enumerate(entry.stops):
-            dwell_steps = steps_of(si(stop, "dwell_min"), step_s)
-            rows[route, k] = (position_m[stop.station], dwell_steps, False)
-        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, True)
+            dwell_s = si(stop, "dwell_min")
+            rows[route, k] = (position_m[stop.station], steps_of(dwell_s, step_s), dwell_s, False)
+        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, 0.0, True)
     stops: Records[Stop] = rows
     return stops

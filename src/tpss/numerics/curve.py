@@ -136,6 +136,37 @@ def steepest_between(
     return max(abs(slope), abs(next_slope), abs(3.0 * secant - slope - next_slope))
 
 
+@inlined
+def _piece_at(x: float, low: int, high: int, points: Points) -> int:
+    """The last of the points from `low` to `high` - 1 that is not beyond `x`."""
+    while high - low > 1:
+        middle = (low + high) // 2
+        if points[middle].x <= x:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def curve_slope(x: float, first: int, count: int, points: Points) -> float:
+    """Slope of the curve of `count` points from `first` on; 0 beyond its ends.
+
+    References
+    ----------
+    [FritschCarlson1980]_.
+    """
+    last = first + count - 1
+    if x <= points[first].x or x >= points[last].x:
+        return 0.0
+    low = _piece_at(x, first, last, points)
+    before, after = points[low], points[low + 1]
+    _, slope = hermite(
+        x - before.x, after.x - before.x, before.value, after.value, before.slope, after.slope
+    )
+    return slope
+
+
 @kernel
 def curve_at(x: float, first: int, count: int, points: Points) -> float:
     """Value of the curve of `count` points from `first` on.
@@ -149,13 +180,8 @@ def curve_at(x: float, first: int, count: int, points: Points) -> float:
         return points[low].value
     if x >= points[high].x:
         return points[high].value
-    while high - low > 1:
-        middle = (low + high) // 2
-        if points[middle].x <= x:
-            low = middle
-        else:
-            high = middle
-    before, after = points[low], points[high]
+    low = _piece_at(x, low, high, points)
+    before, after = points[low], points[low + 1]
     value, _ = hermite(
         x - before.x, after.x - before.x, before.value, after.value, before.slope, after.slope
     )

@@ -65,6 +65,8 @@ class FeedForwardNetwork(Record):
     """w² (w¹)^k / k! of the input `SERIES_INPUT`."""
     remainder: Annotated[Array, (NEURONS,)]
     """Bounds what those terms leave out, over the rounding."""
+    by_first: Annotated[Array, (NEURONS,)]
+    """w² w¹ of the first input: with the neurons' p = s(1 - s) the slope over it."""
     closest_8: float
     """One over the eighth power of the distance for which that holds."""
     steepest: Annotated[Array, (MOST_INPUTS,)]
@@ -143,6 +145,7 @@ def build_network(
     network.output_bias = output_bias
     # The derivative of logsig never exceeds 1/4.
     network.steepest[:] = np.abs(network.weight * network.output).sum(axis=1) / 4.0
+    network.by_first[:] = network.weight[0] * network.output
     prepare_series(network)
     network.trained[:] = (-np.inf, np.inf)
     network.trained[:inputs] = trained

@@ -32,10 +32,12 @@ References
 import math
 from enum import IntEnum
 
-from tpss.kernel import at, fused, inlined, switch
+from tpss.driving.passage import demand_of_passage
+from tpss.kernel import at, fused, inlined, kernel, switch
 from tpss.numerics.pairs import scaled, squared
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.vehicle.demand import electrical_demand
+from tpss.vehicle.train import Course, Train
 
 
 class Pass(IntEnum):
@@ -81,6 +83,8 @@ def train_current(
     square = squared(voltage)
     magnitude = math.sqrt(square)
     train = loads.trains[at(i)]
+    if train.decision.course == Course.PASSAGE:
+        return _current_of_passage(voltage, scale, start, train, loads)
     p, q, p_slope, q_slope = electrical_demand(
         magnitude, loads.types[at(train.train_type)], train.demand, loads.scratch
     )
@@ -93,6 +97,26 @@ def train_current(
     y1 = complex(half * p_slope, -half * q_slope)
     y2 = (y1 * voltage - current) * reciprocal
     return current, y1, y2
+
+
+@kernel
+def _current_of_passage(
+    voltage: complex, scale: float, start: Pass, train: Train, loads: Loads
+) -> tuple[complex, complex, complex]:
+    """`train_current` of a train on its passage."""
+    square = squared(voltage)
+    magnitude = math.sqrt(square)
+    p, q, p_slope, q_slope = demand_of_passage(
+        magnitude, start != CHECK and start != FLAT, train, loads.types[at(train.train_type)],
+        loads.driving, loads.points, loads.scratch,
+    )  # fmt: skip
+    reciprocal = scaled(voltage, 1.0 / square)
+    current = complex(scale * p, -scale * q) * reciprocal
+    if start == FLAT:
+        return current, 0j, 0j
+    half = 0.5 * scale / magnitude
+    y1 = complex(half * p_slope, -half * q_slope)
+    return current, y1, (y1 * voltage - current) * reciprocal
 
 
 @fused

@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tpss.driving.data import DrivingData
 from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
+from tpss.numerics.curve import Points
 from tpss.powerflow.system import System
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -230,6 +232,10 @@ class Loads(NamedTuple):
     types: Records[TrainType]
     scratch: Floats
     """Scratch of the trains' networks, shape `SCRATCH_SHAPE`."""
+    driving: DrivingData
+    """What their drivers know, as they find their way through the step at each voltage."""
+    points: Points
+    """Of all curves of the trains."""
 
 
 class SectionPart(NamedTuple):

@@ -4,10 +4,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import kernel
+from tpss.powerflow.load import find_demand
 from tpss.powerflow.network import Loads, SourceFlow, Standing
 from tpss.record import Records
 from tpss.sources.kinds import Source, residual
-from tpss.vehicle.demand import electrical_demand
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -30,8 +30,8 @@ def find_demands(
     """
     for k in range(voltage_v.size):
         train = loads.trains[standing[k].train]
-        active, reactive, active_slope, reactive_slope = electrical_demand(
-            voltage_v[k], loads.types[train.train_type], train.demand, loads.scratch
+        active, reactive, active_slope, reactive_slope = find_demand(
+            voltage_v[k], True, train, loads
         )
         demands[k, 0] = active
         demands[k, 1] = reactive

@@ -126,7 +126,9 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
     arrival_s = np.where(outcome.arrival_step >= 0, arrival_s, np.nan)
     # A train that was on the line at the start has no departure.
     placed = np.array([train.phase != Phase.PENDING for train in trains], dtype=bool)
-    departure_s = np.array([train.departure_step * h for train in trains], dtype=float)
+    departure_s = np.array(
+        [train.departure_step * h + train.departure_wait_s for train in trains], dtype=float
+    )
 
     def of(unit: str, long_name: str) -> dict[str, str]:
         return {"units": unit, "long_name": long_name}

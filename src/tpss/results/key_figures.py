@@ -226,7 +226,8 @@ def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
     arrivals_s = (timetable["arrival_step"] * h - timetable["stood_s"]).tolist()
     for train, arrival_s in zip(run.trains, arrivals_s, strict=True):
         if arrival_s >= 0 and train.phase == Phase.PENDING:
-            trips_min[train.route].append(arrival_s / 60.0 - train.departure_step * h / 60.0)
+            departure_s = train.departure_step * h + train.departure_wait_s
+            trips_min[train.route].append(arrival_s / 60.0 - departure_s / 60.0)
     return tuple(
         ServiceFigures(
             name=service.name,
@@ -247,7 +248,7 @@ def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, floa
     if arrival < 0:
         return math.nan, math.nan
     trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
-    trip_s -= float(timetable.stood_s)
+    trip_s -= float(timetable.stood_s) + run.trains[studied].departure_wait_s
     distance_m = figures.trains[studied].last_m - figures.trains[studied].first_m
     return trip_s / 60.0, float(distance_m) / trip_s * 3.6
 

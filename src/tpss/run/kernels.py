@@ -26,7 +26,6 @@ from tpss.driving.whole_steps import replan
 from tpss.driving.within_step import replan as replan_within
 from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, switch
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import newton
 from tpss.powerflow.solve import continue_from_zero, search, take_root_of_path
 from tpss.run.run import Clock, Run
@@ -36,7 +35,7 @@ from tpss.step.coupling import decide
 from tpss.step.model import Model, driving_data
 from tpss.step.record import record_instant
 from tpss.step.recording import new_recording
-from tpss.step.state import State, new_state
+from tpss.step.state import State, loads_of, new_state
 from tpss.step.traffic import list_trains
 from tpss.vehicle.demand import update_speed_terms
 
@@ -83,7 +82,7 @@ def are_ready() -> bool:
 def load_flow_calls(model: Model) -> list[Call]:
     """Kernels that solve a load flow."""
     state = _start(model)
-    loads = Loads(state.trains, model.types, state.scratch)
+    loads = loads_of(model, state)
     return [
         (newton, (1.0, WARM, model.network, state.flow, loads)),
         (continue_from_zero, (model.network, state.flow, loads)),

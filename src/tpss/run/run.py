@@ -12,15 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from tpss.driving.data import MotionModel, Options
 from tpss.errors import TooLargeError
 from tpss.record import Records, copy_of_records
 from tpss.run.services import (
+    DEPARTURE_ROUNDING_S,
     ScheduledTrain,
     Service,
     departing_trains,
     placed_trains,
+    train_at,
     train_records,
-    trains_at,
 )
 from tpss.step.advance import advance
 from tpss.step.model import Model, RunControl
@@ -165,22 +167,45 @@ def trains_already_running(model: Model, service: Service) -> list[ScheduledTrai
     """Trains of a service as if it had run for ever: those that departed before the start.
 
     The n-th stands where a lone train at nominal voltage is n headways after its departure, with its
-    speed and its progress in a dwell or a braking plan.
+    speed and its progress in a dwell or a braking plan.  Where trains depart within a step, the lone
+    train departs so that the start is one of its instants.
     """
+    found: list[ScheduledTrain] = []
+    lone, number = _lone_run(model, service, 0.0), 1
+    while True:
+        since_s = number * service.headway_s - service.first_s
+        step, wait_s = _instant_after(since_s, model.options)
+        if wait_s != lone.trains[0].departure_wait_s:
+            lone = _lone_run(model, service, wait_s)
+        if step > (lone.step - 1 if lone.status == Status.FINISHED else lone.step):
+            return found
+        if step >= 1:
+            found.append(train_at(lone.recording.journeys[step, 0], lone.trains[0], len(found) + 1))
+        number += 1
+
+
+def _instant_after(since_s: float, options: Options) -> tuple[int, float]:
+    """Step at whose start a train has been under way for a time, and its wait before. [s]"""
+    steps = since_s / options.step_s
+    if options.motion == MotionModel.STEPPED:
+        return round(steps), 0.0
+    step = math.ceil(steps - DEPARTURE_ROUNDING_S / options.step_s)
+    wait_s = step * options.step_s - since_s
+    return step, wait_s if wait_s > DEPARTURE_ROUNDING_S else 0.0
+
+
+def _lone_run(model: Model, service: Service, wait_s: float) -> Run:
+    """Run of a lone train at nominal voltage, which departs after a wait in the first step."""
     h = model.options.step_s
     control = RunControl(model.network.system.nominal_voltage_v, studied_train=0)
-    lone = departing_trains([replace(service, first_s=0.0)], h, 0, 1)
+    lone = departing_trains([replace(service, first_s=wait_s)], model.options, 0, 1)[:1]
     capacity = foreseen_steps(model, service)
     run = Run(model._replace(control=control), lone, capacity, with_journeys=True)
     run.advance_to(capacity)
     while run.status == Status.RUNNING and run.step * h < LONGEST_RUN_S:
         run.grow(2 * run.capacity, [])
         run.advance_to(run.capacity)
-    last = run.step - 1 if run.status == Status.FINISHED else run.step
-    most = math.ceil((last * h + service.first_s) / service.headway_s) + 1
-    steps = (round((n * service.headway_s - service.first_s) / h) for n in range(1, most + 1))
-    passed = [step for step in steps if 1 <= step <= last]
-    return trains_at(run.recording.journeys[passed, 0], lone[0])
+    return run
 
 
 def trains_on_line(model: Model, services: list[Service]) -> list[ScheduledTrain]:
@@ -249,7 +274,7 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
     departures = sum(service.departures_before(capacity * h) for service in services)
     demand_room(model, capacity, len(on_line) + departures)
-    trains = [*on_line, *departing_trains(services, h, 0, capacity)]
+    trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
     names = [train.name for train in trains]
     studied_name = f"{services[0].name} 1"
     studied = names.index(studied_name) if studied_name in names else -1
@@ -284,7 +309,7 @@ def advance_to_end(
     while run.step < last:
         if run.step == run.capacity:
             more = min(last, run.capacity + run.capacity // 2 + 1)
-            departing = departing_trains(start.services, h, run.capacity, more)
+            departing = departing_trains(start.services, run.model.options, run.capacity, more)
             trains = len(run.trains) + len(departing)
             if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
                 break
@@ -335,6 +360,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         passes=kept.passes[:rows],
         counters=kept.counters,
         journeys=kept.journeys,
+        calls=kept.calls[:count],
     )
     return Outcome(
         status=status,

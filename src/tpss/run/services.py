@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from tpss.driving.data import MotionModel, Options
 from tpss.record import Records
 from tpss.vehicle.train import Journey, Motion, Phase, Plan, Train
 
@@ -56,12 +57,15 @@ class ScheduledTrain(NamedTuple):
     train_type: int
     route: int
     departure_step: int
+    departure_wait_s: float = 0.0
+    """Time in that step until it departs. [s]"""
     phase: Phase = Phase.PENDING
     position_m: float = 0.0
     speed_m_s: float = 0.0
     gradient: int = 0
     next_stop: int = 0
     dwell_steps_left: int = 0
+    wait_s: float = 0.0
     plan_step: int = 0
     plan_hold_steps: int = 0
     plan_first: float = 0.0
@@ -69,14 +73,24 @@ class ScheduledTrain(NamedTuple):
     plan_last: float = 0.0
 
 
+def departure(time_s: float, options: Options) -> tuple[int, float]:
+    """Step of a departure, and the time in it until then: none where trains move in steps. [s]"""
+    step_s = options.step_s
+    if options.motion == MotionModel.STEPPED:
+        return max(0, math.ceil((time_s - DEPARTURE_ROUNDING_S) / step_s)), 0.0
+    step = math.floor((time_s + DEPARTURE_ROUNDING_S) / step_s)
+    wait_s = time_s - step * step_s
+    return step, wait_s if wait_s > DEPARTURE_ROUNDING_S else 0.0
+
+
 def departing_trains(
-    services: list[Service], step_s: float, first: int, last: int
+    services: list[Service], options: Options, first: int, last: int
 ) -> list[ScheduledTrain]:
-    """Trains that depart at steps `first` to `last` - 1, by time and, at the same time, by service."""
+    """Trains that depart in steps `first` to `last` - 1, by time and, at the same time, by service."""
     trains = []
     for service in services:
-        for number, time_s in enumerate(service.departure_times_s(last * step_s), 1):
-            step = max(0, math.ceil((time_s - DEPARTURE_ROUNDING_S) / step_s))
+        for number, time_s in enumerate(service.departure_times_s(last * options.step_s), 1):
+            step, wait_s = departure(time_s, options)
             if first <= step < last:
                 trains.append(
                     ScheduledTrain(
@@ -85,10 +99,11 @@ def departing_trains(
                         train_type=service.train_type,
                         route=service.route,
                         departure_step=step,
+                        departure_wait_s=wait_s,
                         position_m=service.start_m,
                     )
                 )
-    return sorted(trains, key=lambda train: train.departure_step)
+    return sorted(trains, key=lambda train: (train.departure_step, train.departure_wait_s))
 
 
 def placed_trains(service: Service) -> list[ScheduledTrain]:
@@ -113,28 +128,21 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     """Records of the trains, in their order, with a first guess of their voltage. [V]"""
     records = Train.blank(len(trains))
     parts = {"motion": Motion, "plan": Plan}
-    fields: list[tuple[str, ...]] = [("train_type",), ("route",), ("timetable", "departure_step")]
+    fields: list[tuple[str, ...]] = [("train_type",), ("route",)]
+    fields += [("timetable", "departure_step"), ("timetable", "departure_wait_s")]
     fields += [(name, field) for name, part in parts.items() for field in part.dtype.names or ()]
     for (*part, field), column in zip(fields, list(zip(*trains, strict=True))[2:], strict=False):
         if any(column):  # most of them are zero
             (records[part[0]] if part else records)[field] = column
     records["timetable"]["arrival_step"] = -1
     records["demand"]["voltage_v"] = voltage_v
-    records["demand"]["speed_m_s"] = -1.0
+    records["demand"]["terms_speed_m_s"] = -1.0
     return records
 
 
-def trains_at(journeys: Records[Journey], train: ScheduledTrain) -> list[ScheduledTrain]:
+def train_at(journey: Journey, train: ScheduledTrain, number: int) -> ScheduledTrain:
     """A train where it once was, ready to enter another run at its start."""
-    return [
-        ScheduledTrain(
-            f"{train.service} initial {number}",
-            train.service,
-            train.train_type,
-            train.route,
-            0,
-            *motion,
-            *plan,
-        )
-        for number, (motion, plan) in enumerate(journeys.tolist(), 1)
-    ]
+    name, (motion, plan) = f"{train.service} initial {number}", journey.tolist()
+    return ScheduledTrain(
+        name, train.service, train.train_type, train.route, 0, 0.0, *motion, *plan
+    )

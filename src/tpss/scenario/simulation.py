@@ -4,7 +4,7 @@ from typing import Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from tpss.scenario.fields import Part, Real, either_or
+from tpss.scenario.fields import Part, Real, either_or, fault
 
 
 class Simulation(Part):
@@ -46,10 +46,41 @@ class Simulation(Part):
     )
 
     braking: Literal["whole-steps", "within-step"] = Field(
-        default="whole-steps",
-        description="Braking to stops and lower limits in whole steps (the thesis), or from as late as "
-        "possible, within a step, which may end in a stop: that makes long steps accurate.",
+        default="within-step",
+        description="Braking to stops and lower limits from as late as possible, within a step, which "
+        "may end in a stop, or in whole steps (the thesis).",
     )
+    motion: Literal["continuous", "stepped"] | None = Field(
+        default=None,
+        description="Motion within a step: phase by phase, each with the forces of its mean speed, "
+        "departures, limits and stops met at their instants; or one acceleration a step, from the "
+        "forces at its start, with departures and dwells in whole steps (the thesis). Left out: "
+        "continuous, unless another choice here is one of stepped motion.",
+    )
+
+    @property
+    def choices_of_stepped_motion(self) -> list[str]:
+        """Choices made here that belong to stepped motion, each as it would be written."""
+        made = (
+            ("power_sampling", "start"),
+            ("gradient_sampling", "start"),
+            ("driver", "aggressive"),
+            ("braking", "whole-steps"),
+        )
+        return [f'{key} = "{value}"' for key, value in made if getattr(self, key) == value]
+
+    @property
+    def how_trains_move(self) -> Literal["continuous", "stepped"]:
+        """The choice of motion, or what it is when it is left out."""
+        return self.motion or ("stepped" if self.choices_of_stepped_motion else "continuous")
+
+    @model_validator(mode="after")
+    def _moves_as_it_chooses(self) -> Self:
+        if self.motion == "continuous" and self.choices_of_stepped_motion:
+            choices = " and ".join(self.choices_of_stepped_motion)
+            remedy = 'write motion = "stepped", or leave them out'
+            raise fault(f"continuous motion does not go with {choices}", remedy)
+        return self
 
     @model_validator(mode="after")
     def _has_one_end(self) -> Self:

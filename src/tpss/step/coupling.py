@@ -5,18 +5,20 @@ it.  So the step is solved, trains that would come too near to their stop are pu
 plan, and the step is solved again; each round puts at least one more train on its plan.
 """
 
-from tpss.driving.data import DrivingData
+from tpss.driving.data import DrivingData, MotionModel
 from tpss.driving.driver import aim
+from tpss.driving.continuous import apply_passage, must_pass, pass_instead
 from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
-from tpss.powerflow.network import Loads, Standing
+from tpss.powerflow.load import find_demand
+from tpss.powerflow.network import Standing
 from tpss.powerflow.solve import solve
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
-from tpss.step.state import State
-from tpss.vehicle.demand import electrical_demand
-from tpss.vehicle.train import Phase, Train
+from tpss.step.state import State, loads_of
+from tpss.vehicle.train import Course, Phase, Train
+from tpss.vehicle.train_type import TrainType
 
 
 @inlined
@@ -69,6 +71,9 @@ def apply_solutions(count: int, model: Model, state: State) -> bool:
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]
         kind = model.types[at(train.train_type)]
+        if train.decision.course == Course.PASSAGE:
+            apply_passage(train, model.options.step_s)
+            continue
         # Of the last pass, as the powers: near a knee the last roundings of the voltage count.
         train.forces.tractive_n = min(train.demand.wheel_force_n, train.demand.adhesion_n)
         train.forces.braking_n = 0.0
@@ -76,11 +81,24 @@ def apply_solutions(count: int, model: Model, state: State) -> bool:
             train.forces.next_speed_m_s = 0.0
             continue
         apply_solution(train, kind, model.options)
-        if must_replan(train, kind, data):
-            replan(train, kind, data)
+        if _must_decide_anew(train, kind, data):
             train.decision.decided = False
             stands = False
     return stands
+
+
+@inlined
+def _must_decide_anew(train: Train, kind: TrainType, data: DrivingData) -> bool:
+    """Whether a decision does not stand; then it is told how to decide."""
+    if data.options.motion == MotionModel.CONTINUOUS:
+        if must_pass(train, kind, data):
+            pass_instead(train)
+            return True
+        return False
+    if must_replan(train, kind, data):
+        replan(train, kind, data)
+        return True
+    return False
 
 
 @inlined
@@ -92,10 +110,11 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
             train = state.trains[at(flow.standing[at(k)].train)]
             train.demand.voltage_v = fixed_v
             flow.standing[at(k)].voltage_v = fixed_v
-            kind = model.types[at(train.train_type)]
-            electrical_demand(fixed_v, kind, train.demand, state.scratch)
+        loads = loads_of(model, state)
+        for k in range(count):
+            find_demand(fixed_v, False, state.trains[at(flow.standing[at(k)].train)], loads)
         return 1.0, 0
-    loads = Loads(state.trains, model.types, state.scratch)
+    loads = loads_of(model, state)
     share, passes = solve(warm, model.network, flow, loads)
     for k in range(count):
         place = flow.standing[at(k)]

@@ -2,36 +2,35 @@
 
 import math
 
+from tpss.driving.work import mean_powers
 from tpss.kernel import at, inlined, kernel
-from tpss.numerics.curve import outside_curve
-from tpss.numerics.neural_network import outside
 from tpss.numerics.pairs import magnitude, squared
-from tpss.physics.locomotive import machine_force
-from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current, motor_voltage
-from tpss.physics.reactive_power import ReactiveModel, bridge_outside_training
+from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
 from tpss.step.model import Model
-from tpss.step.recording import Indices, Recording
-from tpss.step.state import Counter, State, TrainState
+from tpss.step.recorded import TrainRow
+from tpss.step.recording import Call, Indices, Recording
+from tpss.step.state import State, TrainState
+from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
-from tpss.vehicle.effort.kinds import effort_extrapolates
-from tpss.vehicle.terms import Demand
-from tpss.vehicle.train import Journey, Phase, Train, is_on_line
-from tpss.vehicle.train_type import TrainType
+from tpss.vehicle.train import (
+    MOST_CALLS,
+    Course,
+    Journey,
+    Phase,
+    Train,
+    copy_motion,
+    is_on_line,
+)
 
 
 @inlined
 def note_journey(train: Train, row: Journey) -> None:
-    """Keep how a train would continue; copying a whole record at once takes seconds to compile."""
-    motion, plan = row.motion, row.plan
-    motion.phase = train.motion.phase
-    motion.position_m = train.motion.position_m
-    motion.speed_m_s = train.motion.speed_m_s
-    motion.gradient = train.motion.gradient
-    motion.next_stop = train.motion.next_stop
-    motion.dwell_steps_left = train.motion.dwell_steps_left
+    """Keep how a train would continue."""
+    copy_motion(train.motion, row.motion)
+    plan = row.plan
     plan.step = train.plan.step
     plan.hold_steps = train.plan.hold_steps
     plan.first = train.plan.first
@@ -55,8 +54,21 @@ def record_instant(step: int, trains: Records[Train], recording: Recording) -> N
 
 
 @inlined
+def state_of_passage(train: Train) -> TrainState:
+    """Code of `train_state` of a train on its passage: what took most work, if it moved."""
+    passage = train.passage
+    if passage.motor_j > 0.0 and passage.motor_j >= passage.braking_j:
+        return TrainState.MOTORING
+    if passage.braking_j > 0.0:
+        return TrainState.BRAKING
+    return TrainState.COASTING if passage.running_ns > 0.0 else TrainState.DWELLING
+
+
+@inlined
 def state_code(train: Train) -> TrainState:
     """Code of `train_state` of a train on the line."""
+    if train.decision.course == Course.PASSAGE:
+        return state_of_passage(train)
     if train.motion.phase == Phase.DWELLING:
         return TrainState.DWELLING
     if train.forces.braking_n > 0.0:  # in a step that holds the speed first there is both
@@ -69,67 +81,73 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     """Forces, voltage and powers of the `k`-th train along the line."""
     i = state.flow.standing[at(k)].train
     train, row = state.trains[at(i)], recording.trains[at(step), at(i)]
-    kind, demand, forces = model.types[at(train.train_type)], train.demand, train.forces
+    demand, forces = train.demand, train.forces
     moving_share, voltage = train.decision.moving_share, state.flow.standing[at(k)].voltage_v
-    current, _ = armature_demand(demand.wheel_force_n, 0.0, kind, demand)
-    if kind.voltage_model != MotorModel.NEW:
-        current /= line_voltage_factor(demand.voltage_v, kind.voltage_model)
     recording.train_state[at(step), at(i)] = state_code(train)
     row.acceleration = (forces.next_speed_m_s - train.motion.speed_m_s) / model.options.step_s
     row.tractive_force = forces.tractive_n
     row.braking_force = forces.braking_n
     row.running_resistance = forces.running_resistance_n * moving_share
     row.gradient_force = forces.gradient_n * moving_share
-    row.motor_current = motor_current(current, kind.current_model)
     row.pantograph_real = voltage.real
     row.pantograph_imag = voltage.imag
     row.active_power = demand.active_power_w
     row.reactive_power = demand.reactive_power_var
     row.holding_time = train.decision.hold_s
+    if train.decision.course == Course.PASSAGE:
+        record_passage(step, train, row, recording.calls[at(i)], model.options.step_s)
+        count_breaches(train.passage.breaches, recording.counters)
+    else:
+        record_step(train, row, model, recording.counters)
+
+
+@inlined
+def record_step(train: Train, row: TrainRow, model: Model, counters: Indices) -> None:
+    """Works, and the state of the machine, in a step that is no passage."""
+    kind, demand = model.types[at(train.train_type)], train.demand
+    current, _ = armature_demand(demand.wheel_force_n, 0.0, kind, demand)
+    if kind.voltage_model != MotorModel.NEW:
+        current /= line_voltage_factor(demand.voltage_v, kind.voltage_model)
+    row.motor_current = motor_current(current, kind.current_model)
+    row.motor_power = (demand.active_power_w - kind.auxiliary_power_w) / demand.per_efficiency
+    traction_w, braking_w, running_w, gradient_w = mean_powers(train, model.options.step_s)
+    row.traction_power = traction_w
+    row.braking_power = braking_w
+    row.resistance_power = running_w
+    row.gradient_power = gradient_w
     if demand.force_cap_n > 0.0:
-        count_limits(forces.tractive_n, kind, demand, model, recording.counters)
+        breaches = find_breaches(
+            train.forces.tractive_n, demand.voltage_v, kind, demand, model.points
+        )
+        count_breaches(breaches, counters)
 
 
 @inlined
-def current_limits(kind: TrainType, demand: Demand) -> bool:
-    """Whether a limit of the line current is what keeps a train below its driver and its machine."""
-    machine_n = max(0.0, demand.machine_force_n)
-    rim_n = machine_force(machine_n, demand.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
-    return bool(demand.wheel_force_n < min(demand.force_cap_n, max(0.0, rim_n)))
-
-
-@inlined
-def count_limits(
-    force_n: float, kind: TrainType, demand: Demand, model: Model, counters: Indices
+def record_passage(
+    step: int, train: Train, row: TrainRow, calls: Records[Call], step_s: float
 ) -> None:
-    """Count where what describes a train is extrapolated or clipped, if its driver wants force."""
-    speed, voltage, networks = demand.speed_m_s, demand.voltage_v, kind.networks
-    network = networks.tractive_effort
-    if effort_extrapolates(speed, voltage, kind.effort, network, model.points):
-        counters[Counter.EFFORT_EXTRAPOLATED] += 1
-    if demand.machine_force_n < 0.0:
-        counters[Counter.EFFORT_CLIPPED] += 1
-    if kind.line_current.highest_current_a < math.inf and current_limits(kind, demand):
-        counters[Counter.CURRENT_LIMITED] += 1
-    if force_n <= 0.0:
-        return
-    if outside_curve(speed, kind.efficiency, model.points):
-        counters[Counter.EFFICIENCY_EXTRAPOLATED] += 1
-    if kind.reactive_model == ReactiveModel.POWER_FACTOR_CURVE:
-        if outside_curve(speed, kind.power_factor, model.points):
-            counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1
-        return
-    if kind.reactive_model != ReactiveModel.DOUBLE_BRIDGE:
-        if outside(speed, networks.power_factor, 0):
-            counters[Counter.POWER_FACTOR_EXTRAPOLATED] += 1
-        return
-    motor_v = motor_voltage(
-        speed, voltage, kind.base_speed_m_s, kind.highest_motor_voltage_v, kind.voltage_model
-    )
-    if bridge_outside_training(motor_v, voltage * kind.transformer_ratio, networks.bridge_sine):
-        counters[Counter.BRIDGE_EXTRAPOLATED] += 1
-    if demand.bridge_sine < 0.0 or demand.bridge_sine > 1.0:
-        counters[Counter.BRIDGE_CLIPPED] += 1
+    """Works, motor current and stops of a passage."""
+    passage, per_second = train.passage, 1.0 / step_s
+    row.motor_current = passage.current_as * per_second
+    row.motor_power = passage.motor_j * per_second
+    row.traction_power = passage.traction_j * per_second
+    row.braking_power = passage.braking_j * per_second
+    row.resistance_power = passage.running_j * per_second
+    row.gradient_power = passage.gradient_j * per_second
+    first, begin_s = train.motion.next_stop - 1, step * step_s
+    for place in range(min(MOST_CALLS, passage.motion.next_stop - first)):
+        if place > 0:
+            calls[at(first + place)].arrival_s = begin_s + passage.arrival_s[place]
+        if first + place >= 0 and not math.isnan(passage.departure_s[place]):
+            calls[at(first + place)].departure_s = begin_s + passage.departure_s[place]
+
+
+@inlined
+def count_breaches(breaches: int, counters: Indices) -> None:
+    """Add a step of a train in which these breaches occurred, a bit each."""
+    for breach in range(BREACHES):
+        if breaches >> breach & 1:
+            counters[at(breach)] += 1
 
 
 @inlined

@@ -15,6 +15,15 @@ from tpss.vehicle.train import Journey
 Indices = npt.NDArray[np.int64]
 
 
+class Call(Record):
+    """When a train stood at a stop; NaN: it has not."""
+
+    arrival_s: float
+    """When it came to stand. [s]"""
+    departure_s: float
+    """When it went on. [s]"""
+
+
 class Recording(NamedTuple):
     """Everything that is kept, one row a step; NaN where there is nothing."""
 
@@ -34,6 +43,8 @@ class Recording(NamedTuple):
     """By `Counter`."""
     journeys: Records[Journey]
     """Shape (instants, trains); empty unless they are asked for."""
+    calls: Records[Call]
+    """Shape (trains, most stops): when each train stood at its stops, if it moves continuously."""
 
 
 def recording_bytes(model: Model, steps: int, trains: int) -> int:
@@ -44,6 +55,12 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += network.sources.size * StationRow.dtype.itemsize
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     return (steps + 1) * row
+
+
+def _no_calls(trains: int, stops: int) -> Records[Call]:
+    calls = Call.blank(trains, stops)
+    calls["arrival_s"], calls["departure_s"] = np.nan, np.nan
+    return calls
 
 
 Memory = Callable[[int], Floats]
@@ -86,4 +103,5 @@ def new_recording(
         passes=np.zeros(rows, dtype=np.int64),
         counters=np.zeros(len(Counter), dtype=np.int64),
         journeys=Journey.blank(kept, trains),
+        calls=_no_calls(trains, model.stops.shape[1]),
     )

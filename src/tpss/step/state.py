@@ -6,10 +6,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tpss.kernel import inlined
 from tpss.numerics.series import SCRATCH_SHAPE
-from tpss.powerflow.network import Flow, new_flow
+from tpss.powerflow.network import Flow, Loads, new_flow
 from tpss.record import Record, Records
-from tpss.step.model import Model
+from tpss.step.model import Model, driving_data
+from tpss.vehicle.breaches import BREACHES, Breach
 from tpss.vehicle.train import Train
 
 Floats = npt.NDArray[np.float64]
@@ -42,14 +44,14 @@ class TrainState(IntEnum):
 class Counter(IntEnum):
     """What was limited or left its range, counted in steps of one train."""
 
-    EFFORT_EXTRAPOLATED = 0
-    EFFORT_CLIPPED = 1
-    BRIDGE_EXTRAPOLATED = 2
-    BRIDGE_CLIPPED = 3
-    POWER_FACTOR_EXTRAPOLATED = 4
-    SHORT_PIECE = 5
-    EFFICIENCY_EXTRAPOLATED = 6
-    CURRENT_LIMITED = 7
+    EFFORT_EXTRAPOLATED = Breach.EFFORT_EXTRAPOLATED
+    EFFORT_CLIPPED = Breach.EFFORT_CLIPPED
+    BRIDGE_EXTRAPOLATED = Breach.BRIDGE_EXTRAPOLATED
+    BRIDGE_CLIPPED = Breach.BRIDGE_CLIPPED
+    POWER_FACTOR_EXTRAPOLATED = Breach.POWER_FACTOR_EXTRAPOLATED
+    EFFICIENCY_EXTRAPOLATED = Breach.EFFICIENCY_EXTRAPOLATED
+    CURRENT_LIMITED = Breach.CURRENT_LIMITED
+    SHORT_PIECE = BREACHES
 
 
 class Clock(Record):
@@ -80,6 +82,12 @@ class State(NamedTuple):
     flow: Flow
     clock: Records[Clock]
     """One record."""
+
+
+@inlined
+def loads_of(model: Model, state: State) -> Loads:
+    """The trains, as far as the load flow is concerned."""
+    return Loads(state.trains, model.types, state.scratch, driving_data(model), model.points)
 
 
 def new_state(model: Model, trains: Records[Train]) -> State:

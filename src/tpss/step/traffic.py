@@ -1,6 +1,7 @@
 """Who is on the line: departures and arrivals, and each train's motion to the next instant."""
 
-from tpss.driving.data import DrivingData
+from tpss.driving import continuous
+from tpss.driving.data import DrivingData, MotionModel
 from tpss.driving.manners import move
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Flow
@@ -16,6 +17,7 @@ def depart(step: int, trains: Records[Train]) -> None:
         train = trains[at(i)]
         if train.motion.phase == Phase.PENDING and train.timetable.departure_step <= step:
             train.motion.phase = Phase.DRIVING
+            train.motion.wait_s = train.timetable.departure_wait_s
 
 
 @inlined
@@ -44,6 +46,9 @@ def list_trains(trains: Records[Train], flow: Flow) -> int:
 @inlined
 def move_train(step: int, train: Train, data: DrivingData, clock: Clock) -> None:
     """Bring a train to the next instant; note how far from its stop it came to stand."""
+    if data.options.motion == MotionModel.CONTINUOUS:
+        clock.stop_error_m = max(clock.stop_error_m, continuous.move(step, train, data))
+        return
     if train.motion.phase == Phase.DWELLING:
         train.motion.dwell_steps_left -= 1
         if train.motion.dwell_steps_left <= 0:

@@ -27,7 +27,7 @@ def train_bridge_sine(
     motor_v = 0.0
     if kind.voltage_model != MotorModel.NEW or not reaches(locomotive_v, series):
         motor_v = motor_voltage(
-            demand.speed_m_s,
+            demand.terms_speed_m_s,
             voltage_v,
             kind.base_speed_m_s,
             kind.highest_motor_voltage_v,

@@ -30,7 +30,7 @@ from tpss.physics.reactive_power import (
 )
 from tpss.vehicle.billing import billed_speed, motors_current
 from tpss.vehicle.bridge import bridge_ratio
-from tpss.vehicle.effort.kinds import highest_force, update_effort
+from tpss.vehicle.effort.kinds import effort_by_speed, highest_force, update_effort
 from tpss.vehicle.line_current import within_line_current
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train_type import TrainType
@@ -45,9 +45,61 @@ FULL_EFFORT_N = 1e9
 def motors_force(
     voltage_v: float, kind: TrainType, demand: Demand, scratch: Array
 ) -> tuple[float, float]:
-    """Largest force of all motors at a line voltage and the present speed, and its slope. [N], [N/V]"""
+    """Largest force of all motors at a line voltage, and its slope. [N], [N/V]
+
+    That at the speed of `demand.terms_speed_m_s`, moved along the tangent over the speed (`follow_speed`).
+    """
     network = kind.networks.tractive_effort
-    return highest_force(voltage_v, demand.speed_m_s, kind.effort, demand.effort, network, scratch)
+    force, slope = highest_force(
+        voltage_v, demand.terms_speed_m_s, kind.effort, demand.effort, network, scratch
+    )
+    return _at_mean_speed(force, demand), _stretched(slope, demand)
+
+
+@inlined
+def _at_mean_speed(force_n: float, demand: Demand) -> float:
+    """What the motors give at the step's mean speed, from what they give at `demand.terms_speed_m_s`. [N]"""
+    if demand.effort_stretch == 1.0:  # without arithmetic, so without roundings
+        return force_n
+    return (force_n + demand.effort_shift_n) * demand.effort_stretch
+
+
+@inlined
+def _stretched(slope_n_per_v: float, demand: Demand) -> float:
+    """The same of a slope over the voltage. [N/V]"""
+    if demand.effort_stretch == 1.0:
+        return slope_n_per_v
+    return slope_n_per_v * demand.effort_stretch
+
+
+@inlined
+def take_speed_as_it_is(demand: Demand) -> None:
+    """Let the motors give what they give at `demand.terms_speed_m_s`."""
+    demand.effort_shift_n, demand.effort_stretch = 0.0, 1.0
+
+
+@inlined
+def follow_speed(kind: TrainType, demand: Demand, points: Points) -> None:
+    r"""Let the motors give what belongs to the mean speed of the step, whatever force that takes.
+
+    The force is known at a speed v* close by.  With r the rotors' share of the inertia, c/M, a force
+    F_m of the motors accelerates by (F_m - F_res) / (M (1 + r)), so the mean speed is linear in it, and
+
+    .. math:: F_m = F_m^* + F' \Big(v + rac{h}{2} rac{F_m - F_{res}}{M (1 + r)} - v^*\Big)
+
+    is solved for F_m: a shift and a factor.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5) and (2.11).
+    """
+    slope = effort_by_speed(
+        demand.voltage_v, demand.terms_speed_m_s, kind.effort, demand.effort, points
+    )
+    by_force = demand.mean_speed_weight_s / (kind.inertia_kg + kind.rotor_mass_kg)
+    off_m_s = demand.speed_m_s - by_force * demand.resistance_n - demand.terms_speed_m_s
+    demand.effort_shift_n = slope * off_m_s
+    demand.effort_stretch = 1.0 / (1.0 - slope * by_force)
 
 
 @inlined
@@ -66,8 +118,8 @@ def update_speed_terms(
     the machine gives is evaluated anew at the voltage of the last step too, if that has left its band.
     """
     demand.free_voltage_v = demand.voltage_v
-    if speed_m_s != demand.speed_m_s:
-        demand.speed_m_s = speed_m_s
+    if speed_m_s != demand.terms_speed_m_s:
+        demand.terms_speed_m_s = demand.speed_m_s = speed_m_s
         efficiency = curve_at(speed_m_s, kind.efficiency.first, kind.efficiency.points, points)
         demand.per_efficiency = 1.0 / efficiency
         if kind.reactive_model == ReactiveModel.POWER_FACTOR:
@@ -80,7 +132,10 @@ def update_speed_terms(
         demand.sine.reach_8 = 0.0
         network = kind.networks.tractive_effort
         update_effort(speed_m_s, kind.effort, demand.effort, network, points)
-    demand.free_force_n, _ = motors_force(demand.voltage_v, kind, demand, scratch)
+    network = kind.networks.tractive_effort
+    demand.free_force_n, _ = highest_force(
+        demand.voltage_v, speed_m_s, kind.effort, demand.effort, network, scratch
+    )
 
 
 @inlined
@@ -93,14 +148,15 @@ def certify_free_band(kind: TrainType, demand: Demand) -> None:
     """
     ratio = kind.rotor_mass_kg / kind.inertia_kg
     needed = demand.force_cap_n * (1.0 + ratio) - ratio * demand.resistance_n
-    margin = demand.free_force_n - needed
+    free_n = _at_mean_speed(demand.free_force_n, demand)
+    margin = free_n - needed
     if demand.effort.steepest_n_per_v > 0.0:
-        demand.free_band_v = margin / demand.effort.steepest_n_per_v
+        demand.free_band_v = margin / _stretched(demand.effort.steepest_n_per_v, demand)
     else:  # no voltage changes the force
         demand.free_band_v = math.inf if margin >= 0.0 else -1.0
     if kind.line_current.highest_current_a < math.inf:
         demand.free_band_v = -1.0
-    demand.machine_force_n = demand.free_force_n
+    demand.machine_force_n = free_n
 
 
 @inlined

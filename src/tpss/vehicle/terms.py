@@ -15,9 +15,16 @@ class Demand(Record):
     resistance_n: float
     """Running resistance and gradient force. [N]"""
     speed_m_s: float
-    """Speed at the start of the step, to which all belongs that the speed decides. [m/s]"""
+    """Speed at the start of the step. [m/s]"""
+    terms_speed_m_s: float
+    """Speed to which all belongs that the speed decides: the same, or the one expected in the middle
+    of the step. [m/s]"""
     mean_speed_weight_s: float
     """h/2 to bill the step's mean speed, 0 for that at its start. [s]"""
+    effort_shift_n: float
+    """Added to what the motors give at that speed, ... [N]"""
+    effort_stretch: float
+    """... then a factor on it: they make it what the motors give at the step's mean speed. [1]"""
     driven_share: float
     """Share of the step in which the motors give the force, mostly 1. [1]"""
     per_efficiency: float

@@ -1,10 +1,20 @@
 """The state of a train, nested by who writes it: a function is handed the part that it may touch."""
 
 from enum import IntEnum
+from typing import Annotated
+
+import numpy as np
+import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
 from tpss.record import Record
 from tpss.vehicle.terms import Demand
+
+
+Floats = npt.NDArray[np.float64]
+
+MOST_CALLS = 32
+"""Stops of one step whose times are kept: more than a train makes in ten minutes."""
 
 
 class Phase(IntEnum):
@@ -34,13 +44,17 @@ class Course(IntEnum):
     """To a lower limit: at constant speed, then with the highest retardation."""
     TO_LIMIT_UNIFORMLY = 5
     """To a lower limit, by a train that cannot hold its speed before it brakes."""
+    PASSAGE = 6
+    """Phase by phase, whatever comes; see `driving.passage`."""
 
 
 class Timetable(Record):
     """When a train departs and arrives."""
 
     departure_step: int
-    """Step at which it departs."""
+    """Step at which it departs, or in which, if it moves continuously."""
+    departure_wait_s: float
+    """Time in that step until it departs. [s]"""
     arrival_step: int
     """Instant at which it stands at its destination; -1 until then."""
     stood_s: float
@@ -61,6 +75,8 @@ class Motion(Record):
     """Index of its next stop on its route."""
     dwell_steps_left: int
     """Steps until it leaves the stop at which it stands."""
+    wait_s: float
+    """Time until it departs, if it moves continuously. [s]"""
 
 
 class Plan(Record):
@@ -94,6 +110,12 @@ class Decision(Record):
     """Speed after the step. [m/s]"""
     force_n: float
     """Force at the wheel rim; negative: the brakes give it. [N]"""
+    acceleration_m_s2: float
+    """Acceleration at the end of the step before, if it moves continuously. [m/s²]"""
+    resistance_n: float
+    """Resistances then. [N]"""
+    braking_square_m2_s2: float
+    """Square of the speed from which it has to brake, at the start of the step. [m²/s²]"""
 
 
 class Forces(Record):
@@ -111,6 +133,66 @@ class Forces(Record):
     """Speed after the step. [m/s]"""
 
 
+class Passage(Record):
+    """The way of a train through a step, phase by phase: where it ends, and sums over the phases."""
+
+    motion: Motion
+    """How the train would continue."""
+    acceleration_m_s2: float
+    """Acceleration in the last phase. [m/s²]"""
+    resistance_n: float
+    """Resistances in it. [N]"""
+    left_s: float
+    """What is left of the step. [s]"""
+    stood_s: float
+    """Time that it stood at its destination. [s]"""
+    stop_error_m: float
+    """Largest distance between where it came to stand and its stop. [m]"""
+    arrival_s: Annotated[Floats, (MOST_CALLS,)]
+    """When it came to stand at the stop before its next one at the start, and at the stops that follow,
+    from the start of the step; of the first of these nothing is known. [s]"""
+    departure_s: Annotated[Floats, (MOST_CALLS,)]
+    """When it went on from there; NaN: it has not. [s]"""
+    breaches: int
+    """What of its machine was limited or left its range, a bit each `Breach`."""
+    stalled: bool
+    """Whether it would roll back, or stands with no force to start."""
+    needed_n: float
+    """Force that this would take. [N]"""
+    available_n: float
+    """Force that it has. [N]"""
+    by_voltage: bool
+    """Whether the line voltage decides about its force in any phase."""
+    traction_ns: float
+    """Impulse of the tractive force. [N s]"""
+    braking_ns: float
+    """Of the brakes. [N s]"""
+    running_ns: float
+    """Of the running resistance. [N s]"""
+    gradient_ns: float
+    """Of the gradient force. [N s]"""
+    traction_j: float
+    """Work of the tractive force. [J]"""
+    braking_j: float
+    """Of the brakes. [J]"""
+    running_j: float
+    """Against the running resistance. [J]"""
+    gradient_j: float
+    """Against the gradient force. [J]"""
+    motor_j: float
+    """Work of the motors. [J]"""
+    active_j: float
+    """Energy drawn. [J]"""
+    reactive_vars: float
+    """Reactive energy drawn. [var s]"""
+    active_slope_j: float
+    """Slope of the energy drawn over the line voltage, as long as nothing else changes. [J/V]"""
+    reactive_slope_vars: float
+    """Slope of the reactive energy. [var s/V]"""
+    current_as: float
+    """Charge of the motors' current. [A s]"""
+
+
 class Train(Record):
     """A train on its route."""
 
@@ -124,6 +206,10 @@ class Train(Record):
     decision: Decision
     forces: Forces
     demand: Demand
+    passage: Passage
+    """Its way through the present step, at the voltage last tried."""
+    trial: Passage
+    """The same at a voltage close by, for the slopes."""
 
 
 class Journey(Record):
@@ -131,6 +217,18 @@ class Journey(Record):
 
     motion: Motion
     plan: Plan
+
+
+@kernel
+def copy_motion(source: Motion, target: Motion) -> None:
+    """Copy field by field; copying a whole record at once takes seconds to compile."""
+    target.phase = source.phase
+    target.position_m = source.position_m
+    target.speed_m_s = source.speed_m_s
+    target.gradient = source.gradient
+    target.next_stop = source.next_stop
+    target.dwell_steps_left = source.dwell_steps_left
+    target.wait_s = source.wait_s
 
 
 @kernel

@@ -5,7 +5,7 @@ the speed changes (`update_effort`), and the line voltage is the one input left 
 
 A kind is a file beside this one, with the record of its parameters and, if need be, of what it keeps
 at a speed; here it has a member of `EffortKind`, a field in `TractiveEffort`, and a branch in each of
-the three functions.
+the four functions.
 """
 
 from enum import IntEnum
@@ -18,13 +18,20 @@ from tpss.numerics.curve import Points
 from tpss.numerics.neural_network import FeedForwardNetwork
 from tpss.numerics.series import Series, reaches, series_at
 from tpss.record import Record
-from tpss.vehicle.effort.limits import EffortLimits, limited_force, steepest_slope, voltage_share
+from tpss.vehicle.effort.limits import (
+    EffortLimits,
+    limited_by_speed,
+    limited_force,
+    steepest_slope,
+    voltage_share,
+)
 from tpss.vehicle.effort.network import VOLTAGE, effort_outside_training, motor_force_series
 from tpss.vehicle.effort.table import (
     EffortTable,
     TableTerms,
     evaluate_rows,
     outside_table,
+    table_by_speed,
     table_force,
 )
 
@@ -55,6 +62,8 @@ class EffortTerms(Record):
 
     steepest_n_per_v: float
     """Bound of the slope over the voltage. [N/V]"""
+    by_speed_n_s_per_m: float
+    """Slope of the network over the speed, at the voltage around which its series is made. [N s/m]"""
     limited_n: float
     """Force by the limits at full voltage. [N]"""
     series: Series
@@ -126,11 +135,30 @@ def highest_force(
     """
     if effort.kind == EffortKind.NETWORK:
         if not reaches(voltage_v, terms.series):
-            motor_force_series(
+            terms.by_speed_n_s_per_m = motor_force_series(
                 speed_m_s, voltage_v, effort.highest_current_a, network, scratch, terms.series
             )
         return series_at(voltage_v, terms.series)
     return _described_force(voltage_v, effort, terms)
+
+
+@inlined
+def effort_by_speed(
+    voltage_v: float, speed_m_s: float, effort: TractiveEffort, terms: EffortTerms, points: Points
+) -> float:
+    """Slope over the speed of the largest force of all motors, about, at a line voltage. [N s/m]
+
+    Parameters
+    ----------
+    voltage_v, speed_m_s, effort, terms, points
+        As in `update_effort` and `highest_force`, which come first.
+    """
+    if effort.kind == EffortKind.TABLE:
+        return table_by_speed(voltage_v, speed_m_s, effort.table, points)
+    if effort.kind == EffortKind.LIMITS:
+        share, _ = voltage_share(voltage_v, effort.limits)
+        return share * limited_by_speed(speed_m_s, terms.limited_n, effort.limits)
+    return terms.by_speed_n_s_per_m
 
 
 @inlined

@@ -5,8 +5,8 @@ r"""Tractive effort by limits: a constant force, then a constant power, then the
 Below a full voltage force and power fall in proportion, to nothing at a lower voltage:
 :math:`r = (U - U_{zero}) / (U_{full} - U_{zero})`, between 0 and 1.
 
-Limits of validity: the speed is that at the start of a step, so within a step that accelerates the
-power passes its limit by the share by which the speed grows.
+Limits of validity: where a train moves in steps of one acceleration from the force at their start, the
+power passes its limit within a step by the share by which the speed grows.
 """
 
 import math
@@ -49,6 +49,24 @@ def limited_force(speed_m_s: float, limits: EffortLimits) -> float:
         return limits.highest_force_n
     share = min(1.0, limits.limit_speed_m_s / speed_m_s)
     return min(limits.highest_force_n, limits.highest_power_w / speed_m_s * share)
+
+
+@inlined
+def limited_by_speed(speed_m_s: float, force_n: float, limits: EffortLimits) -> float:
+    """Slope over the speed of the largest force at full voltage. [N s/m]
+
+    Parameters
+    ----------
+    speed_m_s : float
+        Train speed, not negative. [m/s]
+    force_n : float
+        `limited_force` there. [N]
+    limits : EffortLimits
+    """
+    if force_n >= limits.highest_force_n:
+        return 0.0
+    power = 2.0 if speed_m_s > limits.limit_speed_m_s else 1.0
+    return -power * force_n / speed_m_s
 
 
 @inlined

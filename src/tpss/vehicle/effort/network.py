@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined
-from tpss.numerics.neural_network import NEURONS, FeedForwardNetwork, outside
+from tpss.numerics.neural_network import NEURONS, FeedForwardNetwork, outside, weigh
 from tpss.numerics.series import Series, make_series
 
 Array = npt.NDArray[np.float64]
@@ -23,8 +23,10 @@ def motor_force_series(
     network: FeedForwardNetwork,
     scratch: Array,
     series: Series,
-) -> None:
+) -> float:
     """Make the series of the largest force of all motors over the line voltage. [N], [V]
+
+    Return the slope over the speed at this voltage. [N s/m]
 
     Negative only by the network's error (at most 2.1 kN); the caller clips it and counts that.
 
@@ -48,6 +50,7 @@ def motor_force_series(
         fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
         scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
     make_series(voltage_v, network, scratch, series)
+    return weigh(network.by_first, scratch[1])
 
 
 @inlined

@@ -16,6 +16,7 @@ from tpss.numerics.curve import (
     Curve,
     Points,
     curve_at,
+    curve_slope,
     hermite,
     slope_at,
     steepest_between,
@@ -112,6 +113,20 @@ def table_force(voltage_v: float, table: EffortTable, terms: TableTerms) -> tupl
         terms.slope_n_per_v[row],
         terms.slope_n_per_v[row + 1],
     )
+
+
+@inlined
+def table_by_speed(voltage_v: float, speed_m_s: float, table: EffortTable, points: Points) -> float:
+    """Slope over the speed of the largest force at a line voltage, straight between rows. [N s/m]"""
+    count, row = table.first_row.points, 0
+    while row + 1 < table.rows and voltage_v >= table.voltage_v[row + 1]:
+        row += 1
+    slope = curve_slope(speed_m_s, table.first_row.first + row * count, count, points)
+    if row + 1 == table.rows or voltage_v <= table.voltage_v[row]:
+        return slope
+    after = curve_slope(speed_m_s, table.first_row.first + (row + 1) * count, count, points)
+    width_v = table.voltage_v[row + 1] - table.voltage_v[row]
+    return slope + (after - slope) * (voltage_v - table.voltage_v[row]) / width_v
 
 
 @inlined

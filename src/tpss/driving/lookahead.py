@@ -1,0 +1,105 @@
+r"""The road ahead of a train: which limit or stop it has to brake for, and when it has to begin.
+
+Braking with its highest retardation b to the speed w at a place a distance d ahead, a train may be as
+fast as
+
+.. math:: v^2 = w^2 + 2 b d .
+
+Over the distance these are straight lines of one slope, so of all limits and stops ahead one binds,
+whatever the speed: that whose line is the lowest.
+
+A train with the acceleration a reaches a line, K above the square of its speed, after the time
+
+.. math:: (v + a t)^2 = v^2 + K - 2 b (v t + a t^2 / 2)
+          \;\Rightarrow\;
+          t = \frac{K}{s v + \sqrt{s^2 v^2 + a s K}}, \quad s = a + b,
+
+and a place at the distance d after :math:`t = 2 d / (v + \sqrt{v^2 + 2 a d})`.
+"""
+
+import math
+
+from tpss.driving.data import DrivingData
+from tpss.driving.stops import stop_position
+from tpss.kernel import at, inlined, kernel
+from tpss.numerics.staircase import index_at
+from tpss.vehicle.train import Motion
+from tpss.vehicle.train_type import TrainType
+
+
+@inlined
+def highest_speed_at(place: int, kind: TrainType, data: DrivingData) -> float:
+    """Highest speed of a train where the limit with this index holds. [m/s]"""
+    return min(data.limits.value[at(kind.profile)][at(place)], kind.highest_speed_m_s)
+
+
+@kernel
+def what_to_brake_for(
+    route: int, motion: Motion, kind: TrainType, data: DrivingData
+) -> tuple[float, float, float]:
+    """Square of the speed from which a train has to brake here, where it brakes to, and to which speed.
+
+    In m²/s², m and m/s.  Limits are looked for as far as they can matter within a step.
+
+    Parameters
+    ----------
+    route : int
+        Of the train.
+    motion : Motion
+        Where it is; its next stop.
+    kind : TrainType
+    data : DrivingData
+    """
+    from_m = data.limits.from_m[at(kind.profile)]
+    per_metre = 2.0 * kind.highest_retardation_m_s2
+    position_m, fastest = motion.position_m, kind.highest_speed_m_s
+    target_m, target_m_s = stop_position(route, motion.next_stop, data.stops), 0.0
+    square = per_metre * (target_m - position_m)
+    reach = fastest * (fastest + per_metre * data.options.step_s)
+    j = index_at(position_m, from_m) + 1
+    while j < from_m.size:
+        room = per_metre * (from_m[at(j)] - position_m)
+        if room >= min(square, reach):
+            break
+        limit_m_s = highest_speed_at(j, kind, data)
+        if room + limit_m_s**2 < square:
+            square, target_m, target_m_s = room + limit_m_s**2, from_m[at(j)], limit_m_s
+        j += 1
+    return square, target_m, target_m_s
+
+
+@inlined
+def time_to_braking(
+    acceleration_m_s2: float, speed_m_s: float, below_m2_s2: float, retardation_m_s2: float
+) -> float:
+    """Time until a train has to brake; infinite if it never has. [s]
+
+    Parameters
+    ----------
+    acceleration_m_s2, speed_m_s : float
+        Of the train. [m/s²], [m/s]
+    below_m2_s2 : float
+        Square of the speed from which it has to brake here, less that of its own. [m²/s²]
+    retardation_m_s2 : float
+        Its highest retardation. [m/s²]
+    """
+    nearing = acceleration_m_s2 + retardation_m_s2
+    root = (nearing * speed_m_s) ** 2 + acceleration_m_s2 * nearing * below_m2_s2
+    if nearing <= 0.0 or not root > 0.0 or below_m2_s2 == math.inf:
+        return math.inf
+    return max(0.0, below_m2_s2) / (nearing * speed_m_s + math.sqrt(root))
+
+
+@inlined
+def time_to_place(acceleration_m_s2: float, speed_m_s: float, distance_m: float) -> float:
+    """Time until a train has gone a distance; infinite if it never has. [s]
+
+    Parameters
+    ----------
+    acceleration_m_s2, speed_m_s, distance_m : float
+        Of the train [m/s²], [m/s], and the distance [m].
+    """
+    square = speed_m_s**2 + 2.0 * acceleration_m_s2 * distance_m
+    if not square > 0.0 or distance_m == math.inf:
+        return math.inf
+    return 2.0 * distance_m / (speed_m_s + math.sqrt(square))

@@ -1,0 +1,463 @@
+r"""The way of a train through a step at a line voltage, phase by phase, however long the step is.
+
+A train stands until it departs, accelerates, holds a limit, brakes, stands at its stop and departs
+again, all at their instants.  A phase is a time of constant acceleration.  It ends
+
+- with the step, or after `LONGEST_PHASE_S`, as forces change with speed and place,
+- at a speed: the limit, or that to which the train brakes,
+- where the train has to brake (`lookahead`), or where another limit begins.
+
+Forces of a phase
+-----------------
+All forces belong to the phase's mean speed v_m = v + a δ/2, with δ its duration: what the machine gives
+there at the line voltage, what the rails pass on there, the running resistance there; the gradient is
+the mean over the distance v_m δ.  So the acceleration is the root of
+
+.. math:: g(a) = \frac{F(v_m(a)) - F_{res}(v_m(a))}{M} - a ,
+
+where δ depends on a too.  F falls with the speed and F_res grows, so g falls, and the root is found by
+the secant method within bounds.  Work and impulse are exact: at constant acceleration a force F does
+the work F v_m δ.  The machine gives at v_m what it can at v_m: its power is never above its limits.
+
+A driver who wants less acceleration than the machine can give (his limit of acceleration, a speed that
+is held, braking) gets it: then a is what he wants, and the force follows.
+
+The powers that the train draws are means over the step.  Where the voltage decides about a force, their
+slopes over it are found by a second passage at a voltage close by; else those of the phases add up.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from tpss.driving.data import DrivingData, Floats
+from tpss.driving.lookahead import (
+    highest_speed_at,
+    time_to_braking,
+    time_to_place,
+    what_to_brake_for,
+)
+from tpss.kernel import at, inlined, kernel
+from tpss.numerics.curve import Points
+from tpss.numerics.staircase import index_at, index_from
+from tpss.physics.gradient import mean_gradient
+from tpss.physics.running_resistance import gradient_force, running_resistance
+from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.phase import demand_of_phase, demand_standing, force_of_phase
+from tpss.vehicle.train import MOST_CALLS, Passage, Phase, Train, copy_motion
+from tpss.vehicle.train_type import TrainType
+
+LONGEST_PHASE_S = 3.0
+"""Longest phase of changing forces. [s]"""
+
+ROUNDING = 1e-10
+"""Relative rounding of a speed's square: a train brakes from so close to where it has to."""
+
+ACCURACY = 1e-13
+"""Of an acceleration, relative to the larger of it and 1 m/s²."""
+
+MOST_SECANTS = 60
+"""More than bisection alone would take."""
+
+MOST_PHASES = 100_000
+"""Phases of a step after which a train is taken to stand; its limits and stops would not fill them."""
+
+VOLTAGE_CHANGE = 1e-5
+"""Relative change of the voltage that gives the slopes."""
+
+
+class End(IntEnum):
+    """What ends a phase."""
+
+    TIME = 0
+    SPEED = 1
+    STANDSTILL = 2
+    BRAKING = 3
+    PLACE = 4
+
+
+class Aim(NamedTuple):
+    """What a driver wants in a phase, and what ends it."""
+
+    acceleration_m_s2: float
+    """Acceleration that he wants, if the machine can. [m/s²]"""
+    until_m_s: float
+    """Speed at which the phase ends; infinite: none. [m/s]"""
+    longest_s: float
+    """Longest duration. [s]"""
+    below_m2_s2: float
+    """Square of the speed from which he has to brake here, less that of his own. [m²/s²]"""
+    room_m: float
+    """Distance to the next limit. [m]"""
+    target_m: float
+    """Where that speed is to be reached; infinite: anywhere. [m]"""
+
+
+class Pull(NamedTuple):
+    """What moves a train in a phase."""
+
+    acceleration_m_s2: float
+    duration_s: float
+    mean_speed_m_s: float
+    cap_n: float
+    """Force that driver and adhesion allow. [N]"""
+    traction_n: float
+    braking_n: float
+    running_n: float
+    gradient_n: float
+
+
+@inlined
+def when_a_phase_ends(
+    acceleration_m_s2: float, speed_m_s: float, retardation_m_s2: float, aim: Aim
+) -> tuple[float, int]:
+    """Duration of a phase with a given acceleration [s], and its `End`."""
+    a, v = acceleration_m_s2, speed_m_s
+    duration, end = aim.longest_s, End.TIME
+    if a != 0.0 and aim.until_m_s < math.inf:
+        time = (aim.until_m_s - v) / a
+        if 0.0 <= time and time <= duration:
+            duration, end = time, End.SPEED
+    if a < 0.0 and -v / a < duration:
+        duration, end = -v / a, End.STANDSTILL
+    time = time_to_braking(a, v, aim.below_m2_s2, retardation_m_s2)
+    if time < duration:
+        duration, end = time, End.BRAKING
+    time = time_to_place(a, v, aim.room_m)
+    if time < duration:
+        duration, end = time, End.PLACE
+    return duration, end
+
+
+@kernel
+def pull_with(
+    acceleration_m_s2: float, voltage_v: float, aim: Aim, passage: Passage, train: Train,
+    kind: TrainType, data: DrivingData, points: Points, scratch: Floats,
+) -> Pull:  # fmt: skip
+    """Forces of the phase that an acceleration would make, and the acceleration that they give.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5)-(2.11).
+    """
+    motion, row, options = passage.motion, at(kind.profile), data.options
+    v = motion.speed_m_s
+    duration, _ = when_a_phase_ends(
+        acceleration_m_s2, v, kind.highest_retardation_m_s2, aim
+    )
+    mean = max(0.0, v + acceleration_m_s2 * duration / 2.0)
+    slope = mean_gradient(
+        motion.gradient, motion.position_m, mean * duration,
+        data.gradients.from_m[row], data.gradients.value[row],
+    )  # fmt: skip
+    running, gradient = running_resistance(mean, kind.resistance), gradient_force(kind.mass_kg, slope)
+    resistance = running + gradient
+    wanted = kind.inertia_kg * aim.acceleration_m_s2 + resistance
+    if wanted <= 0.0:
+        return Pull(
+            aim.acceleration_m_s2, duration, mean, 0.0, 0.0, -wanted, running, gradient
+        )
+    cap = min(wanted, adhesion_of(kind, mean, options.rail, options.adhesion_in_km_h, points))
+    force = force_of_phase(voltage_v, mean, resistance, cap, kind, train.demand, points, scratch)
+    given = aim.acceleration_m_s2
+    if force < wanted:
+        given = (force - resistance) / kind.inertia_kg
+    return Pull(given, duration, mean, cap, force, 0.0, running, gradient)
+
+
+@inlined
+def find_pull(
+    voltage_v: float, aim: Aim, passage: Passage, train: Train,
+    kind: TrainType, data: DrivingData, points: Points, scratch: Floats,
+) -> Pull:  # fmt: skip
+    """Forces and acceleration of a phase, which belong to each other: the root of g."""
+    a = aim.acceleration_m_s2
+    if a > 0.0:
+        a = min(a, max(0.0, passage.acceleration_m_s2))
+    pull = pull_with(a, voltage_v, aim, passage, train, kind, data, points, scratch)
+    above = pull.acceleration_m_s2 - a
+    low, high = -math.inf, math.inf
+    before, above_before = a, math.inf
+    for _ in range(MOST_SECANTS):
+        if abs(above) <= ACCURACY * max(1.0, abs(a)):
+            break
+        # 1. The root lies above where g is positive, and below where it is negative.
+        if above > 0.0:
+            low = max(low, a)
+        else:
+            high = min(high, a)
+        # 2. A secant, first the value itself; bisection where that would leave the bounds.
+        after = pull.acceleration_m_s2
+        if above_before < math.inf and above != above_before:
+            after = a - above * (a - before) / (above - above_before)
+        if not (low < after and after < high):
+            after = (low + high) / 2.0 if high - low < math.inf else pull.acceleration_m_s2
+        before, above_before, a = a, above, after
+        pull = pull_with(a, voltage_v, aim, passage, train, kind, data, points, scratch)
+        above = pull.acceleration_m_s2 - a
+    return pull
+
+
+@inlined
+def _gradient_stays(distance_m: float, passage: Passage, kind: TrainType, data: DrivingData) -> bool:
+    """Whether the gradient does not change over a distance ahead."""
+    from_m, following = data.gradients.from_m[at(kind.profile)], passage.motion.gradient + 1
+    end_m = passage.motion.position_m + distance_m
+    return following >= from_m.size or from_m[at(following)] >= end_m
+
+
+@inlined
+def _note_departure(passage: Passage, train: Train, step_s: float) -> None:
+    """A train goes on from its stop."""
+    place = passage.motion.next_stop - train.motion.next_stop
+    if place < MOST_CALLS:
+        passage.departure_s[place] = step_s - passage.left_s
+
+
+@inlined
+def _note_arrival(passage: Passage, train: Train, step_s: float) -> None:
+    """A train has come to stand at its stop."""
+    place = passage.motion.next_stop - train.motion.next_stop + 1
+    if place < MOST_CALLS:
+        passage.arrival_s[place] = step_s - passage.left_s
+        passage.departure_s[place] = math.nan
+
+
+@inlined
+def _stand(
+    voltage_v: float, passage: Passage, train: Train, kind: TrainType, step_s: float
+) -> None:
+    """Let a train wait; one that has not departed yet is not on the line."""
+    motion = passage.motion
+    duration = min(motion.wait_s, passage.left_s)
+    if motion.phase == Phase.DWELLING:
+        active, reactive, slope = demand_standing(voltage_v, kind)
+        passage.active_j += active * duration
+        passage.reactive_vars += reactive * duration
+        passage.reactive_slope_vars += slope * duration
+    passage.left_s -= duration
+    motion.wait_s -= duration
+    passage.acceleration_m_s2 = 0.0
+    if motion.wait_s <= 0.0:
+        if motion.phase == Phase.DWELLING:
+            _note_departure(passage, train, step_s)
+        motion.phase = Phase.DRIVING
+
+
+@inlined
+def _come_to_stop(passage: Passage, train: Train, data: DrivingData) -> None:
+    """A train stands at its stop: it has arrived, dwells, or continues at once."""
+    motion = passage.motion
+    stop = data.stops[at(train.route), at(motion.next_stop)]
+    _note_arrival(passage, train, data.options.step_s)
+    if stop.destination:
+        motion.phase = Phase.ARRIVED
+        passage.stood_s = passage.left_s
+        return
+    motion.next_stop += 1
+    motion.wait_s = stop.dwell_s
+    motion.phase = Phase.DWELLING
+    if stop.dwell_s <= 0.0:
+        _note_departure(passage, train, data.options.step_s)
+        motion.phase = Phase.DRIVING
+
+
+@kernel
+def _add_phase(
+    voltage_v: float, pull: Pull, passage: Passage, train: Train, kind: TrainType,
+    points: Points, scratch: Floats,
+) -> None:  # fmt: skip
+    """Add impulses, works and energies of a phase."""
+    duration, distance_m = pull.duration_s, pull.mean_speed_m_s * pull.duration_s
+    passage.traction_ns += pull.traction_n * duration
+    passage.braking_ns += pull.braking_n * duration
+    passage.running_ns += pull.running_n * duration
+    passage.gradient_ns += pull.gradient_n * duration
+    passage.traction_j += pull.traction_n * distance_m
+    passage.braking_j += pull.braking_n * distance_m
+    passage.running_j += pull.running_n * distance_m
+    passage.gradient_j += pull.gradient_n * distance_m
+    resistance = pull.running_n + pull.gradient_n
+    active, reactive, active_slope, reactive_slope, motor, current, breaches = demand_of_phase(
+        voltage_v, pull.mean_speed_m_s, resistance, pull.cap_n, kind, train.demand, points, scratch
+    )
+    passage.breaches |= breaches
+    if active_slope != 0.0:
+        passage.by_voltage = True
+    passage.active_j += active * duration
+    passage.reactive_vars += reactive * duration
+    passage.active_slope_j += active_slope * duration
+    passage.reactive_slope_vars += reactive_slope * duration
+    passage.motor_j += motor * duration
+    passage.current_as += current * duration
+    passage.acceleration_m_s2, passage.resistance_n = pull.acceleration_m_s2, resistance
+    passage.left_s -= duration
+
+
+@inlined
+def _aim(
+    square: float, target_m: float, target_m_s: float, passage: Passage, kind: TrainType,
+    data: DrivingData,
+) -> Aim:  # fmt: skip
+    """What the driver of a moving train, or of one that is to start, wants now.
+
+    Parameters are what `what_to_brake_for` gives.
+    """
+    motion, from_m = passage.motion, data.limits.from_m[at(kind.profile)]
+    v, b, left = motion.speed_m_s, kind.highest_retardation_m_s2, passage.left_s
+    here = index_at(motion.position_m, from_m)
+    cruise = highest_speed_at(here, kind, data)
+    if v > target_m_s and v * v >= square * (1.0 - ROUNDING):
+        # That which leads to the place: b, but for roundings.
+        retardation = (v * v - target_m_s * target_m_s) / (2.0 * (target_m - motion.position_m))
+        return Aim(-retardation, target_m_s, left, math.inf, math.inf, target_m)
+    if v > cruise:
+        return Aim(-b, cruise, left, math.inf, math.inf, math.inf)
+    room_m = from_m[at(here + 1)] - motion.position_m if here + 1 < from_m.size else math.inf
+    wanted, until = (kind.highest_acceleration_m_s2, cruise) if v < cruise else (0.0, math.inf)
+    return Aim(wanted, until, min(left, LONGEST_PHASE_S), square - v * v, room_m, math.inf)
+
+
+@inlined
+def _choose_pull(
+    voltage_v: float, aim: Aim, passage: Passage, train: Train, kind: TrainType,
+    data: DrivingData, points: Points, scratch: Floats,
+) -> tuple[Pull, int]:  # fmt: skip
+    """Forces, duration and end of the next phase.  A speed held where nothing changes is one phase."""
+    pull = find_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
+    v, a, longest_s = passage.motion.speed_m_s, pull.acceleration_m_s2, aim.longest_s
+    if a == 0.0 and v > 0.0 and _gradient_stays(v * passage.left_s, passage, kind, data):
+        longest_s = passage.left_s
+    aim = Aim(
+        aim.acceleration_m_s2, aim.until_m_s, longest_s, aim.below_m2_s2, aim.room_m, aim.target_m
+    )
+    duration, end = when_a_phase_ends(a, v, kind.highest_retardation_m_s2, aim)
+    after = aim.until_m_s if end == End.SPEED else max(0.0, v + a * duration)
+    chosen = Pull(
+        a, duration, (v + after) / 2.0, pull.cap_n, pull.traction_n, pull.braking_n,
+        pull.running_n, pull.gradient_n,
+    )  # fmt: skip
+    return chosen, end
+
+
+@inlined
+def _drive(
+    voltage_v: float, passage: Passage, train: Train, kind: TrainType, data: DrivingData,
+    points: Points, scratch: Floats,
+) -> None:  # fmt: skip
+    """Take the next phase of a train that moves, or is to start."""
+    motion = passage.motion
+    position_m, v = motion.position_m, motion.speed_m_s
+    motion.gradient = index_from(
+        motion.gradient, position_m, data.gradients.from_m[at(kind.profile)]
+    )
+    # 1. What the driver wants.
+    square, target_m, target_m_s = what_to_brake_for(train.route, motion, kind, data)
+    aim = _aim(square, target_m, target_m_s, passage, kind, data)
+    # 2. What the machine gives.
+    pull, end = _choose_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
+    _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
+    a = pull.acceleration_m_s2
+    if end == End.STANDSTILL or (v == 0.0 and a <= 0.0):
+        passage.stalled = True
+        passage.needed_n = pull.running_n + pull.gradient_n
+        passage.available_n = pull.traction_n
+    # 3. Where that leads: to speeds and places exactly.
+    motion.position_m = position_m + pull.mean_speed_m_s * pull.duration_s
+    motion.speed_m_s = max(0.0, v + a * pull.duration_s)
+    if end == End.PLACE:
+        motion.position_m = position_m + aim.room_m
+    elif end == End.SPEED:
+        motion.speed_m_s = aim.until_m_s
+        if a == aim.acceleration_m_s2 and aim.target_m < math.inf:
+            off_m = abs(motion.position_m - aim.target_m)
+            passage.stop_error_m = max(passage.stop_error_m, off_m)
+            motion.position_m = aim.target_m
+            if aim.until_m_s == 0.0:
+                _come_to_stop(passage, train, data)
+
+
+@inlined
+def _begin(passage: Passage, train: Train, step_s: float) -> None:
+    """A passage at its start."""
+    copy_motion(train.motion, passage.motion)
+    passage.acceleration_m_s2 = train.decision.acceleration_m_s2
+    passage.resistance_n = 0.0
+    passage.left_s = step_s
+    passage.stood_s, passage.stop_error_m = 0.0, 0.0
+    passage.departure_s[0] = math.nan
+    passage.breaches = 0
+    passage.stalled, passage.by_voltage = False, False
+    passage.needed_n, passage.available_n = 0.0, 0.0
+    passage.traction_ns, passage.traction_j = 0.0, 0.0
+    passage.braking_ns, passage.braking_j = 0.0, 0.0
+    passage.running_ns, passage.running_j = 0.0, 0.0
+    passage.gradient_ns, passage.gradient_j = 0.0, 0.0
+    passage.motor_j, passage.current_as = 0.0, 0.0
+    passage.active_j, passage.reactive_vars = 0.0, 0.0
+    passage.active_slope_j, passage.reactive_slope_vars = 0.0, 0.0
+
+
+@kernel
+def pass_through(
+    voltage_v: float, passage: Passage, train: Train, kind: TrainType, data: DrivingData,
+    points: Points, scratch: Floats,
+) -> None:  # fmt: skip
+    """Find the way of a train through this step at a line voltage.
+
+    Parameters
+    ----------
+    voltage_v : float
+        Voltage at the pantograph, all through the step. [V]
+    passage : Passage
+        Written.
+    train, kind, data
+        The train, its type, and what its driver knows.
+    points : records of CurvePoint
+    scratch : Array, shape `SCRATCH_SHAPE`
+    """
+    _begin(passage, train, data.options.step_s)
+    for _ in range(MOST_PHASES):
+        if passage.left_s <= 0.0 or passage.stalled or passage.motion.phase == Phase.ARRIVED:
+            return
+        if passage.motion.wait_s > 0.0:
+            _stand(voltage_v, passage, train, kind, data.options.step_s)
+        else:
+            _drive(voltage_v, passage, train, kind, data, points, scratch)
+    passage.stalled = True
+
+
+@kernel
+def demand_of_passage(
+    voltage_v: float, with_slopes: bool, train: Train, kind: TrainType, data: DrivingData,
+    points: Points, scratch: Floats,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Mean active and reactive power of a train on its passage, and their slopes: P, Q, P', Q'.
+
+    [W], [var], [W/V], [var/V]
+
+    Parameters
+    ----------
+    with_slopes : bool
+        Whether the slopes are asked for; else they may be anything.
+
+    Others are those of `pass_through`.
+    """
+    passage, per_second = train.passage, 1.0 / data.options.step_s
+    pass_through(voltage_v, passage, train, kind, data, points, scratch)
+    active_slope, reactive_slope = passage.active_slope_j, passage.reactive_slope_vars
+    if with_slopes and passage.by_voltage:
+        trial, change_v = train.trial, VOLTAGE_CHANGE * voltage_v
+        pass_through(voltage_v + change_v, trial, train, kind, data, points, scratch)
+        active_slope = (trial.active_j - passage.active_j) / change_v
+        reactive_slope = (trial.reactive_vars - passage.reactive_vars) / change_v
+    demand = train.demand
+    demand.wheel_force_n = passage.traction_ns * per_second
+    demand.active_power_w = passage.active_j * per_second
+    demand.reactive_power_var = passage.reactive_vars * per_second
+    return (
+        demand.active_power_w,
+        demand.reactive_power_var,
+        active_slope * per_second,
+        reactive_slope * per_second,
+    )

@@ -1,0 +1,33 @@
+"""What a train asks of the network, however it moves."""
+
+from tpss.driving.passage import demand_of_passage
+from tpss.kernel import at, inlined
+from tpss.powerflow.network import Loads
+from tpss.vehicle.demand import electrical_demand
+from tpss.vehicle.train import Course, Train
+
+
+@inlined
+def find_demand(
+    voltage_v: float, with_slopes: bool, train: Train, loads: Loads
+) -> tuple[float, float, float, float]:
+    """Active and reactive power of a train at a voltage, and their slopes: P, Q, P', Q'.
+
+    [W], [var], [W/V], [var/V]
+
+    Parameters
+    ----------
+    voltage_v : float
+        Voltage at the pantograph. [V]
+    with_slopes : bool
+        Whether the slopes are asked for; else they may be anything.
+    train : Train
+        Written: force and powers.
+    loads : Loads
+    """
+    kind = loads.types[at(train.train_type)]
+    if train.decision.course == Course.PASSAGE:
+        return demand_of_passage(
+            voltage_v, with_slopes, train, kind, loads.driving, loads.points, loads.scratch
+        )
+    return electrical_demand(voltage_v, kind, train.demand, loads.scratch)
