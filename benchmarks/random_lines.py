@@ -17,6 +17,7 @@ from tpss.powerflow.network import (
     Network,
     SectionPart,
     assemble,
+    loads_alone,
     new_flow,
 )
 from tpss.powerflow.placing import locate_trains, measure_pieces
@@ -162,7 +163,7 @@ def random_loads(rng: Random, network: Network) -> Loads:
         else:
             types[k] = constant_load(rng.uniform(0.0, largest_w), rng.uniform(-0.3, 0.8))
     prepare(trains, types, SCRATCH, POINTS)
-    return Loads(trains, types, SCRATCH)
+    return loads_alone(trains, types)
 
 
 def random_places(rng: Random, network: Network, count: int) -> Any:

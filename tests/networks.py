@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.powerflow.network import (
     BranchPart,
     Flow,
@@ -12,6 +11,7 @@ from tpss.powerflow.network import (
     Network,
     SectionPart,
     assemble,
+    loads_alone,
     new_flow,
 )
 from tpss.powerflow.placing import locate_trains, measure_pieces
@@ -101,7 +101,7 @@ def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     trains.train_type = np.arange(len(powers_va))
     trains.motion.position_m = positions_m
     trains.demand.per_efficiency = 1.0
-    return Loads(trains, types, np.zeros(SCRATCH_SHAPE))
+    return loads_alone(trains, types)
 
 
 def place(network: Network, loads: Loads) -> Case:

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from tpss.kernel import kernel
-from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.reactive_power import ReactiveModel
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.network import Flow, Loads, Network, new_flow
+from tpss.powerflow.network import Flow, Loads, Network, loads_alone, new_flow
 from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember, start_flat
@@ -72,7 +71,7 @@ def constant_loads(trains: int) -> Loads:
     kind, rows = TrainType.blank(1), Train.blank(trains)
     kind.reactive_model, demand = ReactiveModel.POWER_FACTOR, rows.demand
     demand.per_efficiency, demand.force_cap_n, demand.free_band_v = 1.0, 1.0, math.inf
-    return Loads(rows, kind, np.zeros(SCRATCH_SHAPE))
+    return loads_alone(rows, kind)
 
 
 def start(case: Case) -> tuple[Network, Flow, Loads]:

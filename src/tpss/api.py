@@ -114,5 +114,5 @@ class Prepared:
             "provenance": provenance(),
         }
         dataset = build_dataset(outcome, model, self.layout)
-        dataset.attrs = attributes(figures, model.options.step_s)
+        dataset.attrs = attributes(figures, model.options.step_s, run.last_step_s)
         return Result(self.scenario, dataset, figures)

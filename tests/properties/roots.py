@@ -15,7 +15,7 @@ from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
-from tpss.step.advance import begin_step
+from tpss.step.advance import begin_step, prepare_trains
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data
 from tpss.step.state import State
@@ -39,7 +39,7 @@ class Replay:
         model, _ = build_model(scenario)
         services = build_services(scenario, model)
         trains = trains_on_line(model, services)
-        trains += departing_trains(services, model.options.step_s, 0, steps)
+        trains += departing_trains(services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
 
     def root_of_step(self, step: int) -> tuple[float, npt.NDArray[np.float64]]:
@@ -48,6 +48,7 @@ class Replay:
         run.advance_to(step)
         untouched = copy.deepcopy(run.state)
         count = begin_step(step, run.model, run.state, run.recording)
+        prepare_trains(count, run.model, run.state)
         share = solve_step_slowly(count, run.model, run.state)
         places = run.state.flow.standing[:count]
         voltages = np.full(len(run.trains), np.nan)
@@ -86,7 +87,7 @@ def raise_loads_beyond_the_band(share: float, standing: Any, model: Model, state
     What filters feed into a weak line lifts the voltages most at some part of the load, and the whole of
     it may bring them back into the plausible band.
     """
-    loads = Loads(state.trains, model.types, state.scratch)
+    loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
     whole, voltage = carry(equations, highest=np.inf)
     system = model.network.system
@@ -99,7 +100,7 @@ def raise_loads_beyond_the_band(share: float, standing: Any, model: Model, state
 def raise_loads_within_the_band(model: Model, state: State) -> float:
     """Raise all loads little by little, while all voltages are plausible."""
     flow = state.flow
-    loads = Loads(state.trains, model.types, state.scratch)
+    loads = loads_of(model, state)
     start_flat(model.network, flow)
     share, rise, start = 0.0, RISE, FLAT
     while share < 1.0 and rise > FINEST:

@@ -160,7 +160,7 @@ def lone_train(changes: dict[str, Any]) -> Run:
     model, _ = build_model(short_line(changes))
     service = build_services(short_line(changes), model)[0]
     control = RunControl(fixed_voltage_v=15_000.0, studied_train=0)
-    trains = departing_trains([service], model.options.step_s, 0, 1)
+    trains = departing_trains([service], model.options, 0, 1)
     return Run(model._replace(control=control), trains, 10_000)
 
 

@@ -120,10 +120,11 @@ def new_figures(model: Model, trains: int, zones: list[tuple[float, float]]) -> 
 @kernel
 def gather(
     steps: int,
+    last_step_s: float,
     peak_from: int,
     peak_to: int,
     at_line_level: npt.NDArray[np.bool_],
-    types_of: Records[Train],
+    trains: Records[Train],
     model: Model,
     recording: Recording,
     figures: Figures,
@@ -134,12 +135,14 @@ def gather(
     ----------
     steps : int
         Steps carried out.
+    last_step_s : float
+        Length of the last one. [s]
     peak_from, peak_to : int
         Bounds of the peak window, in steps; equal if the run does not cover it.
     at_line_level : array of bool, shape (nodes,)
         Whether a node is at the contact line's level.
-    types_of : records of Train
-        The trains, for their types.
+    trains : records of Train
+        The trains, for their types and times.
     model, recording : Model, Recording
     figures : Figures
         As from `new_figures`; filled.
@@ -157,15 +160,20 @@ def gather(
         figures.stations[s].peak_loading = -math.inf
     for step in range(steps):
         in_window = peak_from <= step and step < peak_to
-        _gather_trains(step, in_window, h, recording, figures)
-        _gather_network(step, h, at_line_level, recording, figures)
+        duration = h if step + 1 < steps else last_step_s
+        _gather_trains(step, in_window, duration, recording, figures)
+        _gather_network(step, duration, at_line_level, recording, figures)
     for i in range(figures.trains.size):
         _note_place(recording.trains[steps, i].position, figures.trains[i])
     for s in range(figures.stations.size):  # at last, as the tables of a dataset do
-        figures.stations[s].energy_j *= h
-        figures.stations[s].reactive_j *= h
+        station, last = figures.stations[s], recording.stations[max(steps, 1) - 1, s]
+        station.energy_j *= h
+        station.reactive_j *= h
+        if last_step_s != h and steps > 0:
+            station.energy_j -= last.station_active_power * (h - last_step_s)
+            station.reactive_j -= last.station_reactive_power * (h - last_step_s)
     _gather_passes(steps, recording, run)
-    _audit(steps, types_of, model, recording, figures.audit)
+    _audit(steps, last_step_s, trains, model, recording, figures.audit)
 
 
 @inlined
@@ -261,29 +269,32 @@ def _gather_passes(steps: int, recording: Recording, run: RunFigures) -> None:
 
 @inlined
 def _audit(
-    steps: int, types_of: Records[Train], model: Model, recording: Recording, scratch: Scratch
-) -> None:
+    steps: int, last_step_s: float, trains: Records[Train], model: Model, recording: Recording,
+    scratch: Scratch,
+) -> None:  # fmt: skip
     """Audit a recording; the figures are left in ``scratch.balances``.
 
     Parameters
     ----------
     steps : int
         Steps carried out.
-    types_of : records of Train
-        The trains, for their types.
+    last_step_s : float
+        Length of the last one. [s]
+    trains : records of Train
+        The trains, for their types and times.
     model, recording : Model, Recording
     scratch : Scratch
         As from `new_scratch`, with as many trains as count.
     """
     figures, h = scratch.balances[0], model.options.step_s
     for step in range(steps):
+        duration = h if step + 1 < steps else last_step_s
         audit_network(step, model, recording, scratch)
-        audit_sources(step, model, recording, scratch)
-        figures.lost_j += recording.network_losses[step] * h
+        audit_sources(step, duration, model, recording, scratch)
+        figures.lost_j += recording.network_losses[step] * duration
         for i in range(scratch.order.size):
             if draws_power(recording.train_state[step, i]):
-                kind = model.types[types_of[i].train_type]
-                audit_train(step, i, kind, model, recording, figures)
+                audit_train(step, i, duration, trains[i], model, recording, figures)
     least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)
     gap = abs(figures.fed_j - figures.drawn_j - figures.lost_j)
     figures.network_balance = gap / max(abs(figures.fed_j), least)

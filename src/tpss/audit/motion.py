@@ -1,23 +1,80 @@
 """The audit of the trains: work, forces and motion."""
 
 from tpss.audit.balances import Balances, worst
-from tpss.driving.data import Braking, Driver
+from tpss.driving.data import Braking, Driver, MotionModel
 from tpss.kernel import at, inlined
-from tpss.numerics.curve import curve_at
+from tpss.numerics.curve import curve_at, extremes
 from tpss.numerics.staircase import index_at
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import TrainState
+from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
 
 @inlined
 def audit_train(
+    step: int, i: int, step_s: float, train: Train, model: Model, recording: Recording,
+    figures: Balances,
+) -> None:  # fmt: skip
+    """Add a train's step, of this length, to the balances of energy, force and motion. [s]"""
+    kind, before = model.types[train.train_type], recording.trains[step, i]
+    figures.drawn_j += before.active_power * step_s
+    if model.options.motion == MotionModel.CONTINUOUS:
+        _audit_continuous(step, i, step_s, train, kind, model, recording, figures)
+    else:
+        _audit_stepped(step, i, kind, model, recording, figures)
+    _audit_forces(step, i, step_s, kind, model, recording, figures)
+
+
+@inlined
+def _audit_continuous(
+    step: int, i: int, step_s: float, train: Train, kind: TrainType, model: Model,
+    recording: Recording, figures: Balances,
+) -> None:  # fmt: skip
+    """Work and motion of a train whose step may have several phases.
+
+    What the motors do follows from the energy drawn, but for the efficiency, which changes with the speed:
+    the recorded work is taken as far as some efficiency of the train's makes it that.  The rotors keep of
+    it what is not work at the wheel rim.  A train goes forward, and no further than its limits let it.
+    """
+    before, after = recording.trains[step, i], recording.trains[step + 1, i]
+    h = present_s = step_s
+    if step == train.timetable.departure_step:
+        present_s -= train.timetable.departure_wait_s
+    if step + 1 == train.timetable.arrival_step:
+        present_s -= train.timetable.stood_s
+    low, high = extremes(kind.efficiency, model.points)
+    for_motors_j = before.active_power * h - kind.auxiliary_power_w * present_s
+    motor_j = min(max(before.motor_power * h, low * for_motors_j), high * for_motors_j)
+    traction_j = before.traction_power * h
+    spent_j = (before.resistance_power + before.gradient_power + before.braking_power) * h
+    figures.work_j += motor_j / kind.slip_factor
+    figures.moving_j += spent_j + before.motor_power * h / kind.slip_factor - traction_j
+    kinetic = kind.inertia_kg / 2.0 * (after.speed * after.speed - before.speed * before.speed)
+    figures.kinetic_j += kinetic
+    figures.fallen_j -= min(before.gradient_power, 0.0) * h
+    figures.slowed_j -= min(kinetic, 0.0)
+    limits, row = model.limits, at(kind.profile)
+    fastest, j = before.speed, index_at(before.position, limits.from_m[row])
+    while j < limits.from_m[row].size and limits.from_m[row][j] <= after.position:
+        fastest = max(fastest, min(limits.value[row][j], kind.highest_speed_m_s))
+        j += 1
+    way_m = after.position - before.position
+    figures.motion_error_m = worst(figures.motion_error_m, min(0.0, way_m))
+    figures.motion_error_m = worst(figures.motion_error_m, max(0.0, way_m - fastest * h))
+    over = after.speed - min(limits.value[row][j - 1], kind.highest_speed_m_s)
+    if before.speed <= after.speed:
+        figures.motion_error_m = worst(figures.motion_error_m, max(0.0, over) * h)
+
+
+@inlined
+def _audit_stepped(
     step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
 ) -> None:
-    """Add a train's step to the balances of energy, force and motion.
+    """Work of a train that moves in steps.
 
     References
     ----------
@@ -25,7 +82,6 @@ def audit_train(
     """
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = model.options.step_s
-    figures.drawn_j += before.active_power * h
     # Not the difference of positions, which would round a short distance far along the line.
     way_m = h * (before.speed + after.speed) / 2.0
     efficiency = curve_at(before.speed, kind.efficiency.first, kind.efficiency.points, model.points)
@@ -43,7 +99,11 @@ def audit_train(
     figures.kinetic_j += kinetic
     figures.fallen_j -= min(before.gradient_force, 0.0) * way_m
     figures.slowed_j -= min(kinetic, 0.0)
-    _audit_motion(step, i, kind, model, recording, figures)
+    if model.options.braking == Braking.WITHIN_STEP:
+        off_m = _braking_motion_error(before, after, kind, h)
+    else:
+        off_m = after.position - before.position - way_m
+    figures.motion_error_m = worst(figures.motion_error_m, off_m)
 
 
 @inlined
@@ -107,19 +167,14 @@ def _driver_coasts(before: TrainRow, kind: TrainType, model: Model) -> bool:
 
 
 @inlined
-def _audit_motion(
-    step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
-) -> None:
-    """Note how far a train is off the equations of force and motion in a step."""
+def _audit_forces(
+    step: int, i: int, step_s: float, kind: TrainType, model: Model, recording: Recording,
+    figures: Balances,
+) -> None:  # fmt: skip
+    """Note how far the mean forces on a train are off its change of speed."""
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
-    h = model.options.step_s
-    if model.options.braking == Braking.WITHIN_STEP:
-        off_m = _braking_motion_error(before, after, kind, h)
-    else:
-        off_m = after.position - before.position - h * (before.speed + after.speed) / 2.0
-    figures.motion_error_m = worst(figures.motion_error_m, off_m)
-    change = after.speed - before.speed - h * before.acceleration
-    figures.motion_error_m = worst(figures.motion_error_m, change * h)
+    change = after.speed - before.speed - step_s * before.acceleration
+    figures.motion_error_m = worst(figures.motion_error_m, change * step_s)
     state = recording.train_state[step, i]
     if state in (TrainState.MOTORING, TrainState.COASTING, TrainState.BRAKING):
         inertia_kg = kind.inertia_kg

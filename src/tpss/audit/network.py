@@ -136,12 +136,14 @@ def _audit_demand(
 
 
 @inlined
-def audit_sources(step: int, model: Model, recording: Recording, scratch: Scratch) -> None:
-    """Residual of the sources' laws, and the energy that they feed."""
+def audit_sources(
+    step: int, step_s: float, model: Model, recording: Recording, scratch: Scratch
+) -> None:
+    """Residual of the sources' laws, and the energy that they feed in a step of this length. [s]"""
     network, figures = model.network, scratch.balances[0]
     for s in range(network.sources.size):
         source, row = network.sources[s], recording.stations[step, s]
-        figures.fed_j += row.station_active_power * model.options.step_s
+        figures.fed_j += row.station_active_power * step_s
         node = recording.nodes[step, source.node]
         voltage = complex(node.node_real, node.node_imag)
         power = complex(row.station_active_power, row.station_reactive_power)

@@ -121,6 +121,8 @@ def look_ahead(
 ) -> None:
     """Find out whether a train's step is one phase, as far as can be expected, and prepare that."""
     motion, decision, h = train.motion, train.decision, data.options.step_s
+    if decision.course == Course.PASSAGE:
+        train.demand.terms_speed_m_s = -1.0  # a passage leaves the terms of one of its phases
     decision.course = Course.PASSAGE
     if motion.phase == Phase.DWELLING and motion.wait_s > h:
         decision.course = Course.UNIFORM

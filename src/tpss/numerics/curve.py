@@ -190,6 +190,15 @@ def curve_at(x: float, first: int, count: int, points: Points) -> float:
     return min(max(value, lower), higher)
 
 
+@inlined
+def extremes(curve: Curve, points: Points) -> tuple[float, float]:
+    """Lowest and highest value of a curve, which it has at its points."""
+    low = high = points[curve.first].value
+    for k in range(curve.first + 1, curve.first + curve.points):
+        low, high = min(low, points[k].value), max(high, points[k].value)
+    return low, high
+
+
 @kernel
 def outside_curve(x: float, curve: Curve, points: Points) -> bool:
     """Whether a curve of more than one point keeps its outer value at `x`."""

@@ -18,10 +18,11 @@ from scipy.optimize import least_squares
 
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
+from tpss.kernel import plain
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
-from tpss.step.advance import begin_step, end_step
+from tpss.step.advance import begin_step, end_step, prepare_trains, step_to_arrival
 from tpss.step.coupling import apply_solutions, decide
-from tpss.step.model import Model, driving_data
+from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
 from tpss.step.state import State, Status, loads_of
@@ -41,8 +42,18 @@ def advance_by_least_squares(
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
         count = begin_step(step, model, state, recording)
-        share, evaluations = solve_step(count, step > 0, model, state)
-        status = end_step(step, count, share, evaluations, model, state, recording)
+        step_s, evaluations, tries, share = model.options.step_s, 0, 0, 0.0
+        while True:
+            now = plain(with_step)(model, step_s)
+            prepare_trains(count, now, state)
+            share, more = solve_step(count, step + tries > 0, now, state)
+            evaluations, tries = evaluations + more, tries + 1
+            wanted_s = plain(step_to_arrival)(tries, step_s, model, state)
+            if share < 1.0 or wanted_s == step_s:
+                break
+            step_s = wanted_s
+        state.clock[0].last_step_s = step_s
+        status = end_step(step, count, share, evaluations, now, state, recording)
         if status in (Status.RUNNING, Status.FINISHED):
             step += 1
     record_instant(step, state.trains, recording)

@@ -12,9 +12,20 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.driving.data import DrivingData
+from tpss.driving.data import (
+    Braking,
+    Driver,
+    DrivingData,
+    MotionModel,
+    Options,
+    Profiles,
+    Stop,
+)
+from tpss.kernel import switch
 from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
-from tpss.numerics.curve import Points
+from tpss.numerics.curve import CurvePoint, Points
+from tpss.numerics.series import SCRATCH_SHAPE
+from tpss.physics.adhesion import Rail
 from tpss.powerflow.system import System
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -236,6 +247,24 @@ class Loads(NamedTuple):
     """What their drivers know, as they find their way through the step at each voltage."""
     points: Points
     """Of all curves of the trains."""
+
+
+def loads_alone(trains: Records[Train], types: Records[TrainType]) -> Loads:
+    """Trains of which all is known but the voltage, for a load flow without a line to drive on."""
+    nowhere, value = np.zeros((1, 1)), np.zeros((1, 1))
+    options = Options(
+        step_s=1.0,
+        mean_power=True,
+        mean_gradient=True,
+        adhesion_in_km_h=False,
+        rail=switch(Rail.DRY),
+        driver=switch(Driver.REGULATED),
+        braking=switch(Braking.WITHIN_STEP),
+        motion=switch(MotionModel.CONTINUOUS),
+    )
+    profiles = Profiles(nowhere, value)
+    driving = DrivingData(options, profiles, profiles, Stop.blank(1, 1), types)
+    return Loads(trains, types, np.zeros(SCRATCH_SHAPE), driving, CurvePoint.blank(1))
 
 
 class SectionPart(NamedTuple):

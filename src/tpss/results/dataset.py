@@ -104,14 +104,15 @@ def _polar(rows: Any, place: str, there: Any) -> tuple[Floats, Floats]:
     return magnitude, angle
 
 
-def attributes(summary: dict[str, Any], step_s: float) -> dict[str, Any]:
-    """Attributes of a dataset, from the summary of its run."""
+def attributes(summary: dict[str, Any], step_s: float, last_step_s: float) -> dict[str, Any]:
+    """Attributes of a dataset, from the summary of its run and the length of its steps. [s]"""
     trip_min, energy = summary["trip_time_min"], summary["station_energy_mwh"]
     return {
         FORMAT_KEY: FORMAT,
         "title": summary["name"],
         "status": summary["status"],
         "time_step_s": step_s,
+        "last_step_s": last_step_s,
         "trip_time_min": np.nan if trip_min is None else trip_min,
         "station_energy_mwh": np.array(list(energy.values())),
         "losses_mwh": summary["losses_mwh"],
@@ -122,8 +123,7 @@ def attributes(summary: dict[str, Any], step_s: float) -> dict[str, Any]:
 
 def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, object]:
     h, plan, trains = model.options.step_s, layout.supply, outcome.trains
-    arrival_s = outcome.arrival_step * h - outcome.stood_s
-    arrival_s = np.where(outcome.arrival_step >= 0, arrival_s, np.nan)
+    calls = np.asarray(outcome.recording.calls)
     # A train that was on the line at the start has no departure.
     placed = np.array([train.phase != Phase.PENDING for train in trains], dtype=bool)
     departure_s = np.array(
@@ -135,14 +135,25 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
 
     node_m = np.array(plan.node_km) * 1e3
     return {
-        "time": ("time", np.arange(outcome.steps + 1) * h, of("s", "time from the start")),
+        "time": ("time", outcome.instants_s, of("s", "time from the start")),
         "train": ("train", [train.name for train in trains], of("", "train")),
         "service": ("train", [train.service for train in trains], of("", "service of the train")),
         "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
-        "arrival_time": ("train", arrival_s, of("s", "arrival")),
+        "arrival_time": ("train", outcome.arrival_s, of("s", "arrival")),
         "node": ("node", plan.nodes, of("", "node")),
         "node_kind": ("node", plan.node_kinds, NODE_KIND),
         "node_position": ("node", node_m, of("m", "position of the node")),
+        "call": ("call", np.arange(calls.shape[1]), of("", "stop on the route of the train")),
+        "call_arrival_time": (
+            ("train", "call"),
+            calls["arrival_s"],
+            of("s", "arrival at the stop, if the train moves continuously"),
+        ),
+        "call_departure_time": (
+            ("train", "call"),
+            calls["departure_s"],
+            of("s", "departure from the stop, if the train moves continuously"),
+        ),
         "station": ("station", list(layout.stations), of("", "feeding station")),
         "station_position": ("station", np.array(layout.station_m), of("m", "position")),
         "branch": ("branch", plan.branch_labels(), of("", "branch")),

@@ -16,7 +16,7 @@ from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
-from tpss.run.run import Clock, Run, Start, advance_to_end, run_of
+from tpss.run.run import Clock, Run, Start, advance_to_end, arrivals_s, run_of
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.step.recording import Memory
@@ -182,7 +182,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         name=frame.name,
         status=status,
         steps=run.step,
-        duration_min=run.step * run.model.options.step_s / 60.0,
+        duration_min=float(run.instants_s[-1]) / 60.0,
         carried_share=float(run.state.clock[0].carried_share),
         studied_train=run.trains[studied].name if studied >= 0 else None,
         trip_time_min=trip_min,
@@ -206,7 +206,10 @@ def _gather(run: Run, frame: Frame) -> Figures:
     begin, end = (0, 0) if window is None else (window.start, window.stop)
     figures = new_figures(model, run.departed, frame.zones_km)
     trains = run.state.trains
-    gather(run.step, begin, end, frame.at_line_level, trains, model, run.recording, figures)
+    gather(
+        run.step, run.last_step_s, begin, end, frame.at_line_level,
+        trains, model, run.recording, figures,
+    )  # fmt: skip
     return figures
 
 
@@ -221,10 +224,9 @@ def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
 
 
 def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
-    h, trips_min = start.model.options.step_s, [list[float]() for _ in start.services]
-    timetable = run.state.trains["timetable"]
-    arrivals_s = (timetable["arrival_step"] * h - timetable["stood_s"]).tolist()
-    for train, arrival_s in zip(run.trains, arrivals_s, strict=True):
+    h = start.model.options.step_s
+    trips_min = [list[float]() for _ in start.services]
+    for train, arrival_s in zip(run.trains, arrivals_s(run).tolist(), strict=True):
         if arrival_s >= 0 and train.phase == Phase.PENDING:
             departure_s = train.departure_step * h + train.departure_wait_s
             trips_min[train.route].append(arrival_s / 60.0 - departure_s / 60.0)
@@ -243,12 +245,14 @@ def _studied_trip(run: Run, studied: int, figures: Figures) -> tuple[float, floa
     """Trip time [min] and mean speed [km/h] of the studied train, NaN if it has not arrived."""
     if studied < 0:
         return math.nan, math.nan
-    timetable = run.state.trains[studied].timetable
+    timetable, h = run.state.trains[studied].timetable, run.model.options.step_s
     arrival = int(timetable.arrival_step)
     if arrival < 0:
         return math.nan, math.nan
-    trip_s = (arrival - run.trains[studied].departure_step) * run.model.options.step_s
+    trip_s = (arrival - run.trains[studied].departure_step) * h
     trip_s -= float(timetable.stood_s) + run.trains[studied].departure_wait_s
+    if arrival == run.step:
+        trip_s -= h - run.last_step_s
     distance_m = figures.trains[studied].last_m - figures.trains[studied].first_m
     return trip_s / 60.0, float(distance_m) / trip_s * 3.6
 

@@ -39,8 +39,8 @@ def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     rows = []
     for i, (name, service) in enumerate(zip(names, services, strict=True)):
         entry, train = entries[str(service)], dataset.isel(train=i)
-        for station in _stations_of(entry):
-            times = _times_at(station, places_km[station], entry, train)
+        for call, station in enumerate(_stations_of(entry), -1):
+            times = _times_at(call, station, places_km[station], entry, train)
             rows.append(StopTimes(str(name), station, places_km[station], *times))
     return table_of(rows, StopTimes)
 
@@ -50,13 +50,16 @@ def _stations_of(entry: Traffic) -> list[str]:
 
 
 def _times_at(
-    station: str, position_km: float, entry: Traffic, train: xr.Dataset
+    call: int, station: str, position_km: float, entry: Traffic, train: xr.Dataset
 ) -> tuple[float, float, float]:
-    """Arrival, departure and dwell of a train at a station of its route. [min]"""
+    """Arrival, departure and dwell of a train at a station of its route, its stop of this number. [min]"""
     if station == entry.origin:
         return np.nan, float(train.departure_time) / 60.0, np.nan
     if station == entry.destination:
         return float(train.arrival_time) / 60.0, np.nan, np.nan
+    if (arrival_s := float(train.call_arrival_time[call])) == arrival_s:
+        departure_s = float(train.call_departure_time[call])
+        return arrival_s / 60.0, departure_s / 60.0, (departure_s - arrival_s) / 60.0
     position_m, speed_m_s = train.position.to_numpy(), train.speed.to_numpy()
     stands = (np.abs(position_m - 1e3 * position_km) <= AT_STOP_M) & (speed_m_s == 0.0)
     if not stands.any():

@@ -16,7 +16,6 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
 
     Trains that were on the line at the start have no departure, those still on it no arrival.
     """
-    h = step_s(dataset)
     time_min = dataset.time.to_numpy() / 60.0
     position_km, travelled_km = dataset.position.to_numpy() / 1e3, distance_km(dataset)
     voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
@@ -28,7 +27,8 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     # A train that braked within a step has arrived before the first instant at which it stands.
     seen = np.isfinite(position_km)
     stood_min = np.where(seen, time_min[:, None], -np.inf).max(axis=0) - arrival_min
-    moving_min = np.isfinite(voltage_kv).sum(axis=0) * h / 60.0 - np.nan_to_num(stood_min)
+    there = np.isfinite(voltage_kv).astype(float)
+    moving_min = over_time(there, dataset) / 60.0 - np.nan_to_num(stood_min)
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),
@@ -38,7 +38,7 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
             "trip_min": arrival_min - departure_min,
             "distance_km": travelled_km,
             "mean_speed_kmh": travelled_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
-            "energy_mwh": np.nansum(dataset.active_power.to_numpy(), axis=0) * h / J_PER_MWH,
+            "energy_mwh": over_time(dataset.active_power.to_numpy(), dataset) / J_PER_MWH,
             "lowest_voltage_kv": np.where(drawn, voltage_kv[lowest, each], np.nan),
             "lowest_voltage_km": np.where(drawn, position_km[lowest, each], np.nan),
             "lowest_voltage_min": np.where(drawn, time_min[lowest], np.nan),
@@ -48,7 +48,6 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
 
 def stations(dataset: xr.Dataset) -> pd.DataFrame:
     """One row per feeding station: energy, peaks, loading, converters."""
-    h = step_s(dataset)
     active = dataset.station_active_power.to_numpy()
     reactive = dataset.station_reactive_power.to_numpy()
     loading = dataset.converter_loading.to_numpy()
@@ -62,8 +61,8 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
         {
             "station": dataset.station.to_numpy(),
             "position_km": dataset.station_position.to_numpy() / 1e3,
-            "energy_mwh": np.nansum(active, axis=0) * h / J_PER_MWH,
-            "reactive_energy_mvarh": np.nansum(reactive, axis=0) * h / J_PER_MWH,
+            "energy_mwh": over_time(active, dataset) / J_PER_MWH,
+            "reactive_energy_mvarh": over_time(reactive, dataset) / J_PER_MWH,
             "peak_power_mw": peak(active) / 1e6,
             "mean_loading": np.nansum(loading, axis=0) / steps,
             "peak_loading": peak(loading),
@@ -109,3 +108,22 @@ def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
 def step_s(dataset: xr.Dataset) -> float:
     """Length of a time step. [s]"""
     return float(dataset.attrs["time_step_s"])
+
+
+def short_s(dataset: xr.Dataset) -> float:
+    """What the last time step, which may end with the studied train's arrival, lacks of the others. [s]"""
+    return step_s(dataset) - float(dataset.attrs.get("last_step_s", step_s(dataset)))
+
+
+def over_time(values: npt.NDArray[np.float64], dataset: xr.Dataset) -> npt.NDArray[np.float64]:
+    """Values that hold over the steps, summed over time: watts become joules.
+
+    Parameters
+    ----------
+    values : array, shape (steps or instants, ...)
+        NaN where there is none.
+    dataset : Dataset
+        Of the run.
+    """
+    last = np.nan_to_num(values[dataset.sizes["time"] - 2])
+    return np.asarray(np.nansum(values, axis=0) * step_s(dataset) - last * short_s(dataset))

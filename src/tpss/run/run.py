@@ -67,9 +67,10 @@ class Outcome:
     """Steps carried out; the recording has one row more."""
     trains: tuple[ScheduledTrain, ...]
     studied_train: int
-    arrival_step: np.ndarray
-    stood_s: np.ndarray
-    """Time that each train stood at its destination before the instant of its arrival. [s]"""
+    arrival_s: npt.NDArray[np.float64]
+    """When each train came to stand at its destination, or NaN. [s]"""
+    instants_s: npt.NDArray[np.float64]
+    """Times of the instants, one more than steps. [s]"""
     recording: Recording
     state: State
 
@@ -133,6 +134,21 @@ class Run:
         """
         begun = self.step + (self.status in (Status.COLLAPSED, Status.STALLED))
         return sum(train.departure_step < max(begun, 1) for train in self.trains)
+
+    @property
+    def last_step_s(self) -> float:
+        """Length of the step that was carried out last: a shorter one if it ends the run. [s]"""
+        shorter = self.status == Status.FINISHED
+        return float(self.state.clock[0].last_step_s) if shorter else self.model.options.step_s
+
+    @property
+    def instants_s(self) -> npt.NDArray[np.float64]:
+        """Times of the instants up to now. [s]"""
+        h = self.model.options.step_s
+        instants = np.arange(self.step + 1) * h
+        if self.last_step_s != h:
+            instants[-1] = (self.step - 1) * h + self.last_step_s
+        return instants
 
     def ends_m(self, route: int) -> tuple[float, float]:
         """Where the trains of a route begin and end. [m]"""
@@ -328,6 +344,14 @@ def advance_to_end(
     return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
 
 
+def arrivals_s(run: Run) -> npt.NDArray[np.float64]:
+    """When each train came to stand at its destination, or NaN. [s]"""
+    timetable = run.state.trains["timetable"]
+    instant = timetable["arrival_step"]
+    arrived_s = run.instants_s[np.maximum(instant, 0)] - timetable["stood_s"]
+    return np.where(instant >= 0, arrived_s, np.nan)
+
+
 def on_line(state: State) -> npt.NDArray[np.bool_]:
     """Whether each train is on the line, shape (trains,)."""
     phases = (Phase.DRIVING, Phase.PLANNED, Phase.DWELLING)
@@ -367,8 +391,8 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         steps=run.step,
         trains=tuple(run.trains[:count]),
         studied_train=studied if studied < count else -1,
-        arrival_step=run.state.trains.timetable.arrival_step[:count].copy(),
-        stood_s=run.state.trains.timetable.stood_s[:count].copy(),
+        arrival_s=arrivals_s(run)[:count],
+        instants_s=run.instants_s,
         recording=recording,
         state=run.state,
     )

@@ -1,17 +1,27 @@
 """The clock: the order of things in a step, and when a run ends."""
 
+from tpss.driving.data import MotionModel
 from tpss.driving.driver import prepare
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
-from tpss.step.model import Model, driving_data
+from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant, record_network, record_train
 from tpss.step.recording import Recording
 from tpss.step.state import Counter, State, Status
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived
-from tpss.vehicle.train import Phase
+from tpss.vehicle.train import Course, Phase
+
+ARRIVAL_S = 1e-3
+"""A run ends with the arrival of its studied train, or so soon after it. [s]"""
+
+SHORTEST_STEP_S = 0.01
+"""A last step is no shorter: means over less than this would be roundings. [s]"""
+
+MOST_LENGTHS = 8
+"""Lengths of a last step that are tried."""
 
 
 @inlined
@@ -35,23 +45,28 @@ def find_stalled(count: int, state: State) -> bool:
 
 @inlined
 def begin_step(step: int, model: Model, state: State, recording: Recording) -> int:
-    """Traffic, converter control, drivers; return the number of trains on the line."""
+    """Traffic, converter control, places; return the number of trains on the line."""
     # 1. Departures, and removal of arrived trains, which this instant still shows.
     depart(step, state.trains)
     record_instant(step, state.trains, recording)
     remove_arrived(state.trains)
     # 2. Converter control (3.6)-(3.9).
     control_converters(step * model.options.step_s, model, state)
-    # 3. Where the trains stand, and what their drivers want.
+    # 3. Where the trains stand.
     count = list_trains(state.trains, state.flow)
     locate_trains(count, state.trains, model.network, state.flow)
     short = measure_pieces(count, model.network, state.flow)
     recording.counters[Counter.SHORT_PIECE] += short
+    return count
+
+
+@inlined
+def prepare_trains(count: int, model: Model, state: State) -> None:
+    """Find what stays fixed while this step is solved, of the first `count` trains on the line."""
     data = driving_data(model)
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]
         prepare(train, data, model.points, state.scratch)
-    return count
 
 
 @inlined
@@ -102,6 +117,36 @@ def end_step(
     return Status.RUNNING
 
 
+@inlined
+def step_to_arrival(tries: int, step_s: float, model: Model, state: State) -> float:
+    """Length of a step that ends with the arrival of the studied train; or `step_s`, if that will do.
+
+    Parameters
+    ----------
+    tries : int
+        Lengths tried so far.
+    step_s : float
+        The last of them, with which the step is solved. [s]
+    """
+    full_s, studied = model.options.step_s, model.control.studied_train
+    if model.options.motion != MotionModel.CONTINUOUS or studied < 0:
+        return step_s
+    train = state.trains[at(studied)]
+    passage, motion = train.passage, train.passage.motion
+    if train.decision.course != Course.PASSAGE or passage.stalled:
+        return step_s
+    if motion.phase == Phase.ARRIVED:
+        if passage.stood_s <= ARRIVAL_S or tries > MOST_LENGTHS:
+            return step_s
+        return max(SHORTEST_STEP_S, step_s - passage.stood_s)
+    if step_s == full_s or tries > MOST_LENGTHS:
+        return full_s
+    # With another mean voltage it is not there yet: what is left of its way, with the brakes.
+    way_m = model.stops[at(train.route), at(motion.next_stop)].position_m - motion.position_m
+    left_s = 2.0 * way_m / motion.speed_m_s + ARRIVAL_S / 2.0
+    return min(full_s, step_s + left_s) if left_s > 0.0 else full_s
+
+
 @kernel
 def advance(
     first: int, last: int, model: Model, state: State, recording: Recording
@@ -118,8 +163,19 @@ def advance(
         count = begin_step(step, model, state, recording)
         if step > 0:
             predict(state.flow)
-        share, passes = solve_step(count, step > 0, model, state)
-        status = end_step(step, count, share, passes, model, state, recording)
+        step_s, passes, tries, share = model.options.step_s, 0, 0, 0.0
+        while True:
+            now = with_step(model, step_s)
+            prepare_trains(count, now, state)
+            share, more = solve_step(count, step + tries > 0, now, state)
+            passes, tries = passes + more, tries + 1
+            wanted_s = step_s if share < 1.0 else step_to_arrival(tries, step_s, model, state)
+            if wanted_s == step_s:
+                break
+            step_s = wanted_s
+        state.clock[0].last_step_s = step_s
+        now = with_step(model, step_s)
+        status = end_step(step, count, share, passes, now, state, recording)
         if status == Status.RUNNING or status == Status.FINISHED:
             step += 1
     record_instant(step, state.trains, recording)

@@ -37,6 +37,31 @@ class Model(NamedTuple):
 
 
 @inlined
+def with_step(model: Model, step_s: float) -> Model:
+    """A model with another time step. [s]"""
+    options = model.options
+    return Model(
+        Options(
+            step_s,
+            options.mean_power,
+            options.mean_gradient,
+            options.adhesion_in_km_h,
+            options.rail,
+            options.driver,
+            options.braking,
+            options.motion,
+        ),
+        model.control,
+        model.gradients,
+        model.limits,
+        model.stops,
+        model.types,
+        model.points,
+        model.network,
+    )
+
+
+@inlined
 def driving_data(model: Model) -> DrivingData:
     """The part of a model that drivers know."""
     return DrivingData(model.options, model.gradients, model.limits, model.stops, model.types)

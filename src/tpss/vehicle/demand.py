@@ -53,29 +53,29 @@ def motors_force(
     force, slope = highest_force(
         voltage_v, demand.terms_speed_m_s, kind.effort, demand.effort, network, scratch
     )
-    return _at_mean_speed(force, demand), _stretched(slope, demand)
+    return _at_mean_speed(force, demand), _grown(slope, demand)
 
 
 @inlined
 def _at_mean_speed(force_n: float, demand: Demand) -> float:
     """What the motors give at the step's mean speed, from what they give at `demand.terms_speed_m_s`. [N]"""
-    if demand.effort_stretch == 1.0:  # without arithmetic, so without roundings
+    if demand.effort_growth == 0.0:  # without arithmetic, so without roundings
         return force_n
-    return (force_n + demand.effort_shift_n) * demand.effort_stretch
+    return (force_n + demand.effort_shift_n) * (1.0 + demand.effort_growth)
 
 
 @inlined
-def _stretched(slope_n_per_v: float, demand: Demand) -> float:
+def _grown(slope_n_per_v: float, demand: Demand) -> float:
     """The same of a slope over the voltage. [N/V]"""
-    if demand.effort_stretch == 1.0:
+    if demand.effort_growth == 0.0:
         return slope_n_per_v
-    return slope_n_per_v * demand.effort_stretch
+    return slope_n_per_v * (1.0 + demand.effort_growth)
 
 
 @inlined
 def take_speed_as_it_is(demand: Demand) -> None:
     """Let the motors give what they give at `demand.terms_speed_m_s`."""
-    demand.effort_shift_n, demand.effort_stretch = 0.0, 1.0
+    demand.effort_shift_n = demand.effort_growth = 0.0
 
 
 @inlined
@@ -99,7 +99,7 @@ def follow_speed(kind: TrainType, demand: Demand, points: Points) -> None:
     by_force = demand.mean_speed_weight_s / (kind.inertia_kg + kind.rotor_mass_kg)
     off_m_s = demand.speed_m_s - by_force * demand.resistance_n - demand.terms_speed_m_s
     demand.effort_shift_n = slope * off_m_s
-    demand.effort_stretch = 1.0 / (1.0 - slope * by_force)
+    demand.effort_growth = slope * by_force / (1.0 - slope * by_force)
 
 
 @inlined
@@ -151,7 +151,7 @@ def certify_free_band(kind: TrainType, demand: Demand) -> None:
     free_n = _at_mean_speed(demand.free_force_n, demand)
     margin = free_n - needed
     if demand.effort.steepest_n_per_v > 0.0:
-        demand.free_band_v = margin / _stretched(demand.effort.steepest_n_per_v, demand)
+        demand.free_band_v = margin / _grown(demand.effort.steepest_n_per_v, demand)
     else:  # no voltage changes the force
         demand.free_band_v = math.inf if margin >= 0.0 else -1.0
     if kind.line_current.highest_current_a < math.inf:

@@ -23,8 +23,9 @@ class Demand(Record):
     """h/2 to bill the step's mean speed, 0 for that at its start. [s]"""
     effort_shift_n: float
     """Added to what the motors give at that speed, ... [N]"""
-    effort_stretch: float
-    """... then a factor on it: they make it what the motors give at the step's mean speed. [1]"""
+    effort_growth: float
+    """... then added as a share of the sum: they make it what the motors give at the mean speed of
+    the step. [1]"""
     driven_share: float
     """Share of the step in which the motors give the force, mostly 1. [1]"""
     per_efficiency: float

@@ -9,7 +9,7 @@ from tpss.report.drawings.parts import Bar, Drawing, Panel
 from tpss.report.palette import COLOURS, tint
 from tpss.report.sampling import Floats
 from tpss.results.result import Result
-from tpss.results.tables import J_PER_MWH, step_s
+from tpss.results.tables import J_PER_MWH, over_time
 
 Parts = dict[str, tuple[float, str]]
 """Energy of the parts of a bar [MWh], and their colours."""
@@ -73,15 +73,18 @@ def used_by_trains(result: Result) -> dict[str, float]:
     power that is computed at the start of the step, the error of the step too.
     """
     data, scenario = result.dataset, result.scenario
-    h = step_s(data)
     trains = scenario.trains_by_service()
-    auxiliary_w = [1e3 * trains[str(s)].auxiliary_power_kw for s in data.service.to_numpy()]
-    active_w = data.active_power.to_numpy()[:-1]
-    auxiliaries = float((np.isfinite(active_w) * np.array(auxiliary_w)).sum()) * h
-    wheel, running, climb, brakes = (float(np.nansum(work_j)) for work_j in work_of_forces(data))
+    auxiliary_w = np.array(
+        [1e3 * trains[str(s)].auxiliary_power_kw for s in data.service.to_numpy()]
+    )
+    auxiliaries = float((auxiliary_w * _supplied_s(result)).sum())
+    drawn, wheel, running, climb, brakes = (
+        float(over_time(data[f"{name}_power"].to_numpy()[:-1], data).sum())
+        for name in ("active", "traction", "resistance", "gradient", "braking")
+    )
     joules = {
         "auxiliaries": auxiliaries,
-        "motors and gears": float(np.nansum(active_w)) * h - auxiliaries - wheel,
+        "motors and gears": drawn - auxiliaries - wheel,
         "running resistance": running,
         "climb": climb,
         "brakes": brakes,
@@ -90,34 +93,22 @@ def used_by_trains(result: Result) -> dict[str, float]:
     return {name: value / J_PER_MWH for name, value in joules.items()}
 
 
-def work_of_forces(data: xr.Dataset) -> tuple[Floats, Floats, Floats, Floats]:
-    """Work of motors, running resistance, gradients and brakes. [J], shape (steps, trains) each
+def _supplied_s(result: Result) -> Floats:
+    """Time for which each train has supplied its auxiliaries. [s], shape (trains,)
 
-    Recorded forces are means over time.  In a step of constant acceleration they act over its distance.
-    A step that holds the speed v for τ and then brakes over β to v' has its motors in traction at v; the
-    resistances are constant; the brakes hold the train on a descent, then slow it down.
-    With its distance x, β = 2 (x - v τ)/(v + v').
+    Trains that move in steps do so from instant to instant, others from departure to arrival.
     """
-    h = step_s(data)
-    force = {
-        name: data[name].to_numpy()[:-1]
-        for name in ("tractive_force", "running_resistance", "gradient_force", "braking_force")
-    }
-    traction, running, climb, brakes = force.values()
-    speed, hold_s = data.speed.to_numpy(), data.holding_time.to_numpy()[:-1]
-    v, mean = speed[:-1], (speed[:-1] + speed[1:]) / 2.0
-    distance_m = np.diff(data.position.to_numpy(), axis=0)
-    held = hold_s > 0.0
-    moving_s = np.where(held, hold_s, np.nan)
-    moving_s = moving_s + np.divide(distance_m - v * hold_s, mean, where=held, out=np.zeros_like(v))
-    along_m = np.where(held, distance_m * h / moving_s, mean * h)
-    holding_ns = np.where(held, np.maximum(0.0, -(running + climb)) * h * hold_s / moving_s, 0.0)
-    return (
-        traction * np.where(held, v, mean) * h,
-        running * along_m,
-        climb * along_m,
-        holding_ns * v + (brakes * h - holding_ns) * mean,
-    )
+    data = result.dataset
+    there = np.isfinite(data.active_power.to_numpy()[:-1])
+    supplied_s = over_time(there.astype(float), data)
+    if result.scenario.simulation.how_trains_move == "stepped":
+        return supplied_s
+    time_s = data.time.to_numpy()
+    first_s = time_s[there.argmax(axis=0)]
+    end_s = time_s[len(there) - there[::-1].argmax(axis=0)]
+    waited_s = np.fmax(data.departure_time.to_numpy() - first_s, 0.0)
+    stood_s = np.fmax(end_s - data.arrival_time.to_numpy(), 0.0)
+    return np.asarray(supplied_s - waited_s - stood_s)
 
 
 def _bar(row: int, start: float, parts: Parts, width: float) -> Iterator[Bar]:

@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results.standards.windows import Floats, between_instants, integrals, step_values
-from tpss.results.tables import J_PER_MWH, distance_km, step_s
+from tpss.results.tables import J_PER_MWH, distance_km, short_s, step_s
 
 BLOCK_MIN = 5.0
 """Length of a block. [min]"""
@@ -60,7 +60,7 @@ def energy_blocks(dataset: xr.Dataset, block_min: float = BLOCK_MIN) -> pd.DataF
         {
             "train": dataset.train.to_numpy()[train],
             "from_min": edges[block] * h,
-            "to_min": edges[block + 1] * h,
+            "to_min": np.minimum(edges[block + 1] * h, float(dataset.time[-1]) / 60.0),
             **energies,
         }
     )
@@ -74,6 +74,7 @@ def _energies(dataset: xr.Dataset) -> dict[str, Floats]:
         ("reactive_power", "reactive_", "mvarh"),
     ):
         energy = np.nan_to_num(step_values(dataset, name)) * step_s(dataset) / J_PER_MWH
+        energy[-1:] *= 1.0 - short_s(dataset) / step_s(dataset)
         energies[f"{prefix}consumed_{unit}"] = np.maximum(energy, 0.0)
         energies[f"{prefix}regenerated_{unit}"] = np.maximum(-energy, 0.0)
     return energies

@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results.standards.windows import WINDOWS_MIN, highest_mean_table, step_values
-from tpss.results.tables import J_PER_MWH, step_s
+from tpss.results.tables import J_PER_MWH, over_time, step_s
 
 
 def losses_table(dataset: xr.Dataset) -> pd.DataFrame:
@@ -19,17 +19,17 @@ def losses_table(dataset: xr.Dataset) -> pd.DataFrame:
     resistance, kinds = dataset.branch_resistance.to_numpy(), dataset.branch_kind.to_numpy()
     is_lumped = np.isfinite(resistance)
     current = step_values(dataset, "branch_current")[:, is_lumped]
-    each = (resistance[is_lumped] * current**2).sum(axis=0)
-    total = step_values(dataset, "network_losses").sum()
+    each = over_time(resistance[is_lumped] * current**2, dataset)
+    total = float(over_time(step_values(dataset, "network_losses"), dataset))
     parts = {str(kind): total - each.sum() for kind in kinds[~is_lumped]}
     for kind in kinds[is_lumped]:
         parts[str(kind)] = each[kinds[is_lumped] == kind].sum()
-    watts = np.array(list(parts.values()))
+    joules = np.array(list(parts.values()))
     return pd.DataFrame(
         {
             "branch_kind": list(parts),
-            "energy_mwh": watts * step_s(dataset) / J_PER_MWH,
-            "share": watts / (total if total > 0.0 else np.nan),
+            "energy_mwh": joules / J_PER_MWH,
+            "share": joules / (total if total > 0.0 else np.nan),
         }
     )
 
