@@ -106,6 +106,8 @@ SUMMARY = {
     "load_flow_passes": "evaluations of the network a step: `mean` and `most`",
     "limited": "train-steps in which a model was limited or left its range",
     "audit": "figures of the audit, below",
+    "step_choice": "how the time step was chosen, if the scenario gave none, below",
+    "step_check": "what moves at half the time step, below",
     "simulation_s": "computing time of the simulation",
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",

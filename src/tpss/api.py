@@ -5,31 +5,43 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from tpss.accuracy.check import StepCheck, check_step
+from tpss.accuracy.choose import LADDER_MIN, StepChoice, choose_step
+from tpss.accuracy.trial import Trial
 from tpss.model import build_model
-from tpss.model.build import Layout, steps_of
-from tpss.model.traffic import build_services
+from tpss.model.build import Layout, at_step
+from tpss.model.start import start_of
 from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.results.dataset import attributes, build_dataset
-from tpss.results.key_figures import Frame, frame_of, key_figures_of
+from tpss.results.key_figures import Frame, KeyFigures, frame_of, key_figures_of
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
-from tpss.run.run import Clock, Progress, Start, advance_to_end, begin, outcome_of, run_of
+from tpss.run.run import Clock, Progress, Start, advance_to_end, outcome_of, run_of
 from tpss.scenario.scenario import Scenario
-from tpss.step.model import Model
-from tpss.units import si
+
+STEP = "simulation.time_step_min"
 
 
-def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = None) -> Result:
+def simulate(
+    scenario: Scenario,
+    progress: Callable[[Progress], None] | None = None,
+    *,
+    step_check: bool = False,
+) -> Result:
     """Simulate trains and power supply together.
 
     Parameters
     ----------
     scenario : Scenario
+        Without a time step, the longest one is taken whose figures keep close to those at half of it.
     progress : callable, optional
         Called several times a second with the `Progress` of the run.
+    step_check : bool
+        Whether to make the run again with half its step, for its key figures only: what moves is then
+        in the summary, as ``step_check``.
 
     Returns
     -------
@@ -45,7 +57,7 @@ def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = N
     """
     prepared = prepare(scenario)
     with interruptible() as interrupted:
-        return prepared.run(progress, interrupted)
+        return prepared.run(progress, interrupted, step_check=step_check)
 
 
 def prepare(scenario: Scenario) -> "Prepared":
@@ -56,23 +68,27 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
-    clock, (model, layout) = _clock_of(scenario), build_model(scenario)
-    make_ready(model, clock)
-    return _prepared(scenario, clock, model, layout)
+    return _prepared(scenario, compiled=True)
 
 
 def build(scenario: Scenario) -> "Prepared":
     """`prepare` that leaves kernels to be compiled by the run."""
-    return _prepared(scenario, _clock_of(scenario), *build_model(scenario))
+    return _prepared(scenario, compiled=False)
 
 
-def _prepared(scenario: Scenario, clock: Clock, model: Model, layout: Layout) -> "Prepared":
-    services = build_services(scenario, model)
-    duration = scenario.simulation.duration_min
-    steps = None
-    if duration is not None:
-        steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    return Prepared(scenario, layout, begin(model, services, steps), clock)
+def _prepared(scenario: Scenario, compiled: bool) -> "Prepared":
+    clock = _clock_of(scenario)
+    is_open = scenario.simulation.time_step_min is None
+    as_built = scenario.with_({STEP: LADDER_MIN[0]}) if is_open else scenario
+    model, layout = build_model(as_built)
+    if compiled:
+        make_ready(model, clock)
+    if not is_open:
+        return Prepared(scenario, layout, start_of(scenario, model), clock)
+    choice = choose_step(Trial(as_built, model, clock, frame_of(as_built, layout, model)))
+    chosen = scenario.with_({STEP: choice.step_min})
+    model = at_step(model, chosen, 60.0 * choice.step_min)
+    return Prepared(chosen, layout, start_of(chosen, model), clock, choice)
 
 
 def _clock_of(scenario: Scenario) -> Clock:
@@ -84,9 +100,12 @@ class Prepared:
     """A scenario that is ready to run, any number of times."""
 
     scenario: Scenario
+    """With the step that was chosen, if it gave none."""
     layout: Layout
     start: Start
     clock: Clock
+    choice: StepChoice | None = None
+    """How the step was chosen, if it was."""
 
     @cached_property
     def frame(self) -> Frame:
@@ -97,6 +116,8 @@ class Prepared:
         self,
         progress: Callable[[Progress], None] | None = None,
         interrupted: Sequence[int] | None = None,
+        *,
+        step_check: bool = False,
     ) -> Result:
         """Result of the run; it ends early once `interrupted` is filled."""
         start, model = self.start, self.start.model
@@ -105,14 +126,25 @@ class Prepared:
         status = advance_to_end(run, start, progress, interrupted)
         elapsed_s = time.perf_counter() - started
         outcome = outcome_of(run, status, start.studied)
+        key_figures = key_figures_of(run, status, start, self.frame)
+        check = self.check_step(key_figures, interrupted) if step_check else None
         figures = {
             FORMAT_KEY: FORMAT,
-            **summarise(
-                self.scenario, key_figures_of(run, status, start, self.frame), outcome, model
-            ),
+            **summarise(self.scenario, key_figures, outcome, model),
+            "step_choice": self.choice and self.choice.as_dict(),
+            "step_check": check and check.as_dict(),
             "simulation_s": elapsed_s,
             "provenance": provenance(),
         }
         dataset = build_dataset(outcome, model, self.layout)
         dataset.attrs = attributes(figures, model.options.step_s)
         return Result(self.scenario, dataset, figures)
+
+    def check_step(
+        self, figures: KeyFigures, interrupted: Sequence[int] | None = None
+    ) -> StepCheck:
+        """What moves in the figures of the run if it is made with half its step."""
+        trial = Trial(self.scenario, self.start.model, self.clock, self.frame, interrupted)
+        step_min = self.start.model.options.step_s / 60.0
+        half = None if self.choice is None else self.choice.half
+        return check_step(figures, step_min, trial, half)

@@ -173,10 +173,11 @@ def _service(entry: Traffic) -> str:
 
 def _simulation(simulation: Simulation, studied: str) -> str:
     step, duration = simulation.time_step_min, simulation.duration_min
+    steps = "steps of a length to be chosen" if step is None else f"steps of {step:g} min"
     end = f"until {studied} 1 arrives" if duration is None else f"for {duration:g} min"
     choices = [
         f"{key} {getattr(simulation, key)}"
         for key, field in Simulation.model_fields.items()
         if isinstance(field.default, str) and getattr(simulation, key) != field.default
     ]
-    return ", ".join([f"steps of {step:g} min {end}", *choices])
+    return ", ".join([f"{steps} {end}", *choices])

@@ -18,6 +18,7 @@ from tpss.cli import approximate_app, complete, import_app
 from tpss.cli.arguments import (
     Assignments,
     Force,
+    NoStepCheck,
     Quiet,
     ResultFolder,
     ScenarioFile,
@@ -87,15 +88,22 @@ def run(
     report: Annotated[
         bool, typer.Option("--report", help="Also write report.html into the result folder.")
     ] = False,
+    no_step_check: NoStepCheck = False,
 ) -> None:
     """Simulate a scenario, print the key figures, and save the result.
+
+    The run is made again with half its time step, to print what moves; beyond 1 %, or 2 % of a voltage
+    drop or a peak loading, a note names the step that would do.
 
     Exit codes: 0 done, 2 bad input, 3 the line cannot carry its load or a train stalls (results up
     to then are saved), 4 the audit failed, 130 interrupted (results are saved).
     """
     from tpss.cli.run import run_scenario
 
-    raise typer.Exit(run_scenario(file, out, set_ or [], force, quiet, show, report))
+    code = run_scenario(
+        file, out, set_ or [], force, quiet, show, report, step_check=not no_step_check
+    )
+    raise typer.Exit(code)
 
 
 @app.command(

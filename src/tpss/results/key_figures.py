@@ -1,6 +1,7 @@
 """The key figures of a run, a few hundred bytes, from its recording without dataset or tables."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -151,7 +152,13 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
     )
 
 
-def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) -> KeyFigures:
+def run_for_figures(
+    start: Start,
+    frame: Frame,
+    clock: Clock,
+    memory: Memory = np.empty,
+    interrupted: Sequence[int] | None = None,
+) -> KeyFigures:
     """Run from a start, and keep only the key figures.
 
     Parameters
@@ -160,8 +167,10 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
     frame : Frame
     clock : callable
         Runs the steps.
-    memory : callable
+    memory : callable, optional
         Allocates the recording.
+    interrupted : sequence of int, optional
+        The run ends early once it is filled.
 
     Raises
     ------
@@ -169,7 +178,8 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
         The recording would not fit into memory.
     """
     run = run_of(start, clock, memory)
-    return key_figures_of(run, advance_to_end(run, start), start, frame)
+    status = advance_to_end(run, start, interrupted=interrupted)
+    return key_figures_of(run, status, start, frame)
 
 
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:

@@ -1,0 +1,58 @@
+"""The step of a scenario that does not give one."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from tpss.accuracy.changes import LARGEST
+from tpss.accuracy.check import agree
+from tpss.accuracy.trial import MOST_TRAIN_STEPS, Trial
+from tpss.results.key_figures import KeyFigures
+
+LADDER_MIN = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+"""Steps that are tried, the longest one first."""
+
+STRICTNESS = 0.3
+"""Share of the limits of a check that a step has to keep to be chosen: 0.3 % of times and energies, as
+the limit of their changes is 1 %. [1]"""
+
+
+@dataclass(frozen=True)
+class StepChoice:
+    """The step that was chosen, and how."""
+
+    step_min: float
+    tried_min: tuple[float, ...]
+    """Steps that were tried, this one being the last."""
+    within: bool
+    """Whether it is short enough; otherwise it is the shortest one that could be tried."""
+    half: KeyFigures | None
+    """Of the run at half of it, if it was made."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """How it was chosen, of plain types only."""
+        return {
+            "tried_min": list(self.tried_min),
+            "largest_share": STRICTNESS * LARGEST,
+            "within": self.within,
+        }
+
+
+def choose_step(trial: Trial) -> StepChoice:
+    """The longest step of the ladder whose figures keep close to those at half of it."""
+    known: dict[float, KeyFigures | None] = {}
+
+    def figures_at(step_min: float) -> KeyFigures | None:
+        if step_min not in known:
+            known[step_min] = trial.run(step_min, MOST_TRAIN_STEPS)
+        return known[step_min]
+
+    taken: StepChoice | None = None
+    for place, step_min in enumerate(LADDER_MIN, start=1):
+        figures, finer = figures_at(step_min), figures_at(step_min / 2.0)
+        tried_min = LADDER_MIN[:place]
+        if figures is not None and finer is not None:
+            within = agree(figures, finer, trial, STRICTNESS)
+            taken = StepChoice(step_min, tried_min, within, finer)
+            if within:
+                break
+    return taken or StepChoice(LADDER_MIN[-1], LADDER_MIN, within=False, half=None)
