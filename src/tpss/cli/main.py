@@ -239,12 +239,15 @@ def sweep(
     summary: Annotated[
         Path | None, option(metavar="DIR", help="Print key figures of a study's folder.")
     ] = None,
+    no_step_check: NoStepCheck = False,
     quiet: Quiet = False,
 ) -> None:
     """Run the cases of a study, and write one row per case into a table (Parquet).
 
     A line that collapses or a train that stalls is a result. After an interruption of any kind, the
     same command continues the study, and runs no case twice.
+
+    A few of the cases are made again with half their time step, once, to print what moves.
 
     Exit codes: 0 done, 2 bad input, or some cases could not be run (the table says why), 4 the audit
     of a case failed, 130 interrupted (finished cases are kept).
@@ -257,7 +260,10 @@ def sweep(
         raise typer.BadParameter("give either a study, or --summary with its folder")
     if out is None and not dry_run:
         raise typer.BadParameter("give --out with a folder for the table, or --dry-run")
-    raise typer.Exit(run_study_file(study, out, scheduler, workers, dry_run, quiet))
+    code = run_study_file(
+        study, out, scheduler, workers, dry_run, quiet, step_check=not no_step_check
+    )
+    raise typer.Exit(code)
 
 
 @app.command(epilog="Example:  tpss new my-line")
