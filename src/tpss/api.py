@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from tpss.accuracy.check import StepCheck, check_step
-from tpss.accuracy.choose import LADDER_MIN, StepChoice, choose_step
+from tpss.accuracy.choose import LADDER_MIN, StepChoice, choose_step, with_step
 from tpss.accuracy.trial import Trial
 from tpss.model import build_model
 from tpss.model.build import Layout, at_step
@@ -21,8 +21,6 @@ from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
 from tpss.run.run import Clock, Progress, Start, advance_to_end, outcome_of, run_of
 from tpss.scenario.scenario import Scenario
-
-STEP = "simulation.time_step_min"
 
 
 def simulate(
@@ -78,15 +76,14 @@ def build(scenario: Scenario) -> "Prepared":
 
 def _prepared(scenario: Scenario, compiled: bool) -> "Prepared":
     clock = _clock_of(scenario)
-    is_open = scenario.simulation.time_step_min is None
-    as_built = scenario.with_({STEP: LADDER_MIN[0]}) if is_open else scenario
+    as_built = with_step(scenario, LADDER_MIN[0])
     model, layout = build_model(as_built)
     if compiled:
         make_ready(model, clock)
-    if not is_open:
+    if scenario.simulation.time_step_min is not None:
         return Prepared(scenario, layout, start_of(scenario, model), clock)
     choice = choose_step(Trial(as_built, model, clock, frame_of(as_built, layout, model)))
-    chosen = scenario.with_({STEP: choice.step_min})
+    chosen = with_step(scenario, choice.step_min)
     model = at_step(model, chosen, 60.0 * choice.step_min)
     return Prepared(chosen, layout, start_of(chosen, model), clock, choice)
 

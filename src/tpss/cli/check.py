@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
+from tpss.accuracy.choose import with_step
 from tpss.cli.library import KINDS
 from tpss.cli.notes import notes
 from tpss.cli.terminal import say
@@ -41,7 +42,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
         It has faults; all are listed.
     """
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
-    model, _ = build_model(scenario)
+    model, _ = build_model(with_step(scenario))
     build_services(scenario, model)
     clock_of(scenario.simulation.load_flow, scenario.source)
     console = Console()

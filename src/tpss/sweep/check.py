@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from tpss.accuracy.choose import LADDER_MIN
-from tpss.api import STEP, Prepared, build
+from tpss.accuracy.choose import with_step
+from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
-from tpss.scenario.scenario import Scenario
 from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
@@ -39,7 +38,7 @@ def check(design: Design) -> Names:
     built: list[Prepared] = []
     for name, values in design.ends():
         try:
-            built.append(build(_with_step(scenario_with(design, values, 0))))
+            built.append(build(with_step(scenario_with(design, values, 0))))
         except (ScenarioError, TooLargeError) as error:
             findings += _of_parameter(error, design, name, values)
     if findings:
@@ -53,16 +52,9 @@ def check(design: Design) -> Names:
 
 def _build(design: Design, case: int) -> Prepared:
     try:
-        return build(_with_step(scenario_of(design, case)))
+        return build(with_step(scenario_of(design, case)))
     except (ScenarioError, TooLargeError) as error:
         raise ScenarioError(_of_case(error, design, case)) from error
-
-
-def _with_step(scenario: Scenario) -> Scenario:
-    """A scenario with a step, the shortest one if it has none: to choose one takes several runs."""
-    if scenario.simulation.time_step_min is not None:
-        return scenario
-    return scenario.with_({STEP: LADDER_MIN[-1]})
 
 
 def spread(cases: int, most: int) -> Iterator[int]:
