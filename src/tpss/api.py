@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tpss.accuracy.check import StepCheck, check_step
@@ -36,7 +36,7 @@ def simulate(
     scenario : Scenario
         Without a time step, the longest one is taken whose figures keep close to those at half of it.
     progress : callable, optional
-        Called several times a second with the `Progress` of the run.
+        Called several times a second with the `Progress` of the run, and of its check.
     step_check : bool
         Whether to make the run again with half its step, for its key figures only: what moves is then
         in the summary, as ``step_check``.
@@ -124,7 +124,7 @@ class Prepared:
         elapsed_s = time.perf_counter() - started
         outcome = outcome_of(run, status, start.studied)
         key_figures = key_figures_of(run, status, start, self.frame)
-        check = self.check_step(key_figures, interrupted) if step_check else None
+        check = self.check_step(key_figures, interrupted, progress) if step_check else None
         figures = {
             FORMAT_KEY: FORMAT,
             **summarise(self.scenario, key_figures, outcome, model),
@@ -138,10 +138,21 @@ class Prepared:
         return Result(self.scenario, dataset, figures)
 
     def check_step(
-        self, figures: KeyFigures, interrupted: Sequence[int] | None = None
+        self,
+        figures: KeyFigures,
+        interrupted: Sequence[int] | None = None,
+        progress: Callable[[Progress], None] | None = None,
     ) -> StepCheck:
         """What moves in the figures of the run if it is made with half its step."""
-        trial = Trial(self.scenario, self.start.model, self.clock, self.frame, interrupted)
+
+        def report(state: Progress) -> None:
+            if progress is not None:
+                progress(replace(state, in_check=True))
+
+        trial = Trial(
+            self.scenario, self.start.model, self.clock, self.frame, interrupted,
+            None if progress is None else report,
+        )  # fmt: skip
         step_min = self.start.model.options.step_s / 60.0
         half = None if self.choice is None else self.choice.half
         return check_step(figures, step_min, trial, half)

@@ -56,12 +56,22 @@ def test_if_none_is_short_enough_the_shortest_is_taken(monkeypatch):
     assert (choice.step_min, choice.within, choice.tried_min) == (0.5, False, (1.0, 0.5))
 
 
-def test_steps_whose_runs_would_take_too_long_are_not_tried(monkeypatch):
-    """120 min in steps of 1 min and 0.5 min are 120 and 240 steps of one train; of 0.25 min, 480."""
-    monkeypatch.setattr(choose, "MOST_TRAIN_STEPS", 2 * 240)
-    changes = {**ROUGH, **OPEN, "traffic.0.headway_min": 1000.0, "simulation.duration_min": 120.0}
-    choice = prepare(short_line({"traffic.0.first_departure_min": 0.0, **changes})).choice
-    assert choice.step_min in (1.0, 0.5)
+ONE_TRAIN = {**ROUGH, **OPEN, "traffic.0.headway_min": 1000.0, "simulation.duration_min": 120.0}
+
+
+@pytest.mark.parametrize(
+    ("most", "tried_min"), [(480, (1.0, 0.5)), (240, (1.0,)), (239, ())], ids=str
+)
+def test_steps_whose_runs_would_take_too_long_are_not_tried(most, tried_min, monkeypatch):
+    """One train for 120 min is 120, 240 and 480 steps of 1 min, 0.5 min and 0.25 min.
+
+    If not even the longest step can be compared with half of it, it is taken as it is.
+    """
+    monkeypatch.setattr(choose, "MOST_TRAIN_STEPS", most)
+    choice = prepare(short_line(ONE_TRAIN)).choice
+    assert not choice.within
+    assert choice.tried_min == tried_min
+    assert choice.step_min == min(tried_min, default=1.0)
 
 
 def test_a_step_in_which_a_train_cannot_stop_in_time_is_passed_over():

@@ -92,15 +92,19 @@ def test_why_there_is_no_check_is_told():
     assert step_warnings(found) == []
 
 
+CLOSE = "within 0.3 % of the run at half of it"
+
+
 @pytest.mark.parametrize(
-    ("within", "how"),
+    ("tried_min", "within", "how"),
     [
-        (True, "the longest one tried that keeps within 0.3 % of the run at half of it"),
-        (False, "the shortest one tried, and none keeps within 0.3 % of the run at half of it"),
+        ([1.0, 0.5], True, f"the longest one tried that keeps {CLOSE}"),
+        ([1.0, 0.5], False, f"the shortest one tried, and none keeps {CLOSE}"),
+        ([], False, "as the run takes too long for steps to be tried"),
     ],
 )
-def test_how_a_step_was_chosen_is_told(within, how):
-    choice = {"tried_min": [1.0, 0.5], "largest_share": 0.003, "within": within}
+def test_how_a_step_was_chosen_is_told(tried_min, within, how):
+    choice = {"tried_min": tried_min, "largest_share": 0.003, "within": within}
     assert step_lines(summary(*SMALL, choice=choice))[0] == f"Time step: 0.5 min, {how}"
 
 

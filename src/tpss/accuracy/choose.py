@@ -23,9 +23,9 @@ class StepChoice:
 
     step_min: float
     tried_min: tuple[float, ...]
-    """Steps that were tried, this one being the last."""
+    """Steps that were tried; none if a run takes too long to be tried."""
     within: bool
-    """Whether it is short enough; otherwise it is the shortest one that could be tried."""
+    """Whether it is short enough; otherwise it is the shortest one that could be tried, if any."""
     half: KeyFigures | None
     """Of the run at half of it, if it was made."""
 
@@ -66,4 +66,7 @@ def choose_step(trial: Trial) -> StepChoice:
             taken = StepChoice(step_min, tried_min, within, finer)
             if within:
                 break
-    return taken or StepChoice(LADDER_MIN[-1], LADDER_MIN, within=False, half=None)
+    if taken is not None:
+        return taken
+    startable = (step_min for step_min in LADDER_MIN if trial.start(step_min) is not None)
+    return StepChoice(next(startable, LADDER_MIN[-1]), (), within=False, half=None)

@@ -103,6 +103,7 @@ def _notice() -> None:
 
 def _progress(state: "Progress") -> dict[str, Any]:
     detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
+    detail += ", step check" if state.in_check else ""
     return {"completed": state.share, "total": 1.0, "detail": detail}
 
 

@@ -86,9 +86,8 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
     cases = design_of(study_of_json(manifest["study"])).cases
     summary = summarise(table, cases)
     if not quiet:
-        _print_summary(summary, folder)
-        if STEP_CHECK in manifest:
-            say(Console(), sample_in_words(manifest[STEP_CHECK]))
+        sample = manifest.get(STEP_CHECK)
+        _print_summary(summary, folder, "" if sample is None else sample_in_words(sample))
     for problem, count in list(summary.problems.items())[:MOST_PROBLEMS]:
         print(f"{count} case(s) could not be run: {problem}", file=sys.stderr)
     if summary.audits_failed:
@@ -132,7 +131,7 @@ def _print_rate(ended: "Advance", console: Console) -> None:
         say(console, f"{ended.before:,} cases were finished before.")
 
 
-def _print_summary(summary: "Summary", folder: Path) -> None:
+def _print_summary(summary: "Summary", folder: Path, step_check: str) -> None:
     console = Console()
     states = ", ".join(f"{count:,} {status}" for status, count in summary.status.items())
     say(console, f"{summary.done:,} of {summary.cases:,} cases: {states}")
@@ -144,5 +143,7 @@ def _print_summary(summary: "Summary", folder: Path) -> None:
         table.add_row(escape(str(label)), *(f"{value:.4g}" for value in row))
     if summary.status.get("finished"):
         console.print(table)
+    if step_check:
+        say(console, step_check)
     say(console, f"Computing time of all cases: {_duration(summary.work_s)}")
     say(console, f"The table is in {folder / 'cases'}")

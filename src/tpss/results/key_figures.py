@@ -1,7 +1,7 @@
 """The key figures of a run, a few hundred bytes, from its recording without dataset or tables."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,7 +17,7 @@ from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
-from tpss.run.run import Clock, Run, Start, advance_to_end, run_of
+from tpss.run.run import Clock, Progress, Run, Start, advance_to_end, run_of
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.step.recording import Memory
@@ -158,6 +158,7 @@ def run_for_figures(
     clock: Clock,
     memory: Memory = np.empty,
     interrupted: Sequence[int] | None = None,
+    report: Callable[[Progress], None] | None = None,
 ) -> KeyFigures:
     """Run from a start, and keep only the key figures.
 
@@ -171,6 +172,8 @@ def run_for_figures(
         Allocates the recording.
     interrupted : sequence of int, optional
         The run ends early once it is filled.
+    report : callable, optional
+        Called several times a second with the `Progress` of the run.
 
     Raises
     ------
@@ -178,7 +181,7 @@ def run_for_figures(
         The recording would not fit into memory.
     """
     run = run_of(start, clock, memory)
-    status = advance_to_end(run, start, interrupted=interrupted)
+    status = advance_to_end(run, start, report, interrupted)
     return key_figures_of(run, status, start, frame)
 
 

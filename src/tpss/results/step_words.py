@@ -57,7 +57,9 @@ def _choice(summary: Summary) -> Iterator[str]:
         return
     close = f"within {_percent(choice['largest_share'])} of the run at half of it"
     how = f"the longest one tried that keeps {close}"
-    if not choice["within"]:
+    if not choice["tried_min"]:
+        how = "as the run takes too long for steps to be tried"
+    elif not choice["within"]:
         how = f"the shortest one tried, and none keeps {close}"
     yield f"Time step: {summary['time_step_min']:g} min, {how}"
 
