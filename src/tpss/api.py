@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tpss.accuracy.check import StepCheck, check_step
-from tpss.accuracy.choose import LADDER_MIN, StepChoice, choose_step, with_step
+from tpss.accuracy.choose import StepChoice, choose_step
 from tpss.accuracy.trial import Trial
 from tpss.model import build_model
 from tpss.model.build import Layout, at_step
@@ -20,6 +20,7 @@ from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
 from tpss.run.run import Clock, Progress, Start, advance_to_end, outcome_of, run_of
+from tpss.scenario.open_step import LADDER_MIN, with_step
 from tpss.scenario.scenario import Scenario
 
 
@@ -116,7 +117,17 @@ class Prepared:
         *,
         step_check: bool = False,
     ) -> Result:
-        """Result of the run; it ends early once `interrupted` is filled."""
+        """Result of the run.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called several times a second with the `Progress` of the run, and of its check.
+        interrupted : sequence of int, optional
+            The run, or its check, ends early once it is filled.
+        step_check : bool
+            As of `simulate`.
+        """
         start, model = self.start, self.start.model
         run = run_of(start, self.clock)
         started = time.perf_counter()
@@ -143,7 +154,17 @@ class Prepared:
         interrupted: Sequence[int] | None = None,
         progress: Callable[[Progress], None] | None = None,
     ) -> StepCheck:
-        """What moves in the figures of the run if it is made with half its step."""
+        """Make the run with half its step, and tell what moves.
+
+        Parameters
+        ----------
+        figures : KeyFigures
+            Of the run.
+        interrupted : sequence of int, optional
+            There is no check once it is filled.
+        progress : callable, optional
+            Called several times a second with the `Progress` of the check.
+        """
 
         def report(state: Progress) -> None:
             if progress is not None:

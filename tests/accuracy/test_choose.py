@@ -6,10 +6,11 @@ import tpss
 from accuracy.rough import ROUGH, WHOLE_STEPS
 from tpss.accuracy import choose
 from tpss.accuracy.check import agree
-from tpss.accuracy.choose import LADDER_MIN, STRICTNESS
+from tpss.accuracy.choose import STRICTNESS
 from tpss.accuracy.trial import Trial
 from tpss.api import prepare
 from tpss.many import key_figures
+from tpss.scenario.open_step import LADDER_MIN
 
 from scenarios import SHORT_LINE, short_line
 

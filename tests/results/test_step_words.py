@@ -58,7 +58,7 @@ def test_changes_beyond_their_limits_are_told_the_largest_of_each_kind_first():
     ("tried_min", "remedy"),
     [
         ([0.25, 0.125], "none of the shorter ones tried would do (0.25, 0.125 min)"),
-        ([], "take a shorter one; none was tried, as such a run takes long"),
+        ([], "a shorter one was not tried, as such a run takes long"),
     ],
 )
 def test_that_no_step_would_do_is_told(tried_min, remedy):

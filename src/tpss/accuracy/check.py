@@ -4,12 +4,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from tpss.accuracy.changes import Change
-from tpss.accuracy.trial import MOST_TRAIN_STEPS, Trial
+from tpss.accuracy.trial import Trial
 from tpss.results.key_figures import KeyFigures
 from tpss.run.run import INTERRUPTED
 
 MOST_HALVINGS = 3
 """Halvings of a step that is too long, in search of one that is not."""
+
+MOST_TRAIN_STEPS = 500_000
+"""Trains times steps of a run in that search; it takes about half a second."""
 
 SHORTEST_STEP_MIN = 0.001
 """The shortest step that a scenario may ask for."""

@@ -5,12 +5,12 @@ from typing import Any
 
 from tpss.accuracy.changes import LARGEST
 from tpss.accuracy.check import agree
-from tpss.accuracy.trial import MOST_TRAIN_STEPS, Trial
+from tpss.accuracy.trial import Trial
 from tpss.results.key_figures import KeyFigures
-from tpss.scenario.scenario import Scenario
+from tpss.scenario.open_step import LADDER_MIN
 
-LADDER_MIN = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
-"""Steps that are tried, the longest one first."""
+MOST_TRAIN_STEPS = 2_000_000
+"""Trains times steps of a run that is tried; it takes about two seconds."""
 
 STRICTNESS = 0.3
 """Share of the limits of a check that a step has to keep to be chosen: 0.3 % of times and energies, as
@@ -36,16 +36,6 @@ class StepChoice:
             "largest_share": STRICTNESS * LARGEST,
             "within": self.within,
         }
-
-
-def with_step(scenario: Scenario, step_min: float = LADDER_MIN[-1]) -> Scenario:
-    """A scenario with a step if it gives none, by default with the shortest one.
-
-    That is enough to find faults: what a train can do in long steps it can do in short ones.
-    """
-    if scenario.simulation.time_step_min is not None:
-        return scenario
-    return scenario.with_({"simulation.time_step_min": step_min})
 
 
 def choose_step(trial: Trial) -> StepChoice:

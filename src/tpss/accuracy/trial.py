@@ -14,9 +14,6 @@ from tpss.run.run import INTERRUPTED, Clock, Progress, Start
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 
-MOST_TRAIN_STEPS = 2_000_000
-"""Trains times steps of a run that is tried; it takes some seconds."""
-
 
 @dataclass(frozen=True)
 class Trial:

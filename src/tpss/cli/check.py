@@ -10,7 +10,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
-from tpss.accuracy.choose import with_step
 from tpss.cli.library import KINDS
 from tpss.cli.notes import notes
 from tpss.cli.terminal import say
@@ -21,6 +20,7 @@ from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line
+from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation

@@ -123,7 +123,7 @@ def _remedy(check: Mapping[str, Any]) -> str:
     if check["would_do_min"] is not None:
         return f"a step of {check['would_do_min']:g} min would do"
     if not check["tried_min"]:
-        return "take a shorter one; none was tried, as such a run takes long"
+        return "a shorter one was not tried, as such a run takes long"
     tried = ", ".join(f"{step:g}" for step in check["tried_min"])
     return f"none of the shorter ones tried would do ({tried} min)"
 

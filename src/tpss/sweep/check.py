@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from tpss.accuracy.choose import with_step
 from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
+from tpss.scenario.open_step import with_step
 from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
