@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tpss.accuracy.changes import LARGEST, LARGEST_OF_EXTREMES, changes_between
+from tpss.accuracy.choose import STRICTNESS
 from tpss.many import key_figures
 from tpss.results.key_figures import LowestVoltage
 
@@ -114,10 +115,26 @@ def test_energies_of_nothing_do_not_move(figures):
 
 
 def test_of_runs_that_end_early_alike_the_end_is_compared(figures):
-    """20 min and 20.3 min: 1.5 %."""
-    early = replace(figures, status="collapsed", duration_min=20.0)
-    (change,) = changes_between(early, replace(early, duration_min=20.3), NO_LOAD_KV)
+    """20 min, in steps of 0.1 min, and 20.3 min: 1.5 %."""
+    early = replace(figures, status="collapsed", duration_min=20.0, steps=200)
+    (change,) = changes_between(early, replace(early, duration_min=20.3, steps=406), NO_LOAD_KV)
     assert (change.figure, change.share) == ("duration_min", pytest.approx(0.015))
+
+
+@pytest.mark.parametrize(
+    ("ends_min", "steps", "within"),
+    [((2.0, 1.5), (2, 3), True), ((0.0, 0.5), (0, 1), True), ((2.0, 0.5), (2, 1), False),
+     ((0.0, 0.0), (0, 0), True)],
+)  # fmt: skip
+def test_an_end_that_moves_by_a_step_has_not_moved(ends_min, steps, within, figures):
+    """In steps of 1 min an end is known to 1 min; to be chosen, a step must end it all but alike."""
+    here, finer = (
+        replace(figures, status="stalled", duration_min=end_min, steps=count)
+        for end_min, count in zip(ends_min, steps, strict=True)
+    )
+    (change,) = changes_between(here, finer, NO_LOAD_KV)
+    assert change.within() == within
+    assert change.within(STRICTNESS) == (ends_min[0] == ends_min[1])
 
 
 def test_of_runs_that_end_in_different_ways_nothing_is_compared(figures):

@@ -130,6 +130,15 @@ def test_an_interruption_of_the_check_keeps_the_run():
     assert np.array_equal(result.dataset.position, whole.position, equal_nan=True)
 
 
+def test_the_progress_of_the_check_is_that_of_a_check():
+    """Reports of the run come first, those of the run at half the step follow."""
+    reports = []
+    tpss.simulate(at(0.2), reports.append, step_check=True)
+    in_check = [state.in_check for state in reports]
+    assert in_check == sorted(in_check)
+    assert {False, True} == set(in_check)
+
+
 def test_an_interrupted_run_is_not_checked():
     figures = replace(key_figures(at(0.2)), status=INTERRUPTED)
     assert check_step(figures, 0.2, trial_of(at(0.2))).not_made == "it was interrupted"

@@ -55,7 +55,7 @@ def changes_between(
     if figures.status != finer.status:
         return ()
     if figures.status != FINISHED:
-        found = [_of_itself("duration_min", "", figures.duration_min, finer.duration_min)]
+        found = [_end(figures, finer)]
     else:
         found = [
             *_trips(figures, finer),
@@ -71,6 +71,15 @@ def _of_itself(figure: str, of: str, here: float, finer: float, limit: float = L
     if here == 0.0:
         return Change(figure, of, here, finer, finer and math.copysign(1.0, finer), limit)
     return Change(figure, of, here, finer, (finer - here) / abs(here), limit)
+
+
+def _end(figures: KeyFigures, finer: KeyFigures) -> Change:
+    """Of the time at which a run ends early, which is known to a step: to move by one is no fault."""
+    here_min, then_min = figures.duration_min, finer.duration_min
+    step_min = here_min / figures.steps if figures.steps else 2.0 * then_min / max(finer.steps, 1)
+    scale_min = max(here_min, step_min / LARGEST)
+    share = (then_min - here_min) / scale_min if scale_min else 0.0
+    return Change("duration_min", "", here_min, then_min, share, LARGEST)
 
 
 def _trips(figures: KeyFigures, finer: KeyFigures) -> Iterator[Change]:
