@@ -155,7 +155,8 @@ CHANGE = {
     "at_step": "the figure of the run",
     "at_half_step": "the figure at half the step",
     "share": "change over the figure itself; of a voltage, over its drop from the highest "
-    "`no_load_voltage_kv`, at least 1 % of that; of energies, over the total; of an end, over a hundred steps at least",
+    "`no_load_voltage_kv`, at least 1 % of that; of energies, over the total; "
+    "of an end, over a hundred steps at least",
     "limit": "largest share of a step that is short enough: 0.01, and 0.02 of voltage and loading",
     "within": "whether the share is within the limit",
 }
