@@ -106,6 +106,8 @@ SUMMARY = {
     "load_flow_passes": "evaluations of the network a step: `mean` and `most`",
     "limited": "train-steps in which a model was limited or left its range",
     "audit": "figures of the audit, below",
+    "step_choice": "how the time step was chosen, if the scenario gave none, below",
+    "step_check": "what moves at half the time step, below",
     "simulation_s": "computing time of the simulation",
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
@@ -124,6 +126,40 @@ ATTRIBUTES = {
     "losses_mwh": "as in the summary",
     "audit": "as in the summary, as JSON",
 }
+STEP = """### `step_choice` and `step_check`
+
+A scenario without `simulation.time_step_min` is run with the longest of 1, 0.5, 0.2, 0.1, 0.05, 0.02
+and 0.01 min whose trips and energies keep within 0.3 % of the run at half of it (`largest_share`), and
+whose lowest voltage and peak loading within 0.6 %. `step_choice` says which ones were tried
+(`tried_min`), and whether the one that was taken is that close (`within`); it is null if the scenario
+gives its step.
+
+`step_check` compares the run with the same run at half its step. It is null if it was not asked for
+(`--no-step-check`; `tpss.simulate` makes it with `step_check=True`)."""
+
+STEP_CHECK = {
+    "half_step_min": "half the time step",
+    "status": "status of the run with it",
+    "duration_min": "simulated time of that run",
+    "changes": "what moves, a list, below",
+    "within": "whether both runs end alike, and all changes are within their limits",
+    "tried_min": "shorter steps that were tried, if this one is too long: up to three halvings",
+    "would_do_min": "the longest of them that is within the limits of its own half, or null",
+    "not_made": "why there is no check, or null",
+}
+CHANGE = {
+    "figure": "`trip_time_min` (of the studied train), `mean_trip_min` (of a service), "
+    "`total_energy_mwh`, `energy_mwh` (of a station), `lowest_voltage_kv` or `peak_loading` (of the "
+    "station that is loaded most); of runs that end early alike, `duration_min`",
+    "of": "name of the train, service or station; empty for the whole run",
+    "at_step": "the figure of the run",
+    "at_half_step": "the figure at half the step",
+    "share": "change over the figure itself; of a voltage, over its drop from the highest "
+    "`no_load_voltage_kv`, at least 1 % of that; of energies, over the total; "
+    "of an end, over a hundred steps at least",
+    "limit": "largest share of a step that is short enough: 0.01, and 0.02 of voltage and loading",
+    "within": "whether the share is within the limit",
+}
 AUDIT = """## Audit
 
 Every run audits itself: from the recorded voltages it forms the currents and powers once more, in a
@@ -138,7 +174,8 @@ does not close; it is reported but not judged."""
 def page() -> str:
     """Text of the page."""
     changes = {"simulation.until": None, "simulation.duration_min": 5.0}
-    result = tpss.simulate(tpss.load_scenario(EXAMPLE, changes))
+    result = tpss.simulate(tpss.load_scenario(EXAMPLE, changes), step_check=True)
+    check = result.summary["step_check"]
     provenance = dict.fromkeys(result.summary["provenance"], "as in the summary's `provenance`")
     attributes = {**ATTRIBUTES, **provenance}
     blocks = [
@@ -162,6 +199,10 @@ def page() -> str:
         "## Summary",
         "`Result.summary` is a dictionary, and the content of `summary.json`.",
         described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
+        STEP,
+        described(STEP_CHECK, check, "key"),
+        "Each of its `changes`:",
+        described(CHANGE, check["changes"][0], "key"),
         AUDIT,
         _audit(result.scenario),
     ]

@@ -40,6 +40,7 @@ GIVEN = {"model": ("locomotives", "the model's"), "system": ("voltage_limits", "
 DEFAULTS = {
     "Line.gradients_file": "this or `gradients`",
     "Line.gradients": "this or `gradients_file`",
+    "Simulation.time_step_min": "chosen",
     "Simulation.until": "this, unless `duration_min`",
     "Traffic.headway_min": "this or `departures_min`",
     "Traffic.departures_min": "this or `headway_min`",

@@ -2,34 +2,45 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
+from tpss.accuracy.check import StepCheck, check_step
+from tpss.accuracy.choose import StepChoice, choose_step
+from tpss.accuracy.trial import Trial
 from tpss.model import build_model
-from tpss.model.build import Layout, steps_of
-from tpss.model.traffic import build_services
+from tpss.model.build import Layout, at_step
+from tpss.model.start import start_of
 from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.results.dataset import attributes, build_dataset
-from tpss.results.key_figures import Frame, frame_of, key_figures_of
+from tpss.results.key_figures import Frame, KeyFigures, frame_of, key_figures_of
 from tpss.results.result import Result
 from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
-from tpss.run.run import Clock, Progress, Start, advance_to_end, begin, outcome_of, run_of
+from tpss.run.run import Clock, Progress, Start, advance_to_end, outcome_of, run_of
+from tpss.scenario.open_step import LADDER_MIN, with_step
 from tpss.scenario.scenario import Scenario
-from tpss.step.model import Model
-from tpss.units import si
 
 
-def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = None) -> Result:
+def simulate(
+    scenario: Scenario,
+    progress: Callable[[Progress], None] | None = None,
+    *,
+    step_check: bool = False,
+) -> Result:
     """Simulate trains and power supply together.
 
     Parameters
     ----------
     scenario : Scenario
+        Without a time step, the longest one is taken whose figures keep close to those at half of it.
     progress : callable, optional
-        Called several times a second with the `Progress` of the run.
+        Called several times a second with the `Progress` of the run, and of its check.
+    step_check : bool
+        Whether to make the run again with half its step, for its key figures only: what moves is then
+        in the summary, as ``step_check``.
 
     Returns
     -------
@@ -45,7 +56,7 @@ def simulate(scenario: Scenario, progress: Callable[[Progress], None] | None = N
     """
     prepared = prepare(scenario)
     with interruptible() as interrupted:
-        return prepared.run(progress, interrupted)
+        return prepared.run(progress, interrupted, step_check=step_check)
 
 
 def prepare(scenario: Scenario) -> "Prepared":
@@ -56,23 +67,26 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
-    clock, (model, layout) = _clock_of(scenario), build_model(scenario)
-    make_ready(model, clock)
-    return _prepared(scenario, clock, model, layout)
+    return _prepared(scenario, compiled=True)
 
 
 def build(scenario: Scenario) -> "Prepared":
     """`prepare` that leaves kernels to be compiled by the run."""
-    return _prepared(scenario, _clock_of(scenario), *build_model(scenario))
+    return _prepared(scenario, compiled=False)
 
 
-def _prepared(scenario: Scenario, clock: Clock, model: Model, layout: Layout) -> "Prepared":
-    services = build_services(scenario, model)
-    duration = scenario.simulation.duration_min
-    steps = None
-    if duration is not None:
-        steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    return Prepared(scenario, layout, begin(model, services, steps), clock)
+def _prepared(scenario: Scenario, compiled: bool) -> "Prepared":
+    clock = _clock_of(scenario)
+    as_built = with_step(scenario, LADDER_MIN[0])
+    model, layout = build_model(as_built)
+    if compiled:
+        make_ready(model, clock)
+    if scenario.simulation.time_step_min is not None:
+        return Prepared(scenario, layout, start_of(scenario, model), clock)
+    choice = choose_step(Trial(as_built, model, clock, frame_of(as_built, layout, model)))
+    chosen = with_step(scenario, choice.step_min)
+    model = at_step(model, chosen, 60.0 * choice.step_min)
+    return Prepared(chosen, layout, start_of(chosen, model), clock, choice)
 
 
 def _clock_of(scenario: Scenario) -> Clock:
@@ -84,9 +98,12 @@ class Prepared:
     """A scenario that is ready to run, any number of times."""
 
     scenario: Scenario
+    """With the step that was chosen, if it gave none."""
     layout: Layout
     start: Start
     clock: Clock
+    choice: StepChoice | None = None
+    """How the step was chosen, if it was."""
 
     @cached_property
     def frame(self) -> Frame:
@@ -97,22 +114,66 @@ class Prepared:
         self,
         progress: Callable[[Progress], None] | None = None,
         interrupted: Sequence[int] | None = None,
+        *,
+        step_check: bool = False,
     ) -> Result:
-        """Result of the run; it ends early once `interrupted` is filled."""
+        """Result of the run.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called several times a second with the `Progress` of the run, and of its check.
+        interrupted : sequence of int, optional
+            The run, or its check, ends early once it is filled.
+        step_check : bool
+            As of `simulate`.
+        """
         start, model = self.start, self.start.model
         run = run_of(start, self.clock)
         started = time.perf_counter()
         status = advance_to_end(run, start, progress, interrupted)
         elapsed_s = time.perf_counter() - started
         outcome = outcome_of(run, status, start.studied)
+        key_figures = key_figures_of(run, status, start, self.frame)
+        check = self.check_step(key_figures, interrupted, progress) if step_check else None
         figures = {
             FORMAT_KEY: FORMAT,
-            **summarise(
-                self.scenario, key_figures_of(run, status, start, self.frame), outcome, model
-            ),
+            **summarise(self.scenario, key_figures, outcome, model),
+            "step_choice": self.choice and self.choice.as_dict(),
+            "step_check": check and check.as_dict(),
             "simulation_s": elapsed_s,
             "provenance": provenance(),
         }
         dataset = build_dataset(outcome, model, self.layout)
         dataset.attrs = attributes(figures, model.options.step_s, run.last_step_s)
         return Result(self.scenario, dataset, figures)
+
+    def check_step(
+        self,
+        figures: KeyFigures,
+        interrupted: Sequence[int] | None = None,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> StepCheck:
+        """Make the run with half its step, and tell what moves.
+
+        Parameters
+        ----------
+        figures : KeyFigures
+            Of the run.
+        interrupted : sequence of int, optional
+            There is no check once it is filled.
+        progress : callable, optional
+            Called several times a second with the `Progress` of the check.
+        """
+
+        def report(state: Progress) -> None:
+            if progress is not None:
+                progress(replace(state, in_check=True))
+
+        trial = Trial(
+            self.scenario, self.start.model, self.clock, self.frame, interrupted,
+            None if progress is None else report,
+        )  # fmt: skip
+        step_min = self.start.model.options.step_s / 60.0
+        half = None if self.choice is None else self.choice.half
+        return check_step(figures, step_min, trial, half)

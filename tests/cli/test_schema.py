@@ -72,6 +72,8 @@ def test_a_fault_is_found_at_its_place(changes, place):
     "changes",
     [
         {"line.gradients": None, "line.gradients_file": "a.csv"},
+        {"simulation.time_step_min": None},
+        {"simulation": None},
         {"supply.catenary": {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.2}},
         {"supply.high_voltage_line": {"type": "132kV", "transformers": 2}},
         {"traffic.0.headway_min": None, "traffic.0.departures_min": [0.0, 5.0]},

@@ -5,6 +5,7 @@ import importlib.util
 import pytest
 
 import tpss
+from accuracy.rough import ROUGH
 from sweep.studies import small_cluster, write_study
 
 
@@ -112,3 +113,16 @@ def test_cases_that_could_not_be_run_are_told_in_the_end(finished, tpss_command)
     said = tpss_command("sweep", "--summary", folder)
     assert said.code == 4
     assert "The audit of 1 case(s) failed" in said.err
+
+
+@pytest.mark.parametrize("left_out", [False, True])
+def test_the_command_prints_it_unless_it_is_left_out(tpss_command, tmp_path, scheduler, left_out):
+    settings = {**ROUGH, "simulation.time_step_min": 1.0}
+    vary = {"traffic.0.headway_min": [5.0, 10.0]}
+    write_study(tmp_path, {"set": settings, "vary": vary})
+    options = ["--no-step-check"] if left_out else []
+    said = tpss_command("sweep", "study.toml", "--out", "out", "--scheduler", scheduler, *options)
+    again = tpss_command("sweep", "--summary", "out")
+    for printed in (said, again):
+        assert printed.code == 0
+        assert ("At half the step of 1 min" in printed.out) != left_out

@@ -199,8 +199,8 @@ def test_a_value_that_is_not_a_number_fails_the_audit(place, monkeypatch):
     """As if the solver had left a NaN in one record of one step."""
     from tpss.results import key_figures as module
 
-    def spoil(run, start):
-        status = advance_to_end(run, start)
+    def spoil(run, *others, **options):
+        status = advance_to_end(run, *others, **options)
         field = {"trains": "active_power", "nodes": "node_real"}.get(place, "station_active_power")
         getattr(run.recording, place)[field][3, 0] = np.nan
         return status

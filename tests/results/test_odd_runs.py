@@ -69,7 +69,7 @@ def test_names_with_brackets_are_printed_as_they_are(tmp_path, monkeypatch, caps
     import tomli_w
 
     (tmp_path / "odd.toml").write_text(tomli_w.dumps(scenario))
-    assert run_scenario(tmp_path / "odd.toml", None, [], False, False, "x [y] 1", False) == 0
+    assert run_scenario(tmp_path / "odd.toml", None, [], False, False, "x [y] 1", False, False) == 0
     printed = capsys.readouterr().out
     assert "a [/b] c" in printed
     assert "x [y] 1" in printed

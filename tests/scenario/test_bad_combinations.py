@@ -166,6 +166,8 @@ CONFLICTS = [
     pytest.param({"simulation.driver": "aggressive", "simulation.time_step_min": 1.5},
                  "simulation.time_step_min", "1.5", "use 1 min or less",
                  id="aggressive-driver-in-long-steps"),
+    pytest.param({"simulation.load_flow": "least-squares", "simulation.time_step_min": None},
+                 "simulation.time_step_min", "", "add it", id="least-squares-without-a-step"),
     pytest.param({"line.gradients": [{"from_km": 0.0, "permille": 0.0}]}, INLINE,
                  "'gradients_a_160km.csv'", "leave out gradients_file or gradients",
                  id="gradients-twice-given"),

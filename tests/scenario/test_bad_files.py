@@ -156,7 +156,7 @@ def test_an_empty_file_lacks_every_part(tmp_path):
     file = tmp_path / "line.toml"
     file.touch()
     keys = {finding.key for finding in faults_of({}, file)}
-    assert keys == {"format", "name", "simulation", "line", "supply", "trains", "traffic"}
+    assert keys == {"format", "name", "line", "supply", "trains", "traffic"}
 
 
 def test_faults_of_all_kinds_are_reported_at_once(copied):

@@ -193,7 +193,6 @@ MISSING = [
         "format",
         "name",
         "supply",
-        "simulation.time_step_min",
         "line.length_km",
         "supply.catenary",
         f"{WEST}.position_km",

@@ -28,4 +28,9 @@ Assignments = Annotated[
 
 ResultFolder = Annotated[Path, argument(metavar="RESULT", help="Folder written by tpss run.")]
 
+NoStepCheck = Annotated[
+    bool,
+    typer.Option("--no-step-check", help="Leave out what moves at half the time step."),
+]
+
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]

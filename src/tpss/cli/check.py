@@ -20,6 +20,7 @@ from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line
+from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
@@ -41,7 +42,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
         It has faults; all are listed.
     """
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
-    model, _ = build_model(scenario)
+    model, _ = build_model(with_step(scenario))
     build_services(scenario, model)
     clock_of(scenario.simulation.load_flow, scenario.source)
     console = Console()
@@ -173,10 +174,11 @@ def _service(entry: Traffic) -> str:
 
 def _simulation(simulation: Simulation, studied: str) -> str:
     step, duration = simulation.time_step_min, simulation.duration_min
+    steps = "steps of a length to be chosen" if step is None else f"steps of {step:g} min"
     end = f"until {studied} 1 arrives" if duration is None else f"for {duration:g} min"
     choices = [
         f"{key} {getattr(simulation, key)}"
         for key, field in Simulation.model_fields.items()
         if isinstance(field.default, str) and getattr(simulation, key) != field.default
     ]
-    return ", ".join([f"steps of {step:g} min {end}", *choices])
+    return ", ".join([f"{steps} {end}", *choices])

@@ -174,6 +174,8 @@ def _times(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
             f"{key}: its first departure, at {departures[0]:g} min, is not before the end of the "
             f"run, at {duration:g} min"
         )
+    if step is None:  # it will be chosen
+        return
     if not all(_is_whole(time / step) for time in (*departures, entry.headway_min or 0.0)):
         yield (
             f"{key}: its departures are not all at whole time steps of {step:g} min; a train departs "

@@ -32,6 +32,7 @@ def run_scenario(
     quiet: bool,
     show: str | None,
     report: bool,
+    step_check: bool,
 ) -> int:
     """Run a scenario file; return the exit code."""
     from tpss.results import store
@@ -42,7 +43,7 @@ def run_scenario(
     scenario = load_scenario(file, changes)
     store.check_target(scenario, out, force)
     try:
-        ended = _simulate_and_save(scenario, out, force, quiet)
+        ended = _simulate_and_save(scenario, out, force, quiet, step_check)
     except KeyboardInterrupt:
         print("Interrupted; nothing was saved.", file=sys.stderr)
         return INTERRUPTED
@@ -75,7 +76,9 @@ def exit_code(result: "Result") -> int:
     return {"finished": DONE, "interrupted": INTERRUPTED}.get(result.status, NO_SOLUTION)
 
 
-def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quiet: bool) -> _Ended:
+def _simulate_and_save(
+    scenario: "Scenario", out: Path | None, force: bool, quiet: bool, step_check: bool
+) -> _Ended:
     """Simulate and save; from the first step on, a Ctrl-C ends the run and saves the result so far."""
     from tpss.api import prepare
     from tpss.run.interrupt import interruptible
@@ -85,7 +88,7 @@ def _simulate_and_save(scenario: "Scenario", out: Path | None, force: bool, quie
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:
         with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
-            result = prepared.run(progress, interrupted)
+            result = prepared.run(progress, interrupted, step_check=step_check)
         folder, fault = _save(result, out, force)
     return _Ended(result, folder, fault, bool(interrupted))
 
@@ -100,6 +103,7 @@ def _notice() -> None:
 
 def _progress(state: "Progress") -> dict[str, Any]:
     detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
+    detail += ", step check" if state.in_check else ""
     return {"completed": state.share, "total": 1.0, "detail": detail}
 
 

@@ -43,6 +43,7 @@ def run_study_file(
     workers: int | None,
     dry_run: bool,
     quiet: bool,
+    step_check: bool,
 ) -> int:
     """Run a study, or only check it; return the exit code."""
     demand_packages()
@@ -57,7 +58,10 @@ def run_study_file(
     announce_compilation(console)
     try:
         with progress_bar(study.file.name, PROGRESS, _progress, console) as report:
-            ended = run_study(study, out, scheduler=scheduler, workers=workers, report=report)
+            ended = run_study(
+                study, out, scheduler=scheduler, workers=workers, report=report,
+                step_check=step_check,
+            )  # fmt: skip
     except KeyboardInterrupt:
         print(
             "Interrupted; finished cases are kept, and the same command continues.", file=sys.stderr
@@ -72,15 +76,18 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
     """Print the key figures of a study's folder; return the exit code."""
     demand_packages()
     from tpss.sweep.design import design_of
-    from tpss.sweep.folder import load_table, read_manifest
+    from tpss.sweep.folder import STEP_CHECK, load_table, read_manifest
+    from tpss.sweep.step_sample import sample_in_words
     from tpss.sweep.study import study_of_json
     from tpss.sweep.summary import summarise
 
     table = load_table(folder)
-    cases = design_of(study_of_json(read_manifest(folder)["study"])).cases
+    manifest = read_manifest(folder)
+    cases = design_of(study_of_json(manifest["study"])).cases
     summary = summarise(table, cases)
     if not quiet:
-        _print_summary(summary, folder)
+        sample = manifest.get(STEP_CHECK)
+        _print_summary(summary, folder, "" if sample is None else sample_in_words(sample))
     for problem, count in list(summary.problems.items())[:MOST_PROBLEMS]:
         print(f"{count} case(s) could not be run: {problem}", file=sys.stderr)
     if summary.audits_failed:
@@ -124,7 +131,7 @@ def _print_rate(ended: "Advance", console: Console) -> None:
         say(console, f"{ended.before:,} cases were finished before.")
 
 
-def _print_summary(summary: "Summary", folder: Path) -> None:
+def _print_summary(summary: "Summary", folder: Path, step_check: str) -> None:
     console = Console()
     states = ", ".join(f"{count:,} {status}" for status, count in summary.status.items())
     say(console, f"{summary.done:,} of {summary.cases:,} cases: {states}")
@@ -136,5 +143,7 @@ def _print_summary(summary: "Summary", folder: Path) -> None:
         table.add_row(escape(str(label)), *(f"{value:.4g}" for value in row))
     if summary.status.get("finished"):
         console.print(table)
+    if step_check:
+        say(console, step_check)
     say(console, f"Computing time of all cases: {_duration(summary.work_s)}")
     say(console, f"The table is in {folder / 'cases'}")

@@ -15,6 +15,7 @@ from tpss import units
 from tpss.cli.terminal import say
 from tpss.results.notes import notes
 from tpss.results.result import Result
+from tpss.results.step_words import step_lines
 from tpss.results.tables import train_steps
 from tpss.step.recorded import RECORDED
 
@@ -143,6 +144,7 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
+    lines += step_lines(summary)
     lines.append(_audit(summary["audit"]))
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
     return lines

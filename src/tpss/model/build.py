@@ -40,7 +40,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         control=RunControl(),
         gradients=gradients,
         limits=limits,
-        stops=_stops(scenario),
+        stops=_stops(scenario, si(scenario.simulation, "time_step_min")),
         types=types,
         points=points,
         network=network,
@@ -50,6 +50,12 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         stations=tuple(station.name for station in scenario.supply.stations),
         station_m=tuple(si(s, "position_km") for s in scenario.supply.stations),
     )
+
+
+def at_step(model: Model, scenario: Scenario, step_s: float) -> Model:
+    """The model of a scenario with another time step, on which nothing else in it depends."""
+    options = model.options._replace(step_s=step_s)
+    return model._replace(options=options, stops=_stops(scenario, step_s))
 
 
 def steps_of(duration_s: float, step_s: float) -> int:
@@ -76,10 +82,9 @@ def _member(choice: str) -> str:
     return choice.upper().replace("-", "_")
 
 
-def _stops(scenario: Scenario) -> Records[Stop]:
+def _stops(scenario: Scenario, step_s: float) -> Records[Stop]:
     """Stops, one row a traffic entry, the destination last."""
     position_m = {s.name: si(s, "position_km") for s in scenario.line.stations}
-    step_s = si(scenario.simulation, "time_step_min")
     most = max(len(entry.stops) for entry in scenario.traffic) + 1
     rows: Any = Stop.blank(len(scenario.traffic), most)
     for route, entry in enumerate(scenario.traffic):

@@ -34,6 +34,7 @@ from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.notes import notes
 from tpss.results.result import Result
+from tpss.results.step_words import step_lines
 from tpss.units import kilometres
 
 STATUS_IN_WORDS = {
@@ -259,6 +260,7 @@ def _page(
         judged=JUDGED,
         validity=limits_of_validity(results.values()),
         violations=_violations(results),
+        steps={label: step_lines(result.summary) for label, result in results.items()},
         scenarios={key: tomli_w.dumps(run.scenario.as_document()) for key, run in results.items()},
         style=_part("report.css"),
         script=_part("report.js"),

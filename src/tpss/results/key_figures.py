@@ -1,6 +1,7 @@
 """The key figures of a run, a few hundred bytes, from its recording without dataset or tables."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,7 +17,7 @@ from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
-from tpss.run.run import Clock, Run, Start, advance_to_end, arrivals_s, run_of
+from tpss.run.run import Clock, Progress, Run, Start, advance_to_end, arrivals_s, run_of
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.step.recording import Memory
@@ -151,7 +152,14 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
     )
 
 
-def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) -> KeyFigures:
+def run_for_figures(
+    start: Start,
+    frame: Frame,
+    clock: Clock,
+    memory: Memory = np.empty,
+    interrupted: Sequence[int] | None = None,
+    report: Callable[[Progress], None] | None = None,
+) -> KeyFigures:
     """Run from a start, and keep only the key figures.
 
     Parameters
@@ -160,8 +168,12 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
     frame : Frame
     clock : callable
         Runs the steps.
-    memory : callable
+    memory : callable, optional
         Allocates the recording.
+    interrupted : sequence of int, optional
+        The run ends early once it is filled.
+    report : callable, optional
+        Called several times a second with the `Progress` of the run.
 
     Raises
     ------
@@ -169,7 +181,8 @@ def run_for_figures(start: Start, frame: Frame, clock: Clock, memory: Memory) ->
         The recording would not fit into memory.
     """
     run = run_of(start, clock, memory)
-    return key_figures_of(run, advance_to_end(run, start), start, frame)
+    status = advance_to_end(run, start, report, interrupted)
+    return key_figures_of(run, status, start, frame)
 
 
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:

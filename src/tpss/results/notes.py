@@ -9,6 +9,7 @@ from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
+from tpss.results.step_words import step_warnings
 from tpss.results.tables import J_PER_MWH, step_s
 
 MOST_CIRCULATING = 0.1
@@ -25,8 +26,9 @@ FEW = 3
 def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
     if result.dataset.sizes["time"] < 2:
-        return warnings(result.summary)
+        return [*step_warnings(result.summary), *warnings(result.summary)]
     return [
+        *step_warnings(result.summary),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),

@@ -56,6 +56,8 @@ class Progress:
     """Trains on the line."""
     share: float
     """Share of the run that is done, as far as it can be foreseen."""
+    in_check: bool = False
+    """Whether it is a run with a shorter step, to check the step."""
 
 
 @dataclass(frozen=True)

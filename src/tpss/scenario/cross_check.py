@@ -22,8 +22,9 @@ from tpss.units import kilometres
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     """All faults between the parts of a document."""
     line, supply = _table(document, "line"), _table(document, "supply")
+    simulation = _table(document, "simulation")
     findings = [*_kilometres(document), *_stations_apart(supply)]
-    findings += _driver(_table(document, "simulation"))
+    findings += [*_open_step(simulation), *_driver(simulation)]
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     trains, falls = list(_table(document, "trains")), kilometres_fall(document)
     places = _places(line)
@@ -220,6 +221,13 @@ def _without_limit(line: Mapping[str, Any], begin_km: float) -> Iterator[_Fault]
         problem = "no speed limit applies at the beginning of the line"
         remedy = f"make the first limit begin at {kilometres(begin_km)}"
         yield "line.speed_limits.0.from_km", kilometres(position), problem, remedy
+
+
+def _open_step(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
+    """Least squares without a step: the runs that choose one would take too long."""
+    if simulation.get("load_flow") == "least-squares" and "time_step_min" not in simulation:
+        problem = "it is missing; least squares take too long for a step to be chosen"
+        yield "simulation.time_step_min", "", problem, "add it"
 
 
 def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:

@@ -33,7 +33,9 @@ class Scenario(Part):
         description="Short name, used for result folders."
     )
     description: str = Field(default="", description="What the scenario is about.")
-    simulation: Simulation = Field(description="How the simulation runs.")
+    simulation: Simulation = Field(
+        default={}, validate_default=True, description="How the simulation runs."
+    )
     line: Line = Field(description="The railway line.")
     supply: Supply = Field(description="Everything that feeds the trains.")
     trains: Annotated[dict[Name, Train], Field(min_length=1)] = Field(

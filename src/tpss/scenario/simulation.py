@@ -12,7 +12,13 @@ class Simulation(Part):
 
     model_config = ConfigDict(json_schema_extra={"not": {"required": ["until", "duration_min"]}})
 
-    time_step_min: Real = Field(ge=0.001, le=10, description="Length of a time step.")
+    time_step_min: Real | None = Field(
+        default=None,
+        ge=0.001,
+        le=10,
+        description="Length of a time step; by default the longest of 1, 0.5, 0.2, 0.1, 0.05, 0.02 and "
+        "0.01 min that keeps within 0.3 % of a run at half of it.",
+    )
     until: Literal["first-departure-arrives"] | None = Field(
         default=None, description="End with the arrival of the studied train (the default)."
     )

@@ -20,7 +20,8 @@ from tpss.errors import StudyError
 from tpss.sweep.batch import Plan, run_batch, warm_up
 from tpss.sweep.check import check, time_per_case
 from tpss.sweep.design import Design, design_of
-from tpss.sweep.folder import FORMAT, FORMAT_KEY, Folder, batches, missing
+from tpss.sweep.folder import FORMAT, FORMAT_KEY, STEP_CHECK, Folder, batches, missing
+from tpss.sweep.step_sample import sample_steps
 from tpss.sweep.study import Study
 from tpss.sweep.versions import versions
 
@@ -84,6 +85,7 @@ def run_study(
     scheduler: str | None = None,
     workers: int | None = None,
     report: Callable[[Advance], None] | None = None,
+    step_check: bool = False,
 ) -> Advance:
     """Run the cases of a study that its folder does not hold yet.
 
@@ -98,6 +100,9 @@ def run_study(
         Processes of the local cluster; by default one for each core.
     report : callable, optional
         Called after every batch.
+    step_check : bool
+        Whether to make a few of the cases again with half their step, once in the life of a study:
+        what moves then stands in its ``study.json``, as ``step_check``.
 
     Raises
     ------
@@ -114,13 +119,15 @@ def run_study(
         "study_hash": study.digest,
         **versions(),
     }
-    with target.opened({**manifest, "study": study.as_json()}):
+    with target.opened({**manifest, "study": study.as_json()}) as begun:
         started, done = time.perf_counter(), target.done()
         todo = missing(done, design.cases)
         before = design.cases - sum(end - first for first, end in todo)
         count = before
         names = check(design)
         plan = Plan(study.as_json(), names.stations, names.services)
+        if step_check and STEP_CHECK not in begun:
+            target.add_to_manifest(STEP_CHECK, sample_steps(design))
         for first, end, content in _results(design, plan, todo, scheduler, workers):
             target.add(first, end, content)
             count += end - first

@@ -8,6 +8,7 @@ from typing import Any
 
 from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
+from tpss.scenario.open_step import with_step
 from tpss.sweep.batch import run_case
 from tpss.sweep.columns import Names
 from tpss.sweep.derive import scenario_of, scenario_with
@@ -37,12 +38,12 @@ def check(design: Design) -> Names:
     built: list[Prepared] = []
     for name, values in design.ends():
         try:
-            built.append(build(scenario_with(design, values, 0)))
+            built.append(build(with_step(scenario_with(design, values, 0))))
         except (ScenarioError, TooLargeError) as error:
             findings += _of_parameter(error, design, name, values)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
-    built += [_build(design, case) for case in _spread(design.cases, SAMPLE)]
+    built += [_build(design, case) for case in spread(design.cases, SAMPLE)]
     return Names(
         stations=tuple(dict.fromkeys(name for each in built for name in each.layout.stations)),
         services=tuple(dict.fromkeys(s.name for each in built for s in each.start.services)),
@@ -51,12 +52,12 @@ def check(design: Design) -> Names:
 
 def _build(design: Design, case: int) -> Prepared:
     try:
-        return build(scenario_of(design, case))
+        return build(with_step(scenario_of(design, case)))
     except (ScenarioError, TooLargeError) as error:
         raise ScenarioError(_of_case(error, design, case)) from error
 
 
-def _spread(cases: int, most: int) -> Iterator[int]:
+def spread(cases: int, most: int) -> Iterator[int]:
     """Some of the cases, the first one among them, drawn at random: cases at equal distances in a Sobol
     sequence would be in one slice of its space.
     """
@@ -114,7 +115,7 @@ def time_per_case(design: Design) -> float:
     """
     run_case(design, 0)
     started, done = time.perf_counter(), 0
-    for case in _spread(design.cases, TRIAL_CASES):
+    for case in spread(design.cases, TRIAL_CASES):
         run_case(design, case)
         done += 1
         if time.perf_counter() - started > TRIAL_S:

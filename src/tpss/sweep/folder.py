@@ -25,6 +25,9 @@ FORMAT_KEY, FORMAT = "table_format", 1
 It increases when a column is renamed, removed or changes its meaning.
 """
 
+STEP_CHECK = "step_check"
+"""Key of what the time step costs a sample of the cases."""
+
 _PART = re.compile(r"cases-(\d+)-(\d+)\.parquet")
 
 Ranges = list[tuple[int, int]]
@@ -86,6 +89,11 @@ class Folder:
                     "or give another --out"
                 )
         return begun
+
+    def add_to_manifest(self, key: str, value: Any) -> None:
+        """Add what was found out about the study."""
+        manifest = {**read_manifest(self.path), key: value}
+        write_file(self.path / MANIFEST, json.dumps(manifest, indent=1).encode())
 
     def done(self) -> Ranges:
         """Cases whose rows are there."""

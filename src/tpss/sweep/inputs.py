@@ -60,6 +60,7 @@ class Inputs(NamedTuple):
     gradient_middle_permille: float
     """How much steeper it is far from feeding stations than on average; NaN for a single one."""
     time_step_min: float
+    """NaN as long as it is not chosen."""
 
 
 def inputs_of(scenario: Scenario) -> Inputs:
@@ -109,7 +110,7 @@ def inputs_of(scenario: Scenario) -> Inputs:
         starting_gradient_permille=gradients.starting,
         gradient_trend_permille=gradients.trend,
         gradient_middle_permille=gradients.middle,
-        time_step_min=scenario.simulation.time_step_min,
+        time_step_min=_or_nan(scenario.simulation.time_step_min),
     )
 
 

@@ -1,0 +1,25 @@
+"""What a run of a model begins with."""
+
+from tpss.model.build import steps_of
+from tpss.model.traffic import build_services
+from tpss.run.run import Start, begin
+from tpss.scenario.scenario import Scenario
+from tpss.step.model import Model
+from tpss.units import si
+
+
+def start_of(scenario: Scenario, model: Model) -> Start:
+    """Services, trains on the line and number of steps of a run, at the model's time step.
+
+    Raises
+    ------
+    ScenarioError
+        A train that the scenario places on the line could not stop or slow down in time.
+    TooLargeError
+        The recording would not fit into memory.
+    """
+    services = build_services(scenario, model)
+    steps = None
+    if scenario.simulation.duration_min is not None:
+        steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
+    return begin(model, services, steps)
