@@ -1,4 +1,4 @@
-"""A short line to vary in tests of the clock."""
+"""A short line to vary in tests of the clock; its trains move in steps unless a test says otherwise."""
 
 import copy
 from typing import Any
@@ -10,7 +10,7 @@ from properties.rules import Journey, keep_the_rules
 SHORT_LINE: dict[str, Any] = {
     "format": 1,
     "name": "short-line",
-    "simulation": {"time_step_min": 0.05},
+    "simulation": {"time_step_min": 0.05, "motion": "stepped", "braking": "whole-steps"},
     "line": {
         "length_km": 20.0,
         "gradients": [{"from_km": 0.0, "permille": 0.0}],

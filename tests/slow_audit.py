@@ -14,7 +14,7 @@ import numpy.typing as npt
 import tpss
 from tpss.audit.balances import ALLOWED_BALANCE
 from tpss.audit.verdict import JUDGED, Audit, judge, limits_of, usual_limits
-from tpss.driving.data import Braking, Driver
+from tpss.driving.data import Braking, Driver, MotionModel
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network
 from tpss.run.run import Outcome, advance_to_end, outcome_of, run_of
@@ -220,17 +220,66 @@ def grid_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any
 def network_balance(outcome: Outcome, model: Model) -> float:
     """Relative difference between the stations' energy and that of trains and losses. [1]"""
     recording, step_s = outcome.recording, model.options.step_s
-    fed = np.nansum(recording.stations["station_active_power"]) * step_s
-    drawn = np.nansum(recording.trains["active_power"]) * step_s
-    lost = np.nansum(recording.network_losses) * step_s
+    each_s = intervals_s(outcome, model)
+    rows = slice(0, outcome.steps)
+    fed = np.nansum(recording.stations["station_active_power"][rows].sum(axis=1) * each_s)
+    drawn = np.nansum(np.nansum(recording.trains["active_power"][rows], axis=1) * each_s)
+    lost = np.nansum(recording.network_losses[rows] * each_s)
     # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
     mismatch_w = TOLERANCE * model.network.system.base_power_va
     least = mismatch_w / ALLOWED_BALANCE * step_s * max(outcome.steps, 1)
     return float(abs(fed - drawn - lost) / max(abs(fed), least))
 
 
+def intervals_s(outcome: Outcome, model: Model) -> Floats:
+    """Lengths of the steps: all alike, but the last one may end with the studied train's arrival. [s]"""
+    each_s = np.full(outcome.steps, model.options.step_s)
+    each_s[-1:] = np.where(
+        np.isclose(np.diff(outcome.instants_s)[-1:], each_s[-1:], rtol=1e-9, atol=0.0),
+        each_s[-1:],
+        np.diff(outcome.instants_s)[-1:],
+    )
+    return each_s
+
+
 def traction_balance(outcome: Outcome, model: Model) -> float:
-    """Relative difference between the motors' work and where it went. [1]
+    """Relative difference between the motors' work and where it went. [1]"""
+    if model.options.motion == MotionModel.CONTINUOUS:
+        return continuous_traction_balance(outcome, model)
+    return stepped_traction_balance(outcome, model)
+
+
+def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
+    """`traction_balance` of trains whose steps may have several phases, from the recorded powers.
+
+    The motors' recorded work counts as far as some efficiency of the train makes it what the drawn energy
+    is, less the auxiliaries of the time from departure to arrival.
+    """
+    trains, timetable = outcome.recording.trains, outcome.state.trains["timetable"]
+    kind, count = _kinds(outcome, model), len(outcome.trains)
+    h = intervals_s(outcome, model)[:, np.newaxis]
+    before, after = trains[:-1], trains[1:]
+    step, own = np.arange(outcome.steps)[:, np.newaxis], timetable[:count]
+    present_s = h - np.where(step == own["departure_step"], own["departure_wait_s"], 0.0)
+    present_s = present_s - np.where(step + 1 == own["arrival_step"], own["stood_s"], 0.0)
+    low, high = np.empty(count), np.empty(count)
+    for i, curve in enumerate(kind.efficiency):
+        values = model.points.value[curve.first : curve.first + curve.points]
+        low[i], high[i] = values.min(), values.max()
+    for_motors = before["active_power"] * h - kind.auxiliary_power_w * present_s
+    recorded = before["motor_power"] * h
+    work = np.clip(recorded, low * for_motors, high * for_motors) / kind.slip_factor
+    opposing = before["resistance_power"] + before["gradient_power"] + before["braking_power"]
+    moving = (opposing - before["traction_power"]) * h + recorded / kind.slip_factor
+    kinetic = kind.inertia_kg / 2.0 * (after["speed"] ** 2 - before["speed"] ** 2)
+    difference = np.nansum(work) - np.nansum(moving) - np.nansum(kinetic)
+    fallen = -np.nansum(np.minimum(before["gradient_power"], 0.0) * h)
+    slowed = -np.nansum(np.minimum(kinetic, 0.0))
+    return float(abs(difference) / max(np.nansum(work) + fallen + slowed, 1.0))
+
+
+def stepped_traction_balance(outcome: Outcome, model: Model) -> float:
+    """`traction_balance` of trains that move in steps of one acceleration.
 
     The motors' work is that of the recorded electric power; it goes into slip, the rotors, running
     resistance, climb, kinetic energy and brakes.
@@ -328,12 +377,37 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
     both = (outcome.recording.train_state[:-1] >= 0) & (
         outcome.recording.train_state[:-1] != TrainState.ARRIVED
     )
+    if model.options.motion == MotionModel.CONTINUOUS:
+        return continuous_motion_error_m(outcome, model, both)
     way = after["position"] - before["position"]
     way = way - step_s * (before["speed"] + after["speed"]) / 2.0
     if model.options.braking == Braking.WITHIN_STEP:
         way = braking_motion_error_m(before, after, _kinds(outcome, model), step_s)
     speed = after["speed"] - before["speed"] - step_s * before["acceleration"]
     return max(_largest(way[both]), _largest(speed[both]) * step_s, key=_nan_is_largest)
+
+
+def continuous_motion_error_m(outcome: Outcome, model: Model, both: npt.NDArray[np.bool_]) -> float:
+    """How far a train runs backwards, or further than its limits let it, and |v' - v - a h| h.
+
+    A train that comes to an instant faster than its limit there, and no slower than it was, is over it.
+    """
+    trains, kind = outcome.recording.trains, _kinds(outcome, model)
+    h = intervals_s(outcome, model)[:, np.newaxis]
+    before, after = trains[:-1], trains[1:]
+    from_m, to_m = before["position"], after["position"]
+    fastest = np.maximum(before["speed"], np.minimum(_limits(from_m, kind, model), kind.highest_speed_m_s))
+    for j in range(model.limits.from_m.shape[1]):
+        begins_m, value = model.limits.from_m[kind.profile, j], model.limits.value[kind.profile, j]
+        passed = (from_m < begins_m) & (begins_m <= to_m)
+        allowed = np.minimum(value, kind.highest_speed_m_s)
+        fastest = np.where(passed, np.maximum(fastest, allowed), fastest)
+    way_m = to_m - from_m
+    limit = np.minimum(_limits(to_m, kind, model), kind.highest_speed_m_s)
+    over = np.where(before["speed"] <= after["speed"], np.maximum(0.0, after["speed"] - limit), 0.0)
+    change = after["speed"] - before["speed"] - h * before["acceleration"]
+    errors = (np.minimum(0.0, way_m), np.maximum(0.0, way_m - fastest * h), over * h, change * h)
+    return max((_largest(error[both]) for error in errors), key=_nan_is_largest)
 
 
 def braking_work(before: Any, after: Any, kind: Any, step_s: float) -> Floats:

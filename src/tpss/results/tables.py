@@ -125,5 +125,7 @@ def over_time(values: npt.NDArray[np.float64], dataset: xr.Dataset) -> npt.NDArr
     dataset : Dataset
         Of the run.
     """
+    if dataset.sizes["time"] < 2:
+        return np.zeros(values.shape[1:])
     last = np.nan_to_num(values[dataset.sizes["time"] - 2])
     return np.asarray(np.nansum(values, axis=0) * step_s(dataset) - last * short_s(dataset))
