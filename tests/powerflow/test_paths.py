@@ -9,7 +9,7 @@ import tpss
 from tpss.powerflow.network import Ending
 from tpss.powerflow.solve import solve
 
-from collapses import run
+from collapses import CONFIRMED, SOLVED, run
 from networks import BT, ROTARY, constant_loads, network_of, place, simple_line, sources
 from scenarios import short_line
 
@@ -21,8 +21,8 @@ def test_no_collapse_of_an_odd_line_is_a_false_one():
     """Current limitations, stations unlike in reactance, voltage and angle; two homotopies judge."""
     outcomes, _, faults = run(LINES)
     assert faults == []
-    assert outcomes["solved"] > len(LINES) / 3
-    assert outcomes["confirmed"] > 0
+    assert outcomes[SOLVED] > len(LINES) / 3
+    assert outcomes[CONFIRMED] > 0
 
 
 def test_many_trains_at_the_knees_of_their_current_limitation_are_solved():

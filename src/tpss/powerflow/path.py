@@ -289,8 +289,9 @@ def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, load
     """Whether a source ends a path at the last good point, at a share of what the way raises."""
     solve_on_way(share, LINKED, way, network, flow, loads)
     for s in range(network.sources.size):
-        source, node = network.sources[at(s)], flow.nodes[at(network.sources[at(s)].node)]
-        running = flow.sources[at(s)].running
+        # The law that holds there, as sources that differ less are on a way.
+        source, running = flow.laws[at(s)], flow.sources[at(s)].running
+        node = flow.nodes[at(source.node)]
         if reserve(node.voltage_v, node.leaving_current_a, running, source) < NO_RESERVE:
             return True
     return False
