@@ -28,8 +28,8 @@ LARGEST_CORRECTION, AT_A_KNEE = 0.3, 1e-4
 MOST_ITERATIONS = 10
 CREEPING, SPENT = 1e-6, 5e-3
 """A machine is at its end if arcs are shorter than the one, and less than the other is left of the
-triangle of its load angle, without load 1: the angle's slope is then hundreds of times as large, and so is
-the rounding of a current through microohms. [1]"""
+triangle of its load angle, without load 1: the slope of the angle is then hundreds of times as large,
+and so is the rounding of a current. [1]"""
 
 LOWEST, HIGHEST = 0.1, 3.0
 """Voltages at which a path is left alone. [p.u.]"""
