@@ -139,10 +139,12 @@ def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tup
     """Follow the path of the loads from a share of them; return its end, why, and the passes.
 
     The share is that up to which all states are plausible, unless the whole load has a plausible one.
+    That the band is left is the reason only if the path has an end beyond it, or leads out for good.
     """
     share, status, passes = follow(share, LOADS, STRICT, network, flow, loads)
     if share == 1.0:
         return share, Ending.FOUND, passes
+    ending: int = Ending.LEFT_BAND if status == Solution.IMPLAUSIBLE else Ending.OUT_OF_STEP
     if status != Solution.IMPLAUSIBLE and status != Solution.OUT_OF_STEP:
         ending, more = ending_of_path(share, LOADS, network, flow, loads)
         return share, ending, passes + more
@@ -151,8 +153,11 @@ def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tup
     passes += more
     if whole == 1.0 and after == Solution.SOLVED:
         return whole, Ending.FOUND, passes
+    if whole < 1.0:
+        beyond, more = ending_of_path(whole, LOADS, network, flow, loads)
+        passes += more
+        ending = Ending.LOST if beyond == Ending.LOST else ending
     take_back(flow)
-    ending = Ending.LEFT_BAND if status == Solution.IMPLAUSIBLE else Ending.OUT_OF_STEP
     return share, ending, passes
 
 
