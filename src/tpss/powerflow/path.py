@@ -71,8 +71,8 @@ LOADS_OF_LIKE_SOURCES, SOURCES_LOADED = (
     switch(Way.LOADS_OF_LIKE_SOURCES),
     switch(Way.SOURCES_LOADED),
 )
-STRICT, BEYOND = switch(0), switch(1)
-"""Whether a path ends where a state is implausible, or is followed beyond."""
+STRICT, BEYOND, WHY = switch(0), switch(1), switch(2)
+"""Whether a path ends where a state is implausible, or is followed beyond; or why it has ended."""
 
 
 @kernel
@@ -223,20 +223,11 @@ def counts(status: int, beyond: int) -> bool:
     return status == Solution.SOLVED or (beyond == BEYOND and implausible)
 
 
-@kernel
-def follow(
+@inlined
+def follow_to_its_end(
     share: float, way: Way, beyond: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[float, int, int]:
-    """Follow a path from the state in `flow`, which is about the solution for a share.
-
-    Returns
-    -------
-    share : float
-        Where the path ends; the state is that there.
-    status : int
-        The `Solution` of the last step: where the path ends before 1, of what did not go on.
-    passes : int
-    """
+    """Follow a path from the state in `flow`, which is about the solution for a share."""
     # 1. Where it begins.
     status, passes = solve_on_way(share, WARM, way, network, flow, loads)
     if not counts(status, beyond):
@@ -298,14 +289,39 @@ def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, load
 
 
 @inlined
-def ending_of_path(
-    share: float, way: Way, network: Network, flow: Flow, loads: Loads
-) -> tuple[int, int]:
-    """Why a path ends at its last good point, to which the state returns; and the passes."""
+def note_ending(share: float, way: Way, network: Network, flow: Flow, loads: Loads) -> int:
+    """Note in `flow.search` why a path ends at its last good point, to which the state returns.
+
+    Return the passes.
+    """
     turned, passes = has_turned(share, way, network, flow, loads)
-    ending = Ending.TURNED
+    outcome = flow.search[0]
+    outcome.ending = Ending.TURNED
     if not turned:
         spent = is_out_of_reserve(way, share, network, flow, loads)
-        ending = Ending.OUT_OF_STEP if spent else Ending.LOST
+        outcome.ending = Ending.OUT_OF_STEP if spent else Ending.LOST
         predict_on_path(0.0, flow)
-    return ending, passes
+    return passes
+
+
+@kernel
+def follow(
+    share: float, way: Way, task: int, network: Network, flow: Flow, loads: Loads
+) -> tuple[float, int, int]:
+    """Follow a path from the state in `flow`, which is about the solution for a share, to its end.
+
+    With the task `WHY`, note in `flow.search` why it has ended; that is no kernel of its own, as each
+    that calls `newton` takes seconds to compile.
+
+    Returns
+    -------
+    share : float
+        Where the path ends; the state is that there.
+    status : int
+        The `Solution` of the last step: where the path ends before 1, of what did not go on.
+    passes : int
+    """
+    if task == WHY:
+        passes = note_ending(share, way, network, flow, loads)
+        return share, Solution.NOT_CONVERGED, passes
+    return follow_to_its_end(share, way, task, network, flow, loads)

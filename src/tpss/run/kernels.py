@@ -28,7 +28,7 @@ from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, swit
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import newton
-from tpss.powerflow.solve import continue_from_zero, search, take_root_of_path
+from tpss.powerflow.solve import SOLVED, solve_from_zero
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
 from tpss.step.advance import advance
@@ -86,9 +86,7 @@ def load_flow_calls(model: Model) -> list[Call]:
     loads = Loads(state.trains, model.types, state.scratch)
     return [
         (newton, (1.0, WARM, model.network, state.flow, loads)),
-        (continue_from_zero, (model.network, state.flow, loads)),
-        (search, (1.0, model.network, state.flow, loads)),
-        (take_root_of_path, (model.network, state.flow, loads)),
+        (solve_from_zero, (SOLVED, model.network, state.flow, loads)),
     ]
 
 
