@@ -71,8 +71,8 @@ LOADS_OF_LIKE_SOURCES, SOURCES_LOADED = (
     switch(Way.LOADS_OF_LIKE_SOURCES),
     switch(Way.SOURCES_LOADED),
 )
-STRICT, BEYOND, WHY = switch(0), switch(1), switch(2)
-"""Whether a path ends where a state is implausible, or is followed beyond; or why it has ended."""
+STRICT, BEYOND = switch(0), switch(1)
+"""Whether a path ends where a state is implausible, or is followed beyond."""
 
 
 @kernel
@@ -223,11 +223,20 @@ def counts(status: int, beyond: int) -> bool:
     return status == Solution.SOLVED or (beyond == BEYOND and implausible)
 
 
-@inlined
-def follow_to_its_end(
+@kernel
+def follow(
     share: float, way: Way, beyond: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[float, int, int]:
-    """Follow a path from the state in `flow`, which is about the solution for a share."""
+    """Follow a path from the state in `flow`, which is about the solution for a share.
+
+    Returns
+    -------
+    share : float
+        Where the path ends; the state is that there.
+    status : int
+        The `Solution` of the last step: where the path ends before 1, of what did not go on.
+    passes : int
+    """
     # 1. Where it begins.
     status, passes = solve_on_way(share, WARM, way, network, flow, loads)
     if not counts(status, beyond):
@@ -302,26 +311,3 @@ def note_ending(share: float, way: Way, network: Network, flow: Flow, loads: Loa
         outcome.ending = Ending.OUT_OF_STEP if spent else Ending.LOST
         predict_on_path(0.0, flow)
     return passes
-
-
-@kernel
-def follow(
-    share: float, way: Way, task: int, network: Network, flow: Flow, loads: Loads
-) -> tuple[float, int, int]:
-    """Follow a path from the state in `flow`, which is about the solution for a share, to its end.
-
-    With the task `WHY`, note in `flow.search` why it has ended; that is no kernel of its own, as each
-    that calls `newton` takes seconds to compile.
-
-    Returns
-    -------
-    share : float
-        Where the path ends; the state is that there.
-    status : int
-        The `Solution` of the last step: where the path ends before 1, of what did not go on.
-    passes : int
-    """
-    if task == WHY:
-        passes = note_ending(share, way, network, flow, loads)
-        return share, Solution.NOT_CONVERGED, passes
-    return follow_to_its_end(share, way, task, network, flow, loads)

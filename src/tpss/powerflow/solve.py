@@ -28,8 +28,8 @@ from tpss.powerflow.path import (
     SOURCES_LOADED,
     SOURCES_UNLOADED,
     STRICT,
-    WHY,
     follow,
+    note_ending,
     predict_on_path,
     set_aside,
     start_alike,
@@ -125,7 +125,7 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
     reached, _, passes = follow(0.0, SOURCES_UNLOADED, BEYOND, network, flow, loads)
     if reached == 1.0:
         return True, passes
-    _, _, more = follow(reached, SOURCES_UNLOADED, WHY, network, flow, loads)
+    more = note_ending(reached, SOURCES_UNLOADED, network, flow, loads)
     passes += more
     flow.search[0].without_load = True
     start_flat(network, flow)
@@ -145,26 +145,22 @@ def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tup
     """
     outcome = flow.search[0]
     share, status, passes = follow(share, LOADS, STRICT, network, flow, loads)
-    if share == 1.0:
-        outcome.ending = Ending.FOUND
-        return share, passes
-    if status != Solution.IMPLAUSIBLE and status != Solution.OUT_OF_STEP:
-        _, _, more = follow(share, LOADS, WHY, network, flow, loads)
-        return share, passes + more
-    set_aside(flow)
-    whole, after, more = follow(share, LOADS, BEYOND, network, flow, loads)
-    passes += more
-    if whole == 1.0 and after == Solution.SOLVED:
-        outcome.ending = Ending.FOUND
-        return whole, passes
-    outcome.ending = Ending.FOUND
-    if whole < 1.0:
-        _, _, more = follow(whole, LOADS, WHY, network, flow, loads)
+    end, after = share, status
+    left = status == Solution.IMPLAUSIBLE or status == Solution.OUT_OF_STEP
+    if share < 1.0 and left:
+        set_aside(flow)
+        end, after, more = follow(share, LOADS, BEYOND, network, flow, loads)
         passes += more
-    if outcome.ending != Ending.LOST:
-        left_band = status == Solution.IMPLAUSIBLE
-        outcome.ending = Ending.LEFT_BAND if left_band else Ending.OUT_OF_STEP
-    take_back(flow)
+    outcome.ending = Ending.FOUND
+    if end == 1.0 and after == Solution.SOLVED:
+        return end, passes
+    if end < 1.0:
+        passes += note_ending(end, LOADS, network, flow, loads)
+    if left:
+        take_back(flow)
+        if outcome.ending != Ending.LOST:
+            left_band = status == Solution.IMPLAUSIBLE
+            outcome.ending = Ending.LEFT_BAND if left_band else Ending.OUT_OF_STEP
     return share, passes
 
 
