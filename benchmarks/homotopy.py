@@ -181,14 +181,18 @@ def alike_without_load(equations: "Equations") -> "Complexes | None":
 
 
 def loads_last(equations: "Equations") -> Found:
-    """The stations are brought apart without load, then the loads are raised."""
+    """The stations are brought apart without load, then the loads are raised.
+
+    Where that path ends, the state without load may still be the one next to base voltage.
+    """
     alike = alike_without_load(equations)
-    if alike is None:
-        return Found(End.LOST)
-    unloaded_state = SourceHomotopy(equations, 0.0).follow(alike)
-    if unloaded_state.voltage is None:
-        return unloaded_state
-    return Homotopy(equations).follow(unloaded_state.voltage)
+    brought = Found(End.LOST)
+    if alike is not None:
+        brought = SourceHomotopy(equations, 0.0).follow(alike)
+    state = brought.voltage
+    if state is None:
+        state = equations.correct(np.ones(equations.buses, dtype=complex), 0.0)
+    return brought if state is None else Homotopy(equations).follow(state)
 
 
 def sources_last(equations: "Equations") -> Found:

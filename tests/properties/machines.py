@@ -105,10 +105,16 @@ def efforts_over_voltage(draw: Draw) -> Document:
     }
 
 
-KNEES = st.fixed_dictionaries(
-    {"max_current_a": numbers(100.0, 1000.0), "umin2_kv": numbers(9.0, 11.9)},
-    optional={"knee_factor": numbers(0.6, 1.0)},
-)
+@st.composite
+def knees(draw: Draw) -> Document:
+    """A limit of the current that falls from a knee on, steeply or over half of the voltage."""
+    factor = draw(numbers(0.6, 1.0))
+    return {
+        "max_current_a": draw(numbers(100.0, 1000.0)),
+        "umin2_kv": 15.0 * factor * draw(numbers(0.6, 0.99)),
+        "knee_factor": factor,
+    }
+
 
 BRIDGES = st.fixed_dictionaries(
     {
@@ -139,7 +145,7 @@ ODD_TRAINS = st.builds(
             "max_acceleration_m_s2": numbers(0.1, 1.5),
             "rotating_mass_factor": numbers(0.0, 0.2),
             "filter_reactance_ohm": st.one_of(numbers(-5.0, -0.2), numbers(-100.0, -5.0)),
-            "current_limitation": KNEES,
+            "current_limitation": knees(),
         },
     ),
     st.one_of(st.just({}), BRIDGES),
