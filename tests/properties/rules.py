@@ -64,7 +64,12 @@ def judge_departures(result: Result) -> None:
         departed_s = mine[np.isfinite(mine)]
         if continuous:
             step_of = [math.floor((60.0 * minute + 1e-6) / h) for minute in asked_min]
-            due_s = [60.0 * m for m, k in zip(asked_min, step_of, strict=True) if k < max(begun, 1)]
+            end_s = float(data.time[-1]) if result.status == "finished" else math.inf
+            due_s = [
+                60.0 * minute
+                for minute, step in zip(asked_min, step_of, strict=True)
+                if step < max(begun, 1) and (begun == 0 or 60.0 * minute < end_s)
+            ]
             assert departed_s.tolist() == pytest.approx(due_s, rel=0.0, abs=2e-6), entry.name
             continue
         due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]
