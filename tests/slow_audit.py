@@ -252,8 +252,8 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
 def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
     """`traction_balance` of trains whose steps may have several phases, from the recorded powers.
 
-    The motors' recorded work counts as far as some efficiency of the train makes it what the drawn energy
-    is, less the auxiliaries of the time from departure to arrival.
+    The motors' recorded work counts as far as some efficiency of the train makes it what the drawn
+    energy is, less the auxiliaries of the time from departure to arrival.
     """
     trains, timetable = outcome.recording.trains, outcome.state.trains["timetable"]
     kind, count = _kinds(outcome, model), len(outcome.trains)
@@ -396,7 +396,9 @@ def continuous_motion_error_m(outcome: Outcome, model: Model, both: npt.NDArray[
     h = intervals_s(outcome, model)[:, np.newaxis]
     before, after = trains[:-1], trains[1:]
     from_m, to_m = before["position"], after["position"]
-    fastest = np.maximum(before["speed"], np.minimum(_limits(from_m, kind, model), kind.highest_speed_m_s))
+    fastest = np.maximum(
+        before["speed"], np.minimum(_limits(from_m, kind, model), kind.highest_speed_m_s)
+    )
     for j in range(model.limits.from_m.shape[1]):
         begins_m, value = model.limits.from_m[kind.profile, j], model.limits.value[kind.profile, j]
         passed = (from_m < begins_m) & (begins_m <= to_m)

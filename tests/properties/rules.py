@@ -235,7 +235,11 @@ class Journey:
         for k in np.flatnonzero(self.state[:-1] == TrainState.MOTORING):
             here = np.searchsorted(self.limit_m, self.x[k : k + 2], side="right") - 1
             v, after = self.v[k], self.v[k + 1]
-            if not 0.0 < v < after or here[0] != here[1] or after >= self.limit[here[0]] - ROUNDING_M_S:
+            if (
+                not 0.0 < v < after
+                or here[0] != here[1]
+                or after >= self.limit[here[0]] - ROUNDING_M_S
+            ):
                 continue
             if self.near_a_stop(k) or self.braking[k] > 0.0:
                 continue
@@ -286,7 +290,9 @@ class Journey:
         dwelling = self.state == TrainState.DWELLING
         places = np.array([self.place_m[stop.station] for stop in self.entry.stops])
         for x in self.x[dwelling]:
-            assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, f"{self.name} stands at {x}"
+            assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, (
+                f"{self.name} stands at {x}"
+            )
 
     def stops_and_dwells(self) -> None:
         """At each stop it meets: within a millimetre, for the steps of its dwell."""

@@ -100,9 +100,7 @@ def supplies(draw: Draw, length_km: float) -> Document:
 
 
 TIME_STEPS: Document = {
-    "time_step_min": st.one_of(
-        st.sampled_from(STEPS_MIN), numbers(0.01, 5.0), numbers(0.001, 10.0)
-    )
+    "time_step_min": st.one_of(st.sampled_from(STEPS_MIN), numbers(0.01, 5.0), numbers(0.001, 10.0))
 }
 RAILS: Document = {
     "adhesion_speed_unit": st.sampled_from(["m/s", "km/h"]),

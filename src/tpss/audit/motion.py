@@ -36,9 +36,10 @@ def _audit_continuous(
 ) -> None:  # fmt: skip
     """Work and motion of a train whose step may have several phases.
 
-    What the motors do follows from the energy drawn, but for the efficiency, which changes with the speed:
-    the recorded work is taken as far as some efficiency of the train's makes it that.  The rotors keep of
-    it what is not work at the wheel rim.  A train goes forward, and no further than its limits let it.
+    What the motors do follows from the energy drawn, but for the efficiency, which changes with the
+    speed: the recorded work is taken as far as some efficiency of the train's makes it that.  The rotors
+    keep of it what is not work at the wheel rim.  A train goes forward, and no further than its limits
+    let it.
     """
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = present_s = step_s

@@ -6,9 +6,9 @@ many times as fast as a passage; all that the speed decides is evaluated at the 
 the middle of the step, and the machine's force follows the speed from there along its tangent.
 
 Expected is the acceleration of the step before, changed by what the resistances have changed.  If the
-solution shows that the speed was not as expected (`FARTHEST_OFF`: along the tangent the force is then off
-by the square of that), that the train reaches its limit within the step, or that it has to brake in it,
-the step becomes a passage, and is solved again.
+solution shows that the speed was not as expected (`FARTHEST_OFF`: along the tangent the force is then
+off by the square of that), that the train reaches its limit within the step, or that it has to brake in
+it, the step becomes a passage, and is solved again.
 """
 
 from tpss.driving.data import DrivingData, Floats

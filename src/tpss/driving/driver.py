@@ -1,7 +1,7 @@
 """The driver of each train: which speed to reach in this step, and which force that takes."""
 
-from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving import continuous
+from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.data import Driver, DrivingData, Floats, MotionModel
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
 from tpss.driving.motion import force_to_target, set_target, update_resistances

@@ -119,7 +119,7 @@ def when_a_phase_ends(
     duration, end = aim.longest_s, End.TIME
     if a != 0.0 and aim.until_m_s < math.inf:
         time = (aim.until_m_s - v) / a
-        if 0.0 <= time and time <= duration:
+        if time >= 0.0 and time <= duration:
             duration, end = time, End.SPEED
     if a < 0.0 and -v / a < duration:
         duration, end = -v / a, End.STANDSTILL
@@ -145,21 +145,20 @@ def pull_with(
     """
     motion, row, options = passage.motion, at(kind.profile), data.options
     v = motion.speed_m_s
-    duration, _ = when_a_phase_ends(
-        acceleration_m_s2, v, kind.highest_retardation_m_s2, aim
-    )
+    duration, _ = when_a_phase_ends(acceleration_m_s2, v, kind.highest_retardation_m_s2, aim)
     mean = max(0.0, v + acceleration_m_s2 * duration / 2.0)
     slope = mean_gradient(
         motion.gradient, motion.position_m, mean * duration,
         data.gradients.from_m[row], data.gradients.value[row],
     )  # fmt: skip
-    running, gradient = running_resistance(mean, kind.resistance), gradient_force(kind.mass_kg, slope)
+    running, gradient = (
+        running_resistance(mean, kind.resistance),
+        gradient_force(kind.mass_kg, slope),
+    )
     resistance = running + gradient
     wanted = kind.inertia_kg * aim.acceleration_m_s2 + resistance
     if wanted <= 0.0:
-        return Pull(
-            aim.acceleration_m_s2, duration, mean, 0.0, 0.0, -wanted, running, gradient
-        )
+        return Pull(aim.acceleration_m_s2, duration, mean, 0.0, 0.0, -wanted, running, gradient)
     cap = min(wanted, adhesion_of(kind, mean, options.rail, options.adhesion_in_km_h, points))
     force = force_of_phase(voltage_v, mean, resistance, cap, kind, train.demand, points, scratch)
     given = aim.acceleration_m_s2
@@ -202,7 +201,9 @@ def find_pull(
 
 
 @inlined
-def _gradient_stays(distance_m: float, passage: Passage, kind: TrainType, data: DrivingData) -> bool:
+def _gradient_stays(
+    distance_m: float, passage: Passage, kind: TrainType, data: DrivingData
+) -> bool:
     """Whether the gradient does not change over a distance ahead."""
     from_m, following = data.gradients.from_m[at(kind.profile)], passage.motion.gradient + 1
     end_m = passage.motion.position_m + distance_m

@@ -9,9 +9,9 @@ def mean_powers(train: Train, step_s: float) -> tuple[float, float, float, float
     """Mean powers of tractive force, brakes, running resistance and gradient force. [W]
 
     In a step of constant acceleration the forces act over its distance.  A step that holds the speed v
-    for a while and then brakes has its motors in traction at v; the resistances are constant; on a descent
-    the brakes hold the speed first.  The forces of `Forces` are means over the step, but the resistances
-    those while the train moves.
+    for a while and then brakes has its motors in traction at v; the resistances are constant; on a
+    descent the brakes hold the speed first.  The forces of `Forces` are means over the step, but the
+    resistances those while the train moves.
     """
     motion, decision, forces = train.motion, train.decision, train.forces
     running, gradient = forces.running_resistance_n, forces.gradient_n

@@ -16,9 +16,9 @@ References
 import numpy as np
 from scipy.optimize import least_squares
 
+from tpss.kernel import plain
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
-from tpss.kernel import plain
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.step.advance import begin_step, end_step, prepare_trains, step_to_arrival
 from tpss.step.coupling import apply_solutions, decide

@@ -52,7 +52,7 @@ def _stations_of(entry: Traffic) -> list[str]:
 def _times_at(
     call: int, station: str, position_km: float, entry: Traffic, train: xr.Dataset
 ) -> tuple[float, float, float]:
-    """Arrival, departure and dwell of a train at a station of its route, its stop of this number. [min]"""
+    """Arrival, departure and dwell of a train at a station, its stop of this number. [min]"""
     if station == entry.origin:
         return np.nan, float(train.departure_time) / 60.0, np.nan
     if station == entry.destination:

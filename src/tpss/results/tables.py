@@ -113,7 +113,7 @@ def step_s(dataset: xr.Dataset) -> float:
 
 
 def short_s(dataset: xr.Dataset) -> float:
-    """What the last time step, which may end with the studied train's arrival, lacks of the others. [s]"""
+    """What the last time step lacks of the others, as it may end with an arrival. [s]"""
     return step_s(dataset) - float(dataset.attrs.get("last_step_s", step_s(dataset)))
 
 

@@ -152,7 +152,7 @@ class Run:
     def instants_s(self) -> npt.NDArray[np.float64]:
         """Times of the instants up to now. [s]"""
         h = self.model.options.step_s
-        instants = np.arange(self.step + 1) * h
+        instants = np.arange(self.step + 1, dtype=np.float64) * h
         if self.last_step_s != h:
             instants[-1] = (self.step - 1) * h + self.last_step_s
         return instants
@@ -356,7 +356,7 @@ def arrivals_s(run: Run) -> npt.NDArray[np.float64]:
     timetable = run.state.trains["timetable"]
     instant = timetable["arrival_step"]
     arrived_s = run.instants_s[np.maximum(instant, 0)] - timetable["stood_s"]
-    return np.where(instant >= 0, arrived_s, np.nan)
+    return np.asarray(np.where(instant >= 0, arrived_s, np.nan), dtype=float)
 
 
 def on_line(state: State) -> npt.NDArray[np.bool_]:

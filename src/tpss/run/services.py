@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tpss.driving.data import MotionModel, Options
 from tpss.record import Records
-from tpss.vehicle.train import Journey, Motion, Phase, Plan, Train
+from tpss.vehicle.train import Motion, Phase, Plan, Train
 
 DEPARTURE_ROUNDING_S = 1e-6
 """A train departs at the first instant that is no more than this before its time. [s]"""
@@ -140,8 +140,8 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     return records
 
 
-def train_at(journey: Journey, train: ScheduledTrain, number: int) -> ScheduledTrain:
-    """A train where it once was, ready to enter another run at its start."""
+def train_at(journey: Any, train: ScheduledTrain, number: int) -> ScheduledTrain:
+    """A train where it once was, a row of `Journey`, ready to enter another run at its start."""
     name, (motion, plan) = f"{train.service} initial {number}", journey.tolist()
     return ScheduledTrain(
         name, train.service, train.train_type, train.route, 0, 0.0, *motion, *plan

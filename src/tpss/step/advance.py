@@ -145,7 +145,7 @@ def step_to_arrival(tries: int, step_s: float, model: Model, state: State) -> fl
     if motion.phase == Phase.ARRIVED:
         if passage.stood_s <= ARRIVAL_S or tries > MOST_LENGTHS:
             return step_s
-        return max(SHORTEST_STEP_S, step_s - passage.stood_s)
+        return max(SHORTEST_STEP_S, step_s - passage.stood_s + ARRIVAL_S / 2.0)
     if step_s == full_s or tries > MOST_LENGTHS:
         return full_s
     # With another mean voltage it is not there yet: what is left of its way, with the brakes.

@@ -5,9 +5,9 @@ it.  So the step is solved, trains that would come too near to their stop are pu
 plan, and the step is solved again; each round puts at least one more train on its plan.
 """
 
+from tpss.driving.continuous import apply_passage, must_pass, pass_instead
 from tpss.driving.data import DrivingData, MotionModel
 from tpss.driving.driver import aim
-from tpss.driving.continuous import apply_passage, must_pass, pass_instead
 from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude

@@ -24,6 +24,7 @@ from tpss.vehicle.train import (
     copy_motion,
     is_on_line,
 )
+from tpss.vehicle.train_type import TrainType
 
 
 @inlined
@@ -97,7 +98,8 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.holding_time = train.decision.hold_s
     if train.decision.course == Course.PASSAGE:
         begin_s, step_s = state.clock[0].begin_s, model.options.step_s
-        record_passage(begin_s, step_s, train, row, recording.calls[at(i)])
+        kind = model.types[at(train.train_type)]
+        record_passage(begin_s, step_s, i, train, kind, row, recording.calls)
         count_breaches(train.passage.breaches, recording.counters)
     else:
         record_step(train, row, model, recording.counters)
@@ -126,11 +128,14 @@ def record_step(train: Train, row: TrainRow, model: Model, counters: Indices) ->
 
 @inlined
 def record_passage(
-    begin_s: float, step_s: float, train: Train, row: TrainRow, calls: Records[Call]
-) -> None:
-    """Works, motor current and stops of a passage, which begins at a time and lasts a step. [s]"""
+    begin_s: float, step_s: float, i: int, train: Train, kind: TrainType, row: TrainRow,
+    calls: Records[Call],
+) -> None:  # fmt: skip
+    """Works, current and stops of train `i` on its passage, which begins at a time and lasts a step. [s]"""
     passage, per_second = train.passage, 1.0 / step_s
     row.motor_current = passage.current_as * per_second
+    if math.isnan(kind.base_speed_m_s):  # unknown while it stands, too
+        row.motor_current = math.nan
     row.motor_power = passage.motor_j * per_second
     row.traction_power = passage.traction_j * per_second
     row.braking_power = passage.braking_j * per_second
@@ -139,9 +144,9 @@ def record_passage(
     first = train.motion.next_stop - 1
     for place in range(min(MOST_CALLS, passage.motion.next_stop - first)):
         if place > 0:
-            calls[at(first + place)].arrival_s = begin_s + passage.arrival_s[place]
+            calls[at(i), at(first + place)].arrival_s = begin_s + passage.arrival_s[place]
         if first + place >= 0 and not math.isnan(passage.departure_s[place]):
-            calls[at(first + place)].departure_s = begin_s + passage.departure_s[place]
+            calls[at(i), at(first + place)].departure_s = begin_s + passage.departure_s[place]
 
 
 @inlined

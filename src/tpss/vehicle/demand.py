@@ -47,7 +47,8 @@ def motors_force(
 ) -> tuple[float, float]:
     """Largest force of all motors at a line voltage, and its slope. [N], [N/V]
 
-    That at the speed of `demand.terms_speed_m_s`, moved along the tangent over the speed (`follow_speed`).
+    That at the speed of `demand.terms_speed_m_s`, moved along the tangent over the speed: see
+    `follow_speed`.
     """
     network = kind.networks.tractive_effort
     force, slope = highest_force(
@@ -58,7 +59,7 @@ def motors_force(
 
 @inlined
 def _at_mean_speed(force_n: float, demand: Demand) -> float:
-    """What the motors give at the step's mean speed, from what they give at `demand.terms_speed_m_s`. [N]"""
+    """What the motors give at the step's mean speed, from what they give close by. [N]"""
     if demand.effort_growth == 0.0:  # without arithmetic, so without roundings
         return force_n
     return (force_n + demand.effort_shift_n) * (1.0 + demand.effort_growth)

@@ -30,9 +30,7 @@ Array = npt.NDArray[np.float64]
 
 
 @inlined
-def _settle(
-    speed_m_s: float, resistance_n: float, cap_n: float, kind: TrainType, demand: Demand
-) -> None:
+def _settle(speed_m_s: float, resistance_n: float, cap_n: float, demand: Demand) -> None:
     """Let the demand be that of a phase: all of it at its mean speed, nothing known of the machine."""
     demand.speed_m_s = speed_m_s
     demand.mean_speed_weight_s = 0.0
@@ -57,7 +55,7 @@ def force_of_phase(
     resistance_n, cap_n : float
         Running resistance and gradient force; what driver and adhesion allow. [N]
     """
-    _settle(speed_m_s, resistance_n, cap_n, kind, demand)
+    _settle(speed_m_s, resistance_n, cap_n, demand)
     if kind.line_current.highest_current_a < math.inf:
         demand.terms_speed_m_s = -1.0
         update_speed_terms(speed_m_s, kind, demand, points, scratch)
@@ -76,9 +74,10 @@ def demand_of_phase(
 ) -> tuple[float, float, float, float, float, float, int]:  # fmt: skip
     """Active and reactive power, their slopes over the voltage, the motors' power and current.
 
-    [W], [var], [W/V], [var/V], [W], [A]; last, the breaches as bits.  Parameters are those of `force_of_phase`.
+    [W], [var], [W/V], [var/V], [W], [A]; last, the breaches as bits.  Parameters are those of
+    `force_of_phase`.
     """
-    _settle(speed_m_s, resistance_n, cap_n, kind, demand)
+    _settle(speed_m_s, resistance_n, cap_n, demand)
     demand.terms_speed_m_s = -1.0
     update_speed_terms(speed_m_s, kind, demand, points, scratch)
     update_cap_terms(kind, demand)

@@ -10,7 +10,6 @@ from tpss.kernel import inlined, kernel
 from tpss.record import Record
 from tpss.vehicle.terms import Demand
 
-
 Floats = npt.NDArray[np.float64]
 
 MOST_CALLS = 32

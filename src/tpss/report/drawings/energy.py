@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-import xarray as xr
 
 from tpss.report.drawings.parts import Bar, Drawing, Panel
 from tpss.report.palette import COLOURS, tint

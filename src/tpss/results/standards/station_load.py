@@ -21,7 +21,7 @@ def power_table(dataset: xr.Dataset, windows_min: Iterable[float] = WINDOWS_MIN)
 def load_duration_table(dataset: xr.Dataset) -> pd.DataFrame:
     """The load duration curve of each station: the power that it reaches for a time, or exceeds."""
     power_mw = step_values(dataset, "station_active_power") / 1e6
-    steps, stations = power_mw.shape
+    steps = len(power_mw)
     order = np.argsort(-power_mw, axis=0, kind="stable")
     # The last step, which may be shorter than the others, shortens all that comes after it.
     duration_s = np.arange(1.0, steps + 1.0)[:, np.newaxis] * step_s(dataset)
