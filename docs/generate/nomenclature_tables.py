@@ -130,6 +130,11 @@ MEANINGS = {
     "TrainType.slip_factor": "circumferential speed of the driven wheels over speed",
     "Demand.per_efficiency": "reciprocal of the efficiency from pantograph to motor shaft",
     "Demand.bridge_sine": "sine of the bridges' firing angle, before it is limited to 0 to 1",
+    "Demand.effort_shift_n": "added to what the motors give at that speed",
+    "Demand.effort_growth": (
+        "added to the sum, as a share of it: it is then what the motors give at the step's mean speed"
+    ),
+    "Decision.resistance_n": "resistances at the end of the step before",
     "Passage.braking_ns": "impulse of the brakes",
     "Passage.running_ns": "impulse of the running resistance",
     "Passage.gradient_ns": "impulse of the gradient force",
