@@ -170,7 +170,12 @@ def find_pull(
     voltage_v: float, aim: Aim, passage: Passage, train: Train,
     kind: TrainType, data: DrivingData, points: Points, scratch: Floats,
 ) -> Pull:  # fmt: skip
-    """Forces and acceleration of a phase, which belong to each other: the root of g."""
+    """Forces and acceleration of a phase, which belong to each other: the root of g.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11), here at the mean speed.
+    """
     a = aim.acceleration_m_s2
     if a > 0.0:
         a = min(a, max(0.0, passage.acceleration_m_s2))

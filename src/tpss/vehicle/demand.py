@@ -58,7 +58,12 @@ def motors_force(
 
 @inlined
 def _at_mean_speed(force_n: float, demand: Demand) -> float:
-    """What the motors give at the step's mean speed, from what they give at `demand.terms_speed_m_s`. [N]"""
+    """What the motors give at the step's mean speed, from what they give at `demand.terms_speed_m_s`. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5) and (2.11), as `follow_speed` solves them.
+    """
     if demand.effort_growth == 0.0:  # without arithmetic, so without roundings
         return force_n
     return (force_n + demand.effort_shift_n) * (1.0 + demand.effort_growth)
@@ -66,7 +71,12 @@ def _at_mean_speed(force_n: float, demand: Demand) -> float:
 
 @inlined
 def _grown(slope_n_per_v: float, demand: Demand) -> float:
-    """The same of a slope over the voltage. [N/V]"""
+    """The same of a slope over the voltage. [N/V]
+
+    References
+    ----------
+    [Boullanger2009]_, as `_at_mean_speed`.
+    """
     if demand.effort_growth == 0.0:
         return slope_n_per_v
     return slope_n_per_v * (1.0 + demand.effort_growth)
@@ -85,7 +95,7 @@ def follow_speed(kind: TrainType, demand: Demand, points: Points) -> None:
     The force is known at a speed v* close by.  With r the rotors' share of the inertia, c/M, a force
     F_m of the motors accelerates by (F_m - F_res) / (M (1 + r)), so the mean speed is linear in it, and
 
-    .. math:: F_m = F_m^* + F' \Big(v + rac{h}{2} rac{F_m - F_{res}}{M (1 + r)} - v^*\Big)
+    .. math:: F_m = F_m^* + F' \Big(v + \frac{h}{2} \frac{F_m - F_{res}}{M (1 + r)} - v^*\Big)
 
     is solved for F_m: a shift and a factor.
 

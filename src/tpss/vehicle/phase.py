@@ -77,6 +77,10 @@ def demand_of_phase(
     """Active and reactive power, their slopes over the voltage, the motors' power and current.
 
     [W], [var], [W/V], [var/V], [W], [A]; last, the breaches as bits.  Parameters are those of `force_of_phase`.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.14), solved for the motors' power, and (2.18).
     """
     _settle(speed_m_s, resistance_n, cap_n, kind, demand)
     demand.terms_speed_m_s = -1.0
@@ -98,6 +102,11 @@ def demand_of_phase(
 
 @inlined
 def demand_standing(voltage_v: float, kind: TrainType) -> tuple[float, float, float]:
-    """Active and reactive power of a train that stands, and the latter's slope. [W], [var], [var/V]"""
+    """Active and reactive power of a train that stands, and the latter's slope. [W], [var], [var/V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.20), (2.22) and (2.23).
+    """
     filtered, slope = filter_reactive_power(voltage_v, kind.filter_susceptance_s)
     return kind.auxiliary_power_w, kind.auxiliary_reactive_power_var + filtered, slope
