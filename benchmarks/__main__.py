@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PUBLISHED = ("simulation", "many", "peers", "scaling", "stress")
+PUBLISHED = ("simulation", "many", "peers", "scaling", "stress", "collapses")
 
 
 def main() -> None:

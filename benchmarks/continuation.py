@@ -31,7 +31,7 @@ CONVERGED, MOST_ITERATIONS = 1e-9, 8
 ROUNDINGS = 4
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.05, 0.1, 1e-6
 LARGEST_CORRECTION = 0.02
-SLIGHTLY = 1e-5
+SLIGHTLY = 1e-6
 """Of base voltage and base current: differences of the sources' laws. [p.u.]"""
 
 
@@ -159,8 +159,10 @@ class Equations:
         """Slopes of the sources' laws over voltages and over currents, and over their conjugates."""
 
         def slopes(law: Callable[[complex], Complexes]) -> tuple[Complexes, Complexes]:
+            # Through five points: where a load angle has hardly a triangle left, its slope changes fast.
             by_real, by_imaginary = (
-                (law(SLIGHTLY * unit) - law(-SLIGHTLY * unit)) / (2 * SLIGHTLY) for unit in (1, 1j)
+                (8 * (law(step) - law(-step)) - law(2 * step) + law(-2 * step)) / (12 * SLIGHTLY)
+                for step in (SLIGHTLY, SLIGHTLY * 1j)
             )
             return (by_real - 1j * by_imaginary) / 2.0, (by_real + 1j * by_imaginary) / 2.0
 

@@ -9,8 +9,8 @@ import tpss
 from tpss.powerflow.network import Ending
 from tpss.powerflow.solve import solve
 
-from collapses import run
-from networks import BT, ROTARY, constant_loads, network_of, place, simple_line, sources
+from collapses import CONFIRMED, SOLVED, run
+from networks import BT, ROTARY, STIFF, constant_loads, network_of, place, simple_line, sources
 from scenarios import short_line
 
 CASES = Path(__file__).parent / "cases"
@@ -21,8 +21,8 @@ def test_no_collapse_of_an_odd_line_is_a_false_one():
     """Current limitations, stations unlike in reactance, voltage and angle; two homotopies judge."""
     outcomes, _, faults = run(LINES)
     assert faults == []
-    assert outcomes["solved"] > len(LINES) / 3
-    assert outcomes["confirmed"] > 0
+    assert outcomes[SOLVED] > len(LINES) / 3
+    assert outcomes[CONFIRMED] > 0
 
 
 def test_many_trains_at_the_knees_of_their_current_limitation_are_solved():
@@ -108,3 +108,20 @@ def test_stations_at_other_angles_have_a_state(apart_deg):
     case = simple_line(40e3, [20e3], [2e6 + 0j], ROTARY, east)
     share, _ = solve(False, case.network, case.flow, case.loads)
     assert share == 1.0
+
+
+@pytest.mark.parametrize(("west_v", "carried"), [(16_200.0, True), (16_500.0, False)])
+def test_a_machine_that_a_stronger_station_pulls_out_of_step_is_told_without_load(west_v, carried):
+    """Through x = 10 Ω of line a machine of 15.5 kV behind X = 200 Ω takes Q = U (E - U) / x.
+
+    Nothing is left of its triangle at Q = U² / X, so for E - U = U x / X = 775 V; brought apart from
+    16 kV each, 16.5 and 15.5 kV get to 78 % of their difference.
+    """
+    west = {**STIFF, "no_load_voltage_v": west_v}
+    east = {**STIFF, "no_load_voltage_v": 15_500.0, "generator_reactance_ohm": 200.0}
+    case = simple_line(50e3, [25e3], [1.0 + 0j], west, east, impedance=0.2e-3j)
+    share, _ = solve(False, case.network, case.flow, case.loads)
+    outcome = case.flow.search[0]
+    assert (share == 1.0) == carried
+    assert outcome.ending == (Ending.FOUND if carried else Ending.OUT_OF_STEP)
+    assert outcome.without_load != carried

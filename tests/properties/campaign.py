@@ -40,8 +40,8 @@ class Campaign:
         self.slowest_s = 0.0
 
     def run_batch(self, title: str, number: int, cases: int) -> None:
-        """Judge so many cases of one kind; note the fault that ends them, if there is one."""
-        last: list[Document] = []
+        """Judge so many cases of one kind; note the faults that end them, if there are any."""
+        found: dict[str, Document] = {}
 
         @seed(number)
         @settings(
@@ -54,18 +54,22 @@ class Campaign:
         )
         @given(sound_scenarios() if title == "sound" else spoilt_scenarios())
         def look(document: Document) -> None:
-            last[:] = [document]
             started = time.perf_counter()
-            self.tally[title, judge(document)] += 1
+            try:
+                self.tally[title, judge(document)] += 1
+            except Exception as error:
+                found[_place_of(error)] = document  # the last one that shows it is the smallest
+                raise
             self.slowest_s = max(self.slowest_s, time.perf_counter() - started)
 
         try:
             look()
         except Exception as error:
-            where = traceback.extract_tb(error.__traceback__)[-1]
-            fault = f"{type(error).__name__} in {where.name}: {error}".splitlines()[0]
-            self.tally[title, "fault"] += 1
-            self.faults.setdefault(fault, last[0])
+            faults = error.exceptions if isinstance(error, ExceptionGroup) else [error]
+            for fault in faults:
+                self.tally[title, "fault"] += 1
+                words = f"{_place_of(fault)}: {fault}".splitlines()[0]
+                self.faults.setdefault(words, found[_place_of(fault)])
 
     def report(self) -> None:
         """Print tally and faults."""
@@ -78,6 +82,12 @@ class Campaign:
         print(f"\n{len(self.faults)} faults")
         for fault, document in self.faults.items():
             print(f"\n{fault}\n{document!r}")
+
+
+def _place_of(error: Exception) -> str:
+    """Kind of an exception and where it was raised: what tells faults apart."""
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__} in {where.name}, line {where.lineno}"
 
 
 def main() -> int:

@@ -7,29 +7,27 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss import Scenario
+from tpss.kernel import plain
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.powerflow.chain import FLAT, WARM
-from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, prepare_trains
 from tpss.step.coupling import apply_solutions, decide
-from tpss.step.model import Model, driving_data
-from tpss.step.state import State
+from tpss.step.model import Model, driving_data, with_step
+from tpss.step.state import State, loads_of
 
-from benchmarks.continuation import Equations, carry
+from benchmarks.continuation import Equations
+from benchmarks.homotopy import is_sound, loads_last, sources_last
 
 RISE = 0.04
 """Share of the load by which it is raised at a time. [1]"""
 
 FINEST = 2e-4
 """Where not even this much more can be carried, the branch has ended. [1]"""
-
-ALMOST = 0.99
-"""Of the highest plausible voltage: from here on, it was too high a voltage that ended the branch."""
 
 
 class Replay:
@@ -42,14 +40,18 @@ class Replay:
         trains += departing_trains(services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
 
-    def root_of_step(self, step: int) -> tuple[float, npt.NDArray[np.float64]]:
-        """Share of a step's load that is carried, and each train's pantograph voltage (NaN: none)."""
+    def root_of_step(self, step: int, step_s: float) -> tuple[float, npt.NDArray[np.float64]]:
+        """Share of a step's load that is carried, and each train's pantograph voltage (NaN: none).
+
+        The step may be shorter than the others.
+        """
         run = self.run
         run.advance_to(step)
         untouched = copy.deepcopy(run.state)
         count = begin_step(step, run.model, run.state, run.recording)
-        prepare_trains(count, run.model, run.state)
-        share = solve_step_slowly(count, run.model, run.state)
+        model = plain(with_step)(run.model, step_s)
+        prepare_trains(count, model, run.state)
+        share = solve_step_slowly(count, model, run.state)
         places = run.state.flow.standing[:count]
         voltages = np.full(len(run.trains), np.nan)
         voltages[places.train] = np.abs(places.voltage_v)
@@ -73,28 +75,25 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
 def raise_loads(model: Model, state: State) -> float:
     """Raise all loads from zero; return the share that is carried."""
     share = raise_loads_within_the_band(model, state)
-    flow = state.flow
-    standing = flow.standing[: flow.sections.end[-1]]
-    voltage_v = np.concatenate([flow.nodes.voltage_v, standing.voltage_v])
-    if share < 1.0 and np.abs(voltage_v).max() > ALMOST * model.network.system.highest_voltage_v:
-        return raise_loads_beyond_the_band(share, standing, model, state)
-    return share
+    return share if share == 1.0 else raise_loads_by_homotopy(share, model, state)
 
 
-def raise_loads_beyond_the_band(share: float, standing: Any, model: Model, state: State) -> float:
-    """Follow the path of another load flow, past voltages too high; a whole load has to return.
+def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
+    """Follow the paths of another load flow, from stations made alike, where those above have ended.
 
-    What filters feed into a weak line lifts the voltages most at some part of the load, and the whole of
-    it may bring them back into the plausible band.
+    Stations far apart have no solution without load near base voltage.  What filters feed into a weak
+    line may lift the voltages out of the band at some part of the load, and back at the whole of it.
     """
+    standing = state.flow.standing[: state.flow.sections.end[-1]]
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
-    whole, voltage = carry(equations, highest=np.inf)
-    system = model.network.system
-    if whole < 1.0 or system.base_voltage_v * np.abs(voltage).max() > system.highest_voltage_v:
-        return share
-    standing.voltage_v = system.base_voltage_v * voltage[equations.nodes :]
-    return whole
+    for found in (loads_last(equations), sources_last(equations)):
+        if found.voltage is not None and is_sound(equations, found.voltage):
+            nodes, base_v = equations.nodes, model.network.system.base_voltage_v
+            state.flow.nodes.voltage_v = base_v * found.voltage[:nodes]
+            standing.voltage_v = base_v * found.voltage[nodes:]
+            return 1.0
+    return share
 
 
 def raise_loads_within_the_band(model: Model, state: State) -> float:

@@ -50,8 +50,9 @@ def knows_its_current(result: Result) -> np.ndarray:
 
 
 def judge_departures(result: Result) -> None:
-    """A train departs at the first instant no more than a microsecond before its time."""
+    """A train departs at its time; in stepped motion, at the first instant no more than 1 µs before."""
     data, h = result.dataset, result.dataset.attrs["time_step_s"]
+    continuous = result.scenario.simulation.how_trains_move == "continuous"
     begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled"))
     for entry in result.scenario.traffic:
         asked_min = entry.departures_min
@@ -59,9 +60,20 @@ def judge_departures(result: Result) -> None:
             last_min = begun * h / 60.0 + entry.headway_min
             count = max(0, math.ceil((last_min - entry.first_departure_min) / entry.headway_min))
             asked_min = [entry.first_departure_min + k * entry.headway_min for k in range(count)]
-        due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]
         mine = data.departure_time.to_numpy()[data.service.to_numpy() == entry.name]
-        departed = np.rint(mine[np.isfinite(mine)] / h)
+        departed_s = mine[np.isfinite(mine)]
+        if continuous:
+            step_of = [math.floor((60.0 * minute + 1e-6) / h) for minute in asked_min]
+            end_s = float(data.time[-1]) if result.status == "finished" else math.inf
+            due_s = [
+                60.0 * minute
+                for minute, step in zip(asked_min, step_of, strict=True)
+                if step < max(begun, 1) and (begun == 0 or 60.0 * minute < end_s)
+            ]
+            assert departed_s.tolist() == pytest.approx(due_s, rel=0.0, abs=2e-6), entry.name
+            continue
+        due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]
+        departed = np.rint(departed_s / h)
         assert departed.tolist() == [step for step in due if step < max(begun, 1)], entry.name
 
 
@@ -103,6 +115,10 @@ class Journey:
         self.name = name
         self.step_s = float(data.attrs["time_step_s"])
         self.driver = result.scenario.simulation.driver
+        self.continuous = result.scenario.simulation.how_trains_move == "continuous"
+        calls = data.isel(train=i)
+        self.arrived_s = calls.call_arrival_time.to_numpy()
+        self.went_on_s = calls.call_departure_time.to_numpy()
         rows = np.flatnonzero(np.isfinite(data.position.to_numpy()[:, i]))
         assert (np.diff(rows) == 1).all(), f"{self.name} is away for a while"
         self.x, self.v, self.braking, self.a, self.state = (
@@ -152,15 +168,25 @@ class Journey:
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
         free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
-        if regulated and free:
+        if regulated and free and self.continuous:
+            self.gives_all_it_can_between_two_speeds()
+        elif regulated and free:
             self.gives_all_it_can()
-        self.stops_and_dwells()
+        if self.continuous:
+            self.stops_and_dwells_to_the_second()
+        else:
+            self.stops_and_dwells()
 
     def keeps_to_the_limits(self) -> None:
-        """At every instant; a step that passes a limit's position begins and ends at or below it."""
+        """At every instant; a step that passes a limit's position begins and ends at or below it.
+
+        In continuous motion a train brakes to a limit, and goes on from it, within a step.
+        """
         holds = self.limit[np.searchsorted(self.limit_m, self.x, side="right") - 1]
         excess = (self.v - holds).max()
         assert excess <= ROUNDING_M_S, f"{self.name} is {excess} m/s above its limit"
+        if self.continuous:
+            return
         for place, limit in zip(self.limit_m, self.limit, strict=True):
             passes = (self.x[:-1] < place - ROUNDING_M) & (self.x[1:] > place + ROUNDING_M)
             speeds = np.maximum(self.v[:-1], self.v[1:])[passes]
@@ -200,15 +226,45 @@ class Journey:
                 f"{self.name} gives {self.force[k]} N of {most} N at {self.x[k]} m"
             )
 
-    def largest_force_n(self, k: int) -> float:
+    def gives_all_it_can_between_two_speeds(self) -> None:
+        """In a step that accelerates below the limit, the mean force is one that belongs to its speeds.
+
+        Adhesion and machine fall with the speed, but for the ripples of the network; resistances, which
+        the rotors add a little of, change too.
+        """
+        for k in np.flatnonzero(self.state[:-1] == TrainState.MOTORING):
+            here = np.searchsorted(self.limit_m, self.x[k : k + 2], side="right") - 1
+            v, after = self.v[k], self.v[k + 1]
+            if not 0.0 < v < after or here[0] != here[1] or after >= self.limit[here[0]] - ROUNDING_M_S:
+                continue
+            if self.near_a_stop(k) or self.braking[k] > 0.0:
+                continue
+            speeds = np.linspace(v, after, 21)
+            most = [self.largest_force_n(k, speed) for speed in speeds]
+            slack = 1e-3 * max(most) + 1.0
+            assert min(most) - slack <= self.force[k] <= max(most) + slack, (
+                f"{self.name} gives {self.force[k]} N of {min(most)} to {max(most)} N at {self.x[k]} m"
+            )
+
+    def near_a_stop(self, k: int) -> bool:
+        """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""
+        ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
+        fastest = self.limit.max()
+        room_m = fastest * (2.0 * self.step_s + fastest / self.train.max_retardation_m_s2)
+        ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + room_m)
+        at_stop = any(self.x[k] <= end <= self.x[k] + room_m for end in ends)
+        return at_stop or bool((self.limit[ahead] < fastest).any())
+
+    def largest_force_n(self, k: int, speed_m_s: float | None = None) -> float:
         """Force at the wheel rim in step `k` with full effort: adhesion, machine, never negative."""
-        train, v = self.train, self.v[k] * (3.6 if self.adhesion_in_km_h else 1.0)
+        speed_m_s = self.v[k] if speed_m_s is None else speed_m_s
+        train, v = self.train, speed_m_s * (3.6 if self.adhesion_in_km_h else 1.0)
         share = 3.78 / (23.6 + v) if self.wet else 0.161 + 7.5 / (44.0 + 3.6 * v)
         if isinstance(train.adhesion, float):
             share = train.adhesion
         elif train.adhesion is not None:  # through two points it is a line
-            share = np.interp(3.6 * self.v[k], train.adhesion.speed_kmh, train.adhesion.value)
-        motors = motor_force_n(3.6 * self.v[k], self.volts[k] / 1e3, train.max_motor_current_a)
+            share = np.interp(3.6 * speed_m_s, train.adhesion.speed_kmh, train.adhesion.value)
+        motors = motor_force_n(3.6 * speed_m_s, self.volts[k] / 1e3, train.max_motor_current_a)
         hauled_kg = 1e3 * (train.mass_t - train.adhesive_mass_t)
         inertia_kg = 1e3 * train.adhesive_mass_t + hauled_kg * (1.0 + train.rotating_mass_factor)
         if train.rotating_mass_share is not None:
@@ -216,6 +272,21 @@ class Journey:
         rotors = train.motor_inertia_kg * (1.0 + train.slip) / inertia_kg
         machine = (max(0.0, motors) + rotors * self.opposing[k]) / (1.0 + rotors)
         return max(0.0, min(1e3 * train.adhesive_mass_t * 9.81 * share, machine))
+
+    def stops_and_dwells_to_the_second(self) -> None:
+        """At each stop it meets: within a millimetre at the instants, and for its dwell."""
+        for call, stop in enumerate(self.entry.stops):
+            place, dwell_s = self.place_m[stop.station], 60.0 * stop.dwell_min
+            if self.x[0] >= place or self.x[-1] <= place + STOP_ERROR_M:
+                continue
+            stood_s = self.went_on_s[call] - self.arrived_s[call]
+            assert stood_s == pytest.approx(dwell_s, rel=1e-9, abs=1e-6), (
+                f"{self.name} dwells {stood_s} s at {place} m"
+            )
+        dwelling = self.state == TrainState.DWELLING
+        places = np.array([self.place_m[stop.station] for stop in self.entry.stops])
+        for x in self.x[dwelling]:
+            assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, f"{self.name} stands at {x}"
 
     def stops_and_dwells(self) -> None:
         """At each stop it meets: within a millimetre, for the steps of its dwell."""

@@ -11,7 +11,10 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .kilometres import moved
+from .machines import EMUS, ODD_TRAINS, TRAINS
+from .ranges import numbers
 
 Draw = Any
 Document = dict[str, Any]
@@ -21,20 +24,7 @@ MOST_STEPS = 150
 MOST_TRAINS = 12
 STEPS = st.sampled_from([60.0, MOST_STEPS, 20.3, 99.999, 5.0, 1.0])
 """Length of a run; what is listed first is drawn most often."""
-STEPS_MIN = [0.01, 0.02, 0.05, 0.1, 0.25, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0]
-
-
-def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers of a range, evenly: on a grid of a hundred places, or on one finer than a millionth.
-
-    Hypothesis prefers small numbers in a wide range, so the fine grid is drawn in three digits.
-    """
-    digits = st.integers(0, 100)
-    grid = digits.map(lambda k: round(low + (high - low) * k / 100.0, 9))
-    fine = st.tuples(digits, digits, digits).map(
-        lambda k: low + (high - low) * (k[0] / 101.0 + k[1] / 1e4 + k[2] / 1e7)
-    )
-    return st.one_of(grid, fine).map(lambda number: max(low, min(high, number)))
+STEPS_MIN = [0.01, 0.02, 0.05, 0.1, 0.25, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 0.001, 0.004]
 
 
 @st.composite
@@ -75,70 +65,20 @@ def lines(draw: Draw) -> Document:
     }
 
 
-OWN_CATENARIES = st.fixed_dictionaries(
-    {"r_ohm_per_km": numbers(0.01, 0.5), "x_ohm_per_km": numbers(0.0, 0.5)},
-    optional={
-        "capacitance_nf_per_km": numbers(0.0, 30.0),
-        "connection_r_ohm": numbers(0.01, 0.5),
-        "connection_x_ohm": numbers(0.01, 0.5),
-    },
-)
-
-CONVERTER_STATIONS = st.fixed_dictionaries(
-    {
-        "type": st.just("Q48/Q49"),
-        "converters": st.integers(1, 6),
-        "control": st.sampled_from(["all-on", "loading"]),
-    },
-    optional={
-        "grid_reactance_ohm": numbers(0.0, 2.0),
-        "grid_reactive_power_mvar": numbers(-5.0, 5.0),
-        "grid_angle_deg": numbers(-10.0, 10.0),
-    },
-)
-
-
-TRANSFORMERS = st.fixed_dictionaries(
-    {"rated_mva": numbers(5.0, 60.0)},
-    optional={"load_loss_kw": numbers(0.0, 40.0)},
-)
-
-
-def transformer_stations(no_load_kv: tuple[float, float]) -> st.SearchStrategy[Document]:
-    """Transformer stations, ideal ones too, at strong and weak grids."""
-    percent = st.one_of(numbers(2.0, 20.0), numbers(2.0, 20.0), st.just(0.0))
-
-    def with_percent(unit: Document, short_circuit_percent: float) -> Document:
-        losses = {} if short_circuit_percent == 0.0 else unit
-        rated = {"rated_mva": unit["rated_mva"], "short_circuit_percent": short_circuit_percent}
-        return {**losses, **rated}
-
-    return st.fixed_dictionaries(
-        {
-            "no_load_voltage_kv": numbers(*no_load_kv),
-            "transformer": st.builds(with_percent, TRANSFORMERS, percent),
-        },
-        optional={
-            "transformers": st.integers(1, 3),
-            "grid_short_circuit_mva": numbers(200.0, 5000.0),
-            "grid_r_over_x": numbers(0.0, 1.0),
-        },
-    )
-
-
 @st.composite
 def supplies(draw: Draw, length_km: float) -> Document:
     """One to five converter stations anywhere, perhaps a high-voltage line.
 
-    A few of the stations are transformer stations.
+    On a third of the lines they are unlike, and a few are transformer stations.
     """
     kms = draw(places_km(length_km, 1, 5))
+    stations = draw(st.sampled_from([CONVERTER_STATIONS, CONVERTER_STATIONS, UNLIKE_STATIONS]))
     by_grid = draw(st.integers(0, 1)) if draw(st.integers(0, 7)) == 7 else 0
     supply = {
         "frequency_hz": 16.7,
         "catenary": draw(st.one_of(st.sampled_from(["BT", "AT"]), OWN_CATENARIES)),
         "converter_stations": [
-            {"name": f"C{i}", "position_km": km, **draw(CONVERTER_STATIONS)}
+            {"name": f"C{i}", "position_km": km, **draw(stations)}
             for i, km in enumerate(kms[by_grid:])
         ],
         "transformer_stations": [
@@ -159,46 +99,33 @@ def supplies(draw: Draw, length_km: float) -> Document:
     return supply
 
 
-TRAINS = st.fixed_dictionaries(
-    {"model": st.just("Rc4-freight-1470t")},
+TIME_STEPS: Document = {
+    "time_step_min": st.one_of(
+        st.sampled_from(STEPS_MIN), numbers(0.01, 5.0), numbers(0.001, 10.0)
+    )
+}
+RAILS: Document = {
+    "adhesion_speed_unit": st.sampled_from(["m/s", "km/h"]),
+    "rail": st.sampled_from(["dry", "wet"]),
+}
+CONTINUOUS = st.fixed_dictionaries(
+    TIME_STEPS,
     optional={
-        "mass_t": numbers(80.0, 2500.0),
-        "adhesion": numbers(0.05, 0.4),
-        "length_m": st.sampled_from([0.0, 25.0, 700.0]),
-        "max_motor_current_a": st.sampled_from([150.0, 700.0, 1250.0, 2080.0, 2500.0, 5000.0]),
-        "max_retardation_m_s2": numbers(0.05, 2.0),
-        "max_speed_kmh": numbers(20.0, 250.0),
-        "efficiency": numbers(0.5, 1.0),
-        "auxiliary_power_kw": st.one_of(numbers(0.0, 800.0), numbers(1000.0, 6000.0)),
-        "auxiliary_power_factor": numbers(0.5, 1.0),
-        "reactive_power": st.sampled_from(["power-factor", "double-bridge"]),
-        "motor_voltage": st.sampled_from(["new", "former"]),
-        "motor_current": st.sampled_from(["new", "former"]),
-        "rotating_mass_factor": numbers(0.0, 0.3),
-        "motor_inertia_kg": numbers(0.0, 20_000.0),
-        "slip": numbers(0.0, 0.2),
-        "resistance_a_n": numbers(0.0, 40_000.0),
-        "resistance_b_n_s_per_m": numbers(0.0, 1000.0),
-        "resistance_c_n_s2_per_m2": numbers(0.0, 200.0),
-        "base_speed_kmh": numbers(20.0, 200.0),
-        "filter_reactance_ohm": numbers(-5.0, -0.2),
-        "current_limitation": st.fixed_dictionaries(
-            {"max_current_a": st.one_of(numbers(900.0, 2000.0), st.just(900.0))},
-            optional={"knee_factor": numbers(0.8, 1.0), "umin2_kv": numbers(9.0, 11.9)},
-        ),
+        **RAILS,
+        "braking": st.just("within-step"),
+        "motion": st.just("continuous"),
     },
 )
-
-SIMULATIONS = st.fixed_dictionaries(
-    {"time_step_min": st.one_of(st.sampled_from(STEPS_MIN), numbers(0.01, 5.0))},
+STEPPED = st.fixed_dictionaries(
+    {**TIME_STEPS, "motion": st.just("stepped")},
     optional={
+        **RAILS,
         "power_sampling": st.sampled_from(["mean", "start"]),
         "gradient_sampling": st.sampled_from(["mean", "start"]),
-        "adhesion_speed_unit": st.sampled_from(["m/s", "km/h"]),
-        "rail": st.sampled_from(["dry", "wet"]),
         "braking": st.sampled_from(["within-step", "whole-steps"]),
     },
 )
+SIMULATIONS = st.one_of(CONTINUOUS, CONTINUOUS, STEPPED)
 
 
 @st.composite
@@ -245,45 +172,6 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
     return entry
 
 
-def _pull_out_beyond_the_knee(
-    max_force_kn: float, max_power_kw: float, limit_speed_kmh: float | None = None
-) -> Document:
-    """The limit speed, raised to that from which power limits; nothing, if there is none."""
-    if limit_speed_kmh is None:
-        return {}
-    return {"limit_speed_kmh": max(limit_speed_kmh, 3.6 * max_power_kw / max_force_kn)}
-
-
-EMUS = st.fixed_dictionaries(
-    {
-        "tractive_effort": st.fixed_dictionaries(
-            {"max_force_kn": numbers(50.0, 400.0), "max_power_kw": numbers(500.0, 9000.0)},
-            optional={"limit_speed_kmh": numbers(80.0, 300.0)},
-        ).map(lambda effort: effort | _pull_out_beyond_the_knee(**effort)),
-        "mass_t": numbers(80.0, 900.0),
-        "adhesive_mass_t": numbers(40.0, 80.0),
-        "resistance_a_n": numbers(0.0, 10_000.0),
-        "resistance_b_n_s_per_m": numbers(0.0, 300.0),
-        "resistance_c_n_s2_per_m2": numbers(0.0, 20.0),
-        "max_speed_kmh": numbers(40.0, 300.0),
-        "max_retardation_m_s2": numbers(0.2, 1.5),
-        "efficiency": numbers(0.6, 1.0),
-        "auxiliary_power_kw": numbers(0.0, 800.0),
-        "power_factor": numbers(0.8, 1.0),
-    },
-    optional={
-        "max_acceleration_m_s2": numbers(0.2, 1.5),
-        "rotating_mass_factor": numbers(0.0, 0.2),
-        "length_m": st.sampled_from([0.0, 25.0, 700.0]),
-        "current_limitation": st.fixed_dictionaries(
-            {"max_current_a": numbers(300.0, 1000.0)},
-            optional={"knee_factor": numbers(0.8, 1.0)},
-        ).map(lambda limit: {**limit, "un_kv": 25.0, "umin2_kv": 17.5}),
-    },
-)
-"""Trains with converters, whose auxiliaries stay within their current limitation."""
-
-
 def on_25_kv(draw: Draw, document: Document) -> Document:
     """A scenario with the supply and the trains of a 25 kV, 50 Hz railway."""
     supply = document["supply"]
@@ -323,7 +211,10 @@ def sound_scenarios(draw: Draw) -> Document:
         "simulation": draw(SIMULATIONS),
         "line": line,
         "supply": draw(supplies(line["length_km"])),
-        "trains": {f"train {i}": draw(TRAINS) for i in range(draw(st.integers(1, 2)))},
+        "trains": {
+            f"train {i}": draw(draw(st.sampled_from([TRAINS, TRAINS, ODD_TRAINS])))
+            for i in range(draw(st.integers(1, 2)))
+        },
     }
     if draw(st.integers(0, 4)) == 4:
         document = on_25_kv(draw, document)

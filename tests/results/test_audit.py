@@ -71,6 +71,13 @@ def main_line():
 
 
 @pytest.fixture(scope="module")
+def stepped_line():
+    """The same with trains that move in steps."""
+    changes = {**HALF_AN_HOUR, "simulation.braking": "whole-steps"}
+    return Case(load_scenario(EXAMPLES / "thesis_160km.toml", changes), 60)
+
+
+@pytest.fixture(scope="module")
 def arrival():
     """A single train on a short line until it has arrived."""
     return Case(short_line(), None)
@@ -116,6 +123,26 @@ def test_the_audit_of_every_driver_is_that_of_its_slow_twin(driver, braking, sam
     assert_twins(Case(short_line(changes), int(30.0 / step_min)))
 
 
+@pytest.mark.parametrize("step_min", [0.01, 0.05, 0.5, 1.0, 7.0])
+def test_the_audit_of_continuous_motion_is_that_of_its_slow_twin(step_min):
+    """As above, with departures and dwells that are no whole steps, until the studied train arrives."""
+    hills = gradients((0.0, 0.0), (3.0, 8.0), (6.0, -12.0), (12.0, 0.0))
+    changes = {
+        "simulation.motion": "continuous",
+        "simulation.braking": "within-step",
+        "simulation.time_step_min": step_min,
+        "traffic.0.headway_min": 8.3,
+        "traffic.0.first_departure_min": 0.7,
+        "traffic.0.already_running": True,
+        "traffic.0.stops": [{"station": "Middle", "dwell_min": 0.7}],
+        **hills,
+        **limits((0.0, 60.0), (5.0, 90.0), (8.0, 45.0)),
+    }
+    case = Case(short_line(changes), None)
+    assert_twins(case)
+    assert case.audit().passed
+
+
 @pytest.mark.parametrize(
     ("group", "field", "forge", "figure"),
     [
@@ -154,10 +181,31 @@ FORGERIES = [
     ("stations", "station_active_power", STATION, lambda p: 1.01 * p, "network_balance"),
     ("trains", "active_power", TRAIN, lambda p: 1.01 * p, "network_balance"),
     ("trains", "active_power", TRAIN, lambda p: 1.01 * p, "traction_balance"),
+    ("trains", "resistance_power", TRAIN, lambda p: 1.01 * p, "traction_balance"),
+    ("trains", "gradient_power", TRAIN, lambda p: p + 1e3, "traction_balance"),
+    ("trains", "braking_power", TRAIN, lambda p: p + 1e3, "traction_balance"),
+    ("trains", "traction_power", TRAIN, lambda p: 1.01 * p, "traction_balance"),
+    ("trains", "running_resistance", TRAIN, lambda f: 1.01 * f, "force_balance"),
+    ("trains", "gradient_force", TRAIN, lambda f: f + 1e3, "force_balance"),
+    ("trains", "braking_force", TRAIN, lambda f: f + 1e3, "force_balance"),
+    ("trains", "tractive_force", TRAIN, lambda f: f + 1e3, "force_balance"),
+    ("trains", "position", TRAIN, lambda x: x - 1e3, "motion_error_m"),
+    ("trains", "speed", TRAIN, lambda v: v + 0.01, "motion_error_m"),
+]
+
+STEPPED_FORGERIES = [
     ("trains", "running_resistance", TRAIN, lambda f: 1.01 * f, "traction_balance"),
     ("trains", "gradient_force", TRAIN, lambda f: f + 1e3, "traction_balance"),
     ("trains", "braking_force", TRAIN, lambda f: f + 1e3, "traction_balance"),
 ]
+
+
+def test_forged_works_of_stepped_motion_exceed_their_limit(stepped_line):
+    """There the audit finds work from forces, speeds and ways."""
+    for records, field, place, change, figure in STEPPED_FORGERIES:
+        checked = stepped_line.audit_of_forgery(records, field, place, change)
+        assert getattr(checked, figure) > limits_of(stepped_line.model)[figure], field
+        assert not checked.passed
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,8 @@ PLACES = [
                  "between 0 and 160 km", id="transformer-before-the-line"),
     pytest.param({f"{EAST}.position_km": 0.0005}, f"{EAST}.position_km", "0.00050000000000000001",
                  "leave one of them out", id="converter-stations-half-a-metre-apart"),
+    pytest.param({f"{EAST}.grid_reactive_power_mvar": -75.0, f"{EAST}.converters": 3},
+                 EAST, "", "run more converters", id="motors-without-voltage"),
     pytest.param({f"{HV}.transformers_km": [40.0, 40.0005]}, f"{HV}.transformers_km.1", "40.000",
                  "leave one of them out", id="transformers-half-a-metre-apart"),
     pytest.param({f"{HV}.transformers_km": [159.9995]}, f"{HV}.transformers_km.0", "159.999",

@@ -53,6 +53,9 @@ LONGEST_PHASE_S = 3.0
 ROUNDING = 1e-10
 """Relative rounding of a speed's square: a train brakes from so close to where it has to."""
 
+SLACK_M = 1e-6
+"""Distance that is a rounding: braking that ends so close to its place ends there. [m]"""
+
 ACCURACY = 1e-13
 """Of an acceleration, relative to the larger of it and 1 m/s²."""
 
@@ -313,8 +316,11 @@ def _aim(
     here = index_at(motion.position_m, from_m)
     cruise = highest_speed_at(here, kind, data)
     if v > target_m_s and v * v >= square * (1.0 - ROUNDING):
-        # That which leads to the place: b, but for roundings.
-        retardation = (v * v - target_m_s * target_m_s) / (2.0 * (target_m - motion.position_m))
+        # b leads to the place but for roundings; another one where a train has been placed too near.
+        square_m2_s2, way_m = v * v - target_m_s * target_m_s, target_m - motion.position_m
+        retardation = b
+        if abs(square_m2_s2 / (2.0 * b) - way_m) > SLACK_M:
+            retardation = square_m2_s2 / (2.0 * way_m)
         return Aim(-retardation, target_m_s, left, math.inf, math.inf, target_m)
     if v > cruise:
         return Aim(-b, cruise, left, math.inf, math.inf, math.inf)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tpss.driving.data import Braking, Driver, Profile
+from tpss.driving.data import Braking, Driver, MotionModel, Options, Profile
 from tpss.driving.manners import stopping_distance
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
@@ -63,7 +63,7 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     """Faults of the `i`-th train that a service places on the line."""
     position_m, speed = service.initial[i]
     key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
-    kind, h = model.types[service.train_type], model.options.step_s
+    kind = model.types[service.train_type]
     limits = Profile(*(values[kind.profile] for values in model.limits))
     retardation = kind.highest_retardation_m_s2
     here = plain(index_at)(position_m, limits.from_m)
@@ -76,15 +76,25 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
         problem = f"too fast to stop at {kilometres(stop_m / 1e3)} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
-        slowest = max(0.0, speed - retardation * h)
         for j in range(here + 1, limits.from_m.size):
-            distance = limits.from_m[j] - position_m
             lower = limits.value[j] < limits.value[j - 1]
-            if lower and not can_meet_limit(
-                speed, slowest, distance, limits.value[j], retardation, h, UNIFORM
-            ):
+            distance_m = limits.from_m[j] - position_m
+            if lower and not _meets(speed, distance_m, limits.value[j], retardation, model.options):
                 problem = f"too fast to meet the limit at {kilometres(limits.from_m[j] / 1e3)} km"
     if not problem:
         return []
     remedy = "lower the speed, or place the train earlier"
     return [Finding(file, key, f"{speed * 3.6:g}", problem, remedy)]
+
+
+def _meets(
+    speed_m_s: float, distance_m: float, limit_m_s: float, retardation_m_s2: float, options: Options
+) -> bool:
+    """Whether a train that brakes with all it may is slow enough at a limit ahead."""
+    if options.motion == MotionModel.CONTINUOUS:
+        excess = speed_m_s**2 - limit_m_s**2
+        return excess <= 2.0 * retardation_m_s2 * distance_m
+    slowest = max(0.0, speed_m_s - retardation_m_s2 * options.step_s)
+    return can_meet_limit(
+        speed_m_s, slowest, distance_m, limit_m_s, retardation_m_s2, options.step_s, UNIFORM
+    )

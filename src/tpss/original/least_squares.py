@@ -101,7 +101,7 @@ class Search:
 
     def __init__(self, grid: Grid, count: int, model: Model, state: State) -> None:
         self.grid, self.count, self.model, self.state = grid, count, model, state
-        self.loads = loads_of(model, state)
+        self.loads = plain(loads_of)(model, state)
         self.evaluations = 0
         self.base_v = model.network.system.base_voltage_v
         powers = np.zeros(2 * model.network.sources.size)

@@ -289,22 +289,25 @@ def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, load
     """Whether a source ends a path at the last good point, at a share of what the way raises."""
     solve_on_way(share, LINKED, way, network, flow, loads)
     for s in range(network.sources.size):
-        source, node = network.sources[at(s)], flow.nodes[at(network.sources[at(s)].node)]
-        running = flow.sources[at(s)].running
+        # The law that holds there, as sources that differ less are on a way.
+        source, running = flow.laws[at(s)], flow.sources[at(s)].running
+        node = flow.nodes[at(source.node)]
         if reserve(node.voltage_v, node.leaving_current_a, running, source) < NO_RESERVE:
             return True
     return False
 
 
 @inlined
-def ending_of_path(
-    share: float, way: Way, network: Network, flow: Flow, loads: Loads
-) -> tuple[int, int]:
-    """Why a path ends at its last good point, to which the state returns; and the passes."""
+def note_ending(share: float, way: Way, network: Network, flow: Flow, loads: Loads) -> int:
+    """Note in `flow.search` why a path ends at its last good point, to which the state returns.
+
+    Return the passes.
+    """
     turned, passes = has_turned(share, way, network, flow, loads)
-    ending = Ending.TURNED
+    outcome = flow.search[0]
+    outcome.ending = Ending.TURNED
     if not turned:
         spent = is_out_of_reserve(way, share, network, flow, loads)
-        ending = Ending.OUT_OF_STEP if spent else Ending.LOST
+        outcome.ending = Ending.OUT_OF_STEP if spent else Ending.LOST
         predict_on_path(0.0, flow)
-    return ending, passes
+    return passes

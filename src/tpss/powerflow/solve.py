@@ -16,7 +16,7 @@ changed by more than the trains draw, the solution is held against the one to wh
 state without load leads, and that one counts.
 """
 
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Ending, Flow, Loads, Network
@@ -28,8 +28,8 @@ from tpss.powerflow.path import (
     SOURCES_LOADED,
     SOURCES_UNLOADED,
     STRICT,
-    ending_of_path,
     follow,
+    note_ending,
     predict_on_path,
     set_aside,
     start_alike,
@@ -46,6 +46,8 @@ UNSUSPICIOUS = 0.5
 
 OF_DRAWN = 4.0
 """How many times what the trains draw, now or a step ago, they may change by besides."""
+
+SOLVED, UNSOLVED = switch(Solution.SOLVED), switch(Solution.NOT_CONVERGED)
 
 SAME_ROOT = 1e-6
 """Solutions closer than this are the same one. [p.u. of the base voltage]"""
@@ -86,7 +88,7 @@ def start_flat(network: Network, flow: Flow) -> None:
         flow.sections[at(s)].current_a = 0.0
 
 
-@kernel
+@inlined
 def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Raise all loads from zero; return the share of the load that is carried, and the passes.
 
@@ -123,9 +125,8 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
     reached, _, passes = follow(0.0, SOURCES_UNLOADED, BEYOND, network, flow, loads)
     if reached == 1.0:
         return True, passes
-    ending, more = ending_of_path(reached, SOURCES_UNLOADED, network, flow, loads)
+    more = note_ending(reached, SOURCES_UNLOADED, network, flow, loads)
     passes += more
-    flow.search[0].ending = ending  # type: ignore[assignment]
     flow.search[0].without_load = True
     start_flat(network, flow)
     status, more = newton(0.0, WARM, network, flow, loads)
@@ -135,25 +136,32 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
 
 
 @inlined
-def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int, int]:
-    """Follow the path of the loads from a share of them; return its end, why, and the passes.
+def raise_loads(share: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+    """Follow the path of the loads from a share of them; return its end and the passes.
 
     The share is that up to which all states are plausible, unless the whole load has a plausible one.
+    `flow.search` says why: that the band is left, or a source out of step, only if the path has an end
+    beyond, or leads out for good.
     """
+    outcome = flow.search[0]
     share, status, passes = follow(share, LOADS, STRICT, network, flow, loads)
-    if share == 1.0:
-        return share, Ending.FOUND, passes
-    if status != Solution.IMPLAUSIBLE and status != Solution.OUT_OF_STEP:
-        ending, more = ending_of_path(share, LOADS, network, flow, loads)
-        return share, ending, passes + more
-    set_aside(flow)
-    whole, after, more = follow(share, LOADS, BEYOND, network, flow, loads)
-    passes += more
-    if whole == 1.0 and after == Solution.SOLVED:
-        return whole, Ending.FOUND, passes
-    take_back(flow)
-    ending = Ending.LEFT_BAND if status == Solution.IMPLAUSIBLE else Ending.OUT_OF_STEP
-    return share, ending, passes
+    end, after = share, status
+    left = status == Solution.IMPLAUSIBLE or status == Solution.OUT_OF_STEP
+    if share < 1.0 and left:
+        set_aside(flow)
+        end, after, more = follow(share, LOADS, BEYOND, network, flow, loads)
+        passes += more
+    outcome.ending = Ending.FOUND
+    if end == 1.0 and after == Solution.SOLVED:
+        return end, passes
+    if end < 1.0:
+        passes += note_ending(end, LOADS, network, flow, loads)
+    if left:
+        take_back(flow)
+        if outcome.ending != Ending.LOST:
+            left_band = status == Solution.IMPLAUSIBLE
+            outcome.ending = Ending.LEFT_BAND if left_band else Ending.OUT_OF_STEP
+    return share, passes
 
 
 @inlined
@@ -167,40 +175,37 @@ def bring_loaded_sources_apart(network: Network, flow: Flow, loads: Loads) -> tu
     return reached == 1.0 and status == Solution.SOLVED, passes + more
 
 
-@kernel
-def search(carried: float, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+@inlined
+def search(
+    known: bool, carried: float, network: Network, flow: Flow, loads: Loads
+) -> tuple[float, int]:
     """Look for a solution by paths; return the share of the load that is carried, and the passes.
 
     Parameters
     ----------
+    known : bool
+        Whether the state is that without load.
     carried : float
-        Share whose solution the state is, for the case that there is none without load. [1]
+        Share whose solution was put aside, for the case that it is not. [1]
     """
-    outcome = flow.search[0]
-    outcome.ending, outcome.without_load = Ending.FOUND, False
-    # 1. The state without load.
-    set_aside(flow)
-    share = 0.0
-    known, passes = find_state_without_load(network, flow, loads)
+    outcome, share, passes = flow.search[0], 0.0, 0
     if not known and carried > 0.0:
         take_back(flow)
         known, share = True, carried
-    # 2. The loads.
+    # 1. The loads.
     if known:
-        share, ending, more = raise_loads(share, network, flow, loads)
-        passes += more
+        share, passes = raise_loads(share, network, flow, loads)
+        outcome.without_load = False
         if share == 1.0:
-            outcome.ending, outcome.without_load = Ending.FOUND, False
             return share, passes
-        outcome.ending, outcome.without_load = ending, False  # type: ignore[assignment]
-    # 3. The sources, after the loads.
+    # 2. The sources, after the loads.
     set_aside(flow)
     found, more = bring_loaded_sources_apart(network, flow, loads)
     passes += more
     if found:
         outcome.ending, outcome.without_load = Ending.FOUND, False
         return 1.0, passes
-    # 4. The end of the loads' path; the last trials have left their voltages at the trains.
+    # 3. The end of the loads' path; the last trials have left their voltages at the trains.
     take_back(flow)
     if known:
         newton(share, WARM, network, flow, loads)
@@ -241,23 +246,44 @@ def differs_from_aside(network: Network, flow: Flow) -> bool:
     return largest_v > SAME_ROOT * network.system.base_voltage_v
 
 
-@kernel
-def take_root_of_path(network: Network, flow: Flow, loads: Loads) -> int:
+@inlined
+def take_root_of_path(known: bool, network: Network, flow: Flow, loads: Loads) -> int:
     """Take the solution to which the path from no load leads, if it does; return the passes.
 
-    Where it is the one that there is, or the path does not reach the whole load, that one stays.
+    Where it is the one that was put aside, or the path does not reach the whole load, that one stays.
     """
-    set_aside(flow)
-    known, passes = find_state_without_load(network, flow, loads)
-    flow.search[0].ending = Ending.FOUND
+    flow.search[0].ending, flow.search[0].without_load = Ending.FOUND, False
+    passes = 0
     if known:
-        share, status, more = follow(0.0, LOADS, BEYOND, network, flow, loads)
-        passes += more
+        share, status, passes = follow(0.0, LOADS, BEYOND, network, flow, loads)
         if share == 1.0 and status == Solution.SOLVED and differs_from_aside(network, flow):
             return passes
     take_back(flow)
     _, more = newton(1.0, WARM, network, flow, loads)
     return passes + more
+
+
+@kernel
+def solve_from_zero(solved: int, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+    """Steps 3 and 4; or hold the solution in `flow` against that of the path, if it is `SOLVED`.
+
+    Return the share of the load that is carried, and the passes.  All that is rarely asked for is one
+    kernel, as each that calls `newton` takes seconds to compile.
+    """
+    share, passes = 1.0, 0
+    if solved != Solution.SOLVED:
+        share, passes = continue_from_zero(network, flow, loads)
+        if share == 1.0:
+            return share, passes
+    flow.search[0].ending, flow.search[0].without_load = Ending.FOUND, False
+    set_aside(flow)
+    known, more = find_state_without_load(network, flow, loads)
+    passes += more
+    if solved != Solution.SOLVED:
+        share, more = search(known, share, network, flow, loads)
+    else:
+        more = take_root_of_path(known, network, flow, loads)
+    return share, passes + more
 
 
 @inlined
@@ -286,11 +312,9 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
         status, more = newton(1.0, FLAT, network, flow, loads)
         passes += more
     if status != Solution.SOLVED:
-        share, more = continue_from_zero(network, flow, loads)
+        share, more = solve_from_zero(UNSOLVED, network, flow, loads)
         passes += more
-        if share < 1.0:
-            share, more = search(share, network, flow, loads)
-            return share, passes + more
-    if stations_jumped(network, flow, loads):
-        passes += take_root_of_path(network, flow, loads)
+    if share == 1.0 and stations_jumped(network, flow, loads):
+        _, more = solve_from_zero(SOLVED, network, flow, loads)
+        passes += more
     return share, passes

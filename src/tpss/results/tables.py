@@ -28,7 +28,9 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     seen = np.isfinite(position_km)
     stood_min = np.where(seen, time_min[:, None], -np.inf).max(axis=0) - arrival_min
     there = np.isfinite(voltage_kv).astype(float)
-    moving_min = over_time(there, dataset) / 60.0 - np.nan_to_num(stood_min)
+    # One that departs within a step is there from the instant before.
+    waited_min = np.nan_to_num(departure_min - time_min[np.isfinite(voltage_kv).argmax(axis=0)])
+    moving_min = over_time(there, dataset) / 60.0 - np.nan_to_num(stood_min) - waited_min
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),

@@ -27,7 +27,7 @@ from tpss.driving.within_step import replan as replan_within
 from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, switch
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.newton import newton
-from tpss.powerflow.solve import continue_from_zero, search, take_root_of_path
+from tpss.powerflow.solve import SOLVED, solve_from_zero
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
 from tpss.step.advance import advance
@@ -85,9 +85,7 @@ def load_flow_calls(model: Model) -> list[Call]:
     loads = loads_of(model, state)
     return [
         (newton, (1.0, WARM, model.network, state.flow, loads)),
-        (continue_from_zero, (model.network, state.flow, loads)),
-        (search, (1.0, model.network, state.flow, loads)),
-        (take_root_of_path, (model.network, state.flow, loads)),
+        (solve_from_zero, (SOLVED, model.network, state.flow, loads)),
     ]
 
 

@@ -132,10 +132,15 @@ class Run:
     def departed(self) -> int:
         """Number of trains that have been on the line; they come first.
 
-        A train that is due at the last instant has not departed.
+        A train that is due at the last instant has not departed, nor one that would have within the
+        last step, had that not ended before.
         """
         begun = self.step + (self.status in (Status.COLLAPSED, Status.STALLED))
-        return sum(train.departure_step < max(begun, 1) for train in self.trains)
+        departed = sum(train.departure_step < max(begun, 1) for train in self.trains)
+        if begun == 0:
+            return departed
+        pending = self.state.trains["motion"]["phase"][:departed] == Phase.PENDING
+        return departed - int(pending.sum())
 
     @property
     def last_step_s(self) -> float:

@@ -11,7 +11,7 @@ from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant, record_network, record_train
 from tpss.step.recording import Recording
 from tpss.step.state import Counter, State, Status
-from tpss.step.traffic import depart, list_trains, move_train, remove_arrived
+from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.vehicle.train import Course, Phase
 
 ARRIVAL_S = 1e-3
@@ -47,12 +47,19 @@ def find_stalled(count: int, state: State) -> bool:
 def begin_step(step: int, model: Model, state: State, recording: Recording) -> int:
     """Traffic, converter control, places; return the number of trains on the line."""
     # 1. Departures, and removal of arrived trains, which this instant still shows.
+    state.clock[0].begin_s = step * model.options.step_s
     depart(step, state.trains)
     record_instant(step, state.trains, recording)
     remove_arrived(state.trains)
     # 2. Converter control (3.6)-(3.9).
     control_converters(step * model.options.step_s, model, state)
     # 3. Where the trains stand.
+    return place_trains(model, state, recording)
+
+
+@kernel
+def place_trains(model: Model, state: State, recording: Recording) -> int:
+    """Find where the trains on the line stand; return their number."""
     count = list_trains(state.trains, state.flow)
     locate_trains(count, state.trains, model.network, state.flow)
     short = measure_pieces(count, model.network, state.flow)
@@ -173,6 +180,8 @@ def advance(
             if wanted_s == step_s:
                 break
             step_s = wanted_s
+            if withhold(step, step_s, state.trains, recording):
+                count = place_trains(model, state, recording)
         state.clock[0].last_step_s = step_s
         now = with_step(model, step_s)
         status = end_step(step, count, share, passes, now, state, recording)

@@ -61,7 +61,8 @@ def state_of_passage(train: Train) -> TrainState:
         return TrainState.MOTORING
     if passage.braking_j > 0.0:
         return TrainState.BRAKING
-    return TrainState.COASTING if passage.running_ns > 0.0 else TrainState.DWELLING
+    moves = passage.motion.position_m > train.motion.position_m
+    return TrainState.COASTING if moves else TrainState.DWELLING
 
 
 @inlined
@@ -95,7 +96,8 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.reactive_power = demand.reactive_power_var
     row.holding_time = train.decision.hold_s
     if train.decision.course == Course.PASSAGE:
-        record_passage(step, train, row, recording.calls[at(i)], model.options.step_s)
+        begin_s, step_s = state.clock[0].begin_s, model.options.step_s
+        record_passage(begin_s, step_s, train, row, recording.calls[at(i)])
         count_breaches(train.passage.breaches, recording.counters)
     else:
         record_step(train, row, model, recording.counters)
@@ -124,9 +126,9 @@ def record_step(train: Train, row: TrainRow, model: Model, counters: Indices) ->
 
 @inlined
 def record_passage(
-    step: int, train: Train, row: TrainRow, calls: Records[Call], step_s: float
+    begin_s: float, step_s: float, train: Train, row: TrainRow, calls: Records[Call]
 ) -> None:
-    """Works, motor current and stops of a passage."""
+    """Works, motor current and stops of a passage, which begins at a time and lasts a step. [s]"""
     passage, per_second = train.passage, 1.0 / step_s
     row.motor_current = passage.current_as * per_second
     row.motor_power = passage.motor_j * per_second
@@ -134,7 +136,7 @@ def record_passage(
     row.braking_power = passage.braking_j * per_second
     row.resistance_power = passage.running_j * per_second
     row.gradient_power = passage.gradient_j * per_second
-    first, begin_s = train.motion.next_stop - 1, step * step_s
+    first = train.motion.next_stop - 1
     for place in range(min(MOST_CALLS, passage.motion.next_stop - first)):
         if place > 0:
             calls[at(first + place)].arrival_s = begin_s + passage.arrival_s[place]

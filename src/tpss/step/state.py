@@ -69,6 +69,8 @@ class Clock(Record):
     """Force that it would take. [N]"""
     force_available_n: float
     """Force that it has. [N]"""
+    begin_s: float
+    """When the present step begins. [s]"""
     last_step_s: float
     """Length of the step that was carried out last. [s]"""
     carried_share: float

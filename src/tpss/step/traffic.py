@@ -1,11 +1,14 @@
 """Who is on the line: departures and arrivals, and each train's motion to the next instant."""
 
+import math
+
 from tpss.driving import continuous
 from tpss.driving.data import DrivingData, MotionModel
 from tpss.driving.manners import move
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Flow
 from tpss.record import Records
+from tpss.step.recording import Recording
 from tpss.step.state import Clock
 from tpss.vehicle.train import Phase, Train, is_on_line
 
@@ -18,6 +21,24 @@ def depart(step: int, trains: Records[Train]) -> None:
         if train.motion.phase == Phase.PENDING and train.timetable.departure_step <= step:
             train.motion.phase = Phase.DRIVING
             train.motion.wait_s = train.timetable.departure_wait_s
+
+
+@kernel
+def withhold(step: int, step_s: float, trains: Records[Train], recording: Recording) -> bool:
+    """Take trains off the line that would depart after the end of a step that ends the run.
+
+    Return whether there are any.
+    """
+    found = False
+    for i in range(trains.size):
+        train = trains[at(i)]
+        waits = train.timetable.departure_wait_s >= step_s
+        if train.timetable.departure_step == step and waits and train.motion.phase == Phase.DRIVING:
+            train.motion.phase = Phase.PENDING
+            recording.trains[at(step), at(i)].position = math.nan
+            recording.trains[at(step), at(i)].speed = math.nan
+            found = True
+    return found
 
 
 @inlined

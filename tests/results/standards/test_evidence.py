@@ -53,15 +53,15 @@ def contact_line_losses_mwh(result):
     node_v = (dataset.node_voltage * np.exp(1j * dataset.node_angle)).to_numpy()[:, on_line]
     train_m = dataset.position.to_numpy()
     train_v = (dataset.pantograph_voltage * np.exp(1j * dataset.pantograph_angle)).to_numpy()
-    losses_w = 0.0
+    losses_j, duration_s = 0.0, np.diff(dataset.time.to_numpy())
     for k in range(dataset.sizes["time"] - 1):
         nodes = list(zip(node_m, node_v[k], strict=True))
         trains = [(m, v) for m, v in zip(train_m[k], train_v[k], strict=True) if np.isfinite(v)]
         points = sorted([*nodes[:-1], *trains, nodes[-1]], key=lambda point: point[0])
         for (begin_m, begin_v), (end_m, end_v) in zip(points, points[1:], strict=False):
             piece = impedance * max(1.0, end_m - begin_m)
-            losses_w += abs((begin_v - end_v) / piece) ** 2 * piece.real
-    return losses_w * dataset.attrs["time_step_s"] / 3.6e9
+            losses_j += abs((begin_v - end_v) / piece) ** 2 * piece.real * duration_s[k]
+    return losses_j / 3.6e9
 
 
 @pytest.mark.parametrize("name", ["main_line", "at_line", "at_high_voltage"])
@@ -120,7 +120,7 @@ def test_energies_of_trains_are_those_of_the_trips(main_line):
 
 def test_blocks_sum_up_to_the_energy_of_the_run(main_line):
     blocks = main_line.standards.energy_blocks
-    assert blocks.to_min.max() == 99.5
+    assert blocks.to_min.max() == main_line.summary["duration_min"]
     assert blocks.consumed_mwh.sum() == pytest.approx(main_line.trips.energy_mwh.sum())
 
 
@@ -135,7 +135,9 @@ def test_the_highest_mean_of_a_step_is_the_peak(main_line):
 
 def test_the_area_below_the_load_duration_curve_is_the_energy(main_line):
     table = main_line.standards.load_duration
-    energies = table.groupby("station", sort=False).power_mw.sum() * 0.5 / 60.0
+    lasts_min = table.groupby("station", sort=False).duration_min.diff()
+    lasts_min = lasts_min.fillna(table.duration_min)
+    energies = (table.power_mw * lasts_min / 60.0).groupby(table.station, sort=False).sum()
     assert energies.to_dict() == pytest.approx(main_line.summary["station_energy_mwh"])
 
 

@@ -17,7 +17,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results.standards.windows import TOLERANCE, Floats, step_values
-from tpss.results.tables import step_s
+from tpss.results.tables import short_s, step_s
 from tpss.scenario.standards import VoltageLimits
 
 WITHIN = "within the limits"
@@ -89,14 +89,15 @@ def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
     position_m, names = dataset.position.to_numpy(), dataset.train.to_numpy()
     for train, begin, end in _spells(bound.is_beyond(voltage)):
         within = voltage[begin:end, train]
+        to_min = end * h - (short_s(dataset) / 60.0 if end == len(voltage) else 0.0)
         worst = begin + int(within.argmin() if bound.side == "below" else within.argmax())
         yield Excursion(
             train=str(names[train]),
             limit=bound.name,
             limit_kv=bound.limit_kv,
             from_min=begin * h,
-            to_min=end * h,
-            duration_min=(end - begin) * h,
+            to_min=to_min,
+            duration_min=(end - begin) * h - (end * h - to_min),
             cut=begin == 0 or end == len(voltage),
             from_km=float(position_m[begin, train]) / 1e3,
             to_km=float(position_m[end, train]) / 1e3,

@@ -1,10 +1,20 @@
 """Converter stations between the 50 Hz grid and the railway."""
 
-from typing import Annotated, Literal
+import math
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from tpss.scenario.fields import FromLibrary, Name, Part, Position, Real, Whole, library_name
+from tpss.scenario.fields import (
+    FromLibrary,
+    Name,
+    Part,
+    Position,
+    Real,
+    Whole,
+    fault,
+    library_name,
+)
 
 
 class ConverterType(Part):
@@ -52,6 +62,32 @@ class ConverterStation(Part):
         le=60,
         description="Angle of the 50 Hz grid, seen at the railway's frequency.",
     )
+
+    @property
+    def least_reactive_mvar(self) -> float:
+        """Reactive power to the 50 Hz grid at which it, or the motors, have no voltage left. [Mvar]
+
+        There the denominator of an angle of (2.2) is 0: the grid carries the power of the whole station,
+        a motor that of one converter, of the fewest that may run.
+        """
+        running = 1 if self.control == "loading" else self.converters
+        square_kv2, kind = self.type.base_voltage_kv**2, self.type
+        limits_mvar = [-math.inf]
+        if kind.motor_reactance_pu > 0.0:
+            limits_mvar.append(-running * kind.motor_base_mva / kind.motor_reactance_pu)
+        if self.grid_reactance_ohm > 0.0:
+            limits_mvar.append(-square_kv2 / self.grid_reactance_ohm)
+        return max(limits_mvar)
+
+    @model_validator(mode="after")
+    def _motors_have_a_voltage(self) -> Self:
+        if self.grid_reactive_power_mvar <= self.least_reactive_mvar:
+            raise fault(
+                f"grid_reactive_power_mvar ({self.grid_reactive_power_mvar:g} Mvar) leaves the motors "
+                f"or the 50 Hz grid no voltage, which ends at {self.least_reactive_mvar:.4g} Mvar",
+                "take less reactive power from the grid, or run more converters",
+            )
+        return self
 
     @property
     def installed(self) -> int:
