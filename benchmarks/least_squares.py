@@ -25,6 +25,8 @@ from tpss.step.advance import advance
 
 CLOCKS = {"equations": advance, "least-squares": advance_by_least_squares}
 EXAMPLE = Path(__file__).parents[1] / "examples" / "thesis_3_3.toml"
+IN_WHOLE_STEPS = {"simulation.motion": "stepped", "simulation.braking": "whole-steps"}
+"""As the thesis's trains move."""
 THESIS_S = {1.0: (56, 46), 0.5: (108, 92), 0.2: (274, 230), 0.1: (541, 459), 0.05: (1084, 925)}
 """Time step: running times with the optimisation and with the equations. [min]: [s], [s]"""
 
@@ -32,6 +34,7 @@ THESIS_S = {1.0: (56, 46), 0.5: (108, 92), 0.2: (274, 230), 0.1: (541, 459), 0.0
 def measure(step_min: float, load_flow: str, runs: int) -> tuple[tpss.Result, float]:
     """The result, and the median time of the run itself. [ms]"""
     changes = {"simulation.time_step_min": step_min, "simulation.load_flow": load_flow}
+    changes |= IN_WHOLE_STEPS
     scenario = tpss.load_scenario(EXAMPLE, changes)
     result = tpss.simulate(scenario)
     start = tpss.prepare(scenario).start

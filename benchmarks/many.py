@@ -19,9 +19,10 @@ import tpss
 from report import arguments, caption, deliver, machine, table
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-FINE = {"simulation.time_step_min": 0.05}
+STEPPED = {"simulation.motion": "stepped", "simulation.braking": "whole-steps"}
+FINE = {"simulation.time_step_min": 0.05, **STEPPED}
 FIVE_MINUTES = {**FINE, "simulation.until": None, "simulation.duration_min": 5.0}
-COARSE = {"simulation.time_step_min": 1.0}
+COARSE = {"simulation.time_step_min": 1.0, **STEPPED}
 SHARE = {"2,032 steps": 0.1, "100 steps of 0.05 min": 1.0, "100 steps of 1 min": 1.0}
 """Share of the cases that are run, as some are longer."""
 

@@ -64,7 +64,12 @@ def scenario(stations: int, transformers: int, trains: int) -> tpss.Scenario:
         {
             "format": 1,
             "name": "scaling",
-            "simulation": {"time_step_min": STEP_MIN, "duration_min": STEPS * STEP_MIN},
+            "simulation": {
+                "time_step_min": STEP_MIN,
+                "duration_min": STEPS * STEP_MIN,
+                "motion": "stepped",
+                "braking": "whole-steps",
+            },
             "line": line(length_km),
             "supply": supply(stations, transformers),
             "trains": {"railcar": RAILCAR},

@@ -1,5 +1,7 @@
 """Time whole simulations after compilation: medians of several runs.
 
+Each in stepped motion, as the thesis has it, and in continuous motion, the default.
+
 Usage: python benchmarks/simulation.py [--runs N] [--publish]
 """
 
@@ -12,13 +14,17 @@ import tpss
 from report import arguments, caption, deliver, machine, stay_on_one_core, table
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-CASES = {
+STEPPED = {"simulation.motion": "stepped", "simulation.braking": "whole-steps"}
+LINES = {
     "thesis_3_3 at 0.05 min": ("thesis_3_3.toml", {"simulation.time_step_min": 0.05}),
     "thesis_3_3": ("thesis_3_3.toml", {}),
     "thesis_160km": ("thesis_160km.toml", {}),
     "thesis_3_7_2": ("thesis_3_7_2.toml", {}),
     "at_headway_3": ("at_headway_3.toml", {}),
     "at_hv_headway_3": ("at_hv_headway_3.toml", {}),
+}
+CASES = {name: (file, changes | STEPPED) for name, (file, changes) in LINES.items()} | {
+    f"{name}, continuous": case for name, case in LINES.items()
 }
 
 

@@ -23,7 +23,7 @@ from tpss.record import Record
 from tpss.sources.kinds import Source
 from tpss.step.recorded import RECORDED, Recorded
 from tpss.vehicle.terms import Demand
-from tpss.vehicle.train import Decision, Forces, Motion, Plan, Timetable
+from tpss.vehicle.train import Decision, Forces, Motion, Passage, Plan, Timetable
 from tpss.vehicle.train_type import TrainType
 
 PAGE = Path(__file__).parents[1] / "nomenclature.md"
@@ -34,7 +34,8 @@ HEAD = ("symbol", "name", "meaning", "unit")
 RESULT_HEAD = (*HEAD, "kind", "dimensions")
 
 RECORDS = (
-    TrainType, Demand, Timetable, Motion, Plan, Decision, Forces, Stop, System, Section, Branch, Source,
+    TrainType, Demand, Timetable, Motion, Plan, Decision, Forces, Passage, Stop, System, Section, Branch,
+    Source,
 )  # fmt: skip
 """Classes whose fields have a table of their own."""
 
@@ -69,6 +70,7 @@ SYMBOLS = {
     "Demand.adhesion_n": "F_{adh}",
     "Demand.resistance_n": "F_{res}",
     "Demand.speed_m_s": "v",
+    "Demand.terms_speed_m_s": "v^*",
     "Demand.mean_speed_weight_s": "h / 2",
     "Demand.driven_share": r"\tau' / h",
     "Demand.per_efficiency": r"1 / \eta",
@@ -86,11 +88,16 @@ SYMBOLS = {
     "Decision.hold_s": r"\tau'",
     "Decision.brake_s": r"\sigma'",
     "Decision.force_n": "F_{ideal}",
+    "Decision.acceleration_m_s2": "a",
+    "Decision.resistance_n": "F_{res}",
+    "Decision.braking_square_m2_s2": "w^2 + 2 b d",
     "Forces.running_resistance_n": "A + B v + C v^2",
     "Forces.gradient_n": r"m g \alpha",
     "Forces.tractive_n": "F",
     "Forces.braking_n": "F_{brake}",
     "Forces.next_speed_m_s": "v'",
+    "Passage.acceleration_m_s2": "a",
+    "Passage.resistance_n": "F_{res}",
     "System.nominal_voltage_v": "U_n, U_{b2}",
     "System.base_voltage_v": "U_b",
     "System.base_power_va": "S_b",
@@ -123,8 +130,19 @@ MEANINGS = {
     "TrainType.slip_factor": "circumferential speed of the driven wheels over speed",
     "Demand.per_efficiency": "reciprocal of the efficiency from pantograph to motor shaft",
     "Demand.bridge_sine": "sine of the bridges' firing angle, before it is limited to 0 to 1",
+    "Demand.effort_shift_n": "added to what the motors give at that speed",
+    "Demand.effort_growth": (
+        "added to the sum, as a share of it: it is then what the motors give at the step's mean speed"
+    ),
+    "Decision.resistance_n": "resistances at the end of the step before",
+    "Passage.braking_ns": "impulse of the brakes",
+    "Passage.running_ns": "impulse of the running resistance",
+    "Passage.gradient_ns": "impulse of the gradient force",
+    "Passage.braking_j": "work of the brakes",
+    "Passage.running_j": "work against the running resistance",
+    "Passage.gradient_j": "work against the gradient force",
 }
-"""Meanings of fields that have a formula in them."""
+"""Meanings of fields that have a formula in them, or follow from the field before."""
 
 
 def page() -> str:

@@ -39,8 +39,10 @@ that does not read it says so; the scenario in the folder can be run again."""
 DATASET = """## Dataset
 
 `Result.dataset` is an [xarray](https://docs.xarray.dev) dataset. Times run from the start of the
-simulation, in steps: K steps have K + 1 instants. A **state** holds at the instant. An **interval**
-value is constant from that instant to the next, so it is NaN at the last one. A train that is not
+simulation, in steps: K steps have K + 1 instants. The last step may be shorter, as a run ends with the
+arrival of its studied train (`last_step_s`). A **state** holds at the instant. An **interval** value
+holds from that instant to the next, as a mean where a train's forces change within the step, so it is
+NaN at the last one. A train that is not
 on the line is NaN; its `train_state` is -1. Each variable carries its unit (`units`) and its
 meaning (`long_name`)."""
 
@@ -121,6 +123,7 @@ ATTRIBUTES = {
     "title": "name of the scenario",
     "status": "as in the summary",
     "time_step_s": "time step",
+    "last_step_s": "length of the last step",
     "trip_time_min": "as in the summary, or NaN",
     "station_energy_mwh": "in the order of `station`",
     "losses_mwh": "as in the summary",
@@ -231,10 +234,15 @@ def _flags(result: tpss.Result) -> str:
 
 def _coordinates(result: tpss.Result) -> str:
     rows = [
-        (f"`{name}`", f"`{values.dims[0]}`", values.attrs["units"], values.attrs["long_name"])
+        (
+            f"`{name}`",
+            ", ".join(f"`{dim}`" for dim in values.dims),
+            values.attrs["units"],
+            values.attrs["long_name"],
+        )
         for name, values in result.dataset.coords.items()
     ]
-    return table(("coordinate", "dimension", "unit", "meaning"), rows)
+    return table(("coordinate", "dimensions", "unit", "meaning"), rows)
 
 
 def _audit(scenario: tpss.Scenario) -> str:

@@ -98,9 +98,10 @@ COMPUTE_NO_EQUATION = {
         "update_effort", "highest_force", "_described_force", "effort_extrapolates", "motors_force",
         "evaluate_rows", "update_speed_terms", "update_cap_terms", "certify_free_band",
         "within_free_band", "motor_power_demand", "armature_demand", "motors_current",
-        "train_bridge_sine", "effort_outside_training", "outside_table",
-        # Questions about the state of a train.
-        "is_on_line", "brakes_within_step",
+        "train_bridge_sine", "effort_outside_training", "outside_table", "effort_by_speed",
+        "take_speed_as_it_is", "_settle", "force_of_phase",
+        # Questions about the state of a train, and what keeps it.
+        "is_on_line", "brakes_within_step", "current_limits", "find_breaches", "copy_motion",
     },
 }  # fmt: skip
 """Functions of each room that compute no equation of their own: they choose, keep or ask."""
@@ -122,7 +123,7 @@ def test_every_curve_and_network_cites_its_source():
     """The numerics of a machine's curves; that of pairs and blocks is derived where it stands."""
     helpers = {
         "index_at", "index_from", "reaches", "series_at", "prepare_series", "outside", "exponential",
-        "outside_curve",
+        "outside_curve", "_piece_at",
     }  # fmt: skip
     for name in ("staircase", "series", "neural_network", "exponential", "curve"):
         tree = ast.parse((SOURCE / "numerics" / f"{name}.py").read_text("utf-8"))

@@ -23,7 +23,8 @@ CASES = {
     "AT with high-voltage line": ("at_hv_headway_3", {"simulation.duration_min": 4.0}),
     "stops, converters that are switched, the original driver": (
         "thesis_3_7_2", {"simulation.driver": "aggressive"}),
-    "stops, braking within steps": ("thesis_3_7_2", {"simulation.braking": "within-step"}),
+    "stops, braking within steps": ("thesis_3_7_2", {
+        "simulation.motion": "stepped", "simulation.braking": "within-step"}),
 }  # fmt: skip
 
 

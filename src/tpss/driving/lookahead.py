@@ -49,6 +49,10 @@ def what_to_brake_for(
         Where it is; its next stop.
     kind : TrainType
     data : DrivingData
+
+    References
+    ----------
+    [Boullanger2009]_, implied by eq. (2.29) and (2.30).
     """
     from_m = data.limits.from_m[at(kind.profile)]
     per_metre = 2.0 * kind.highest_retardation_m_s2

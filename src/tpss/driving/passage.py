@@ -43,7 +43,12 @@ from tpss.numerics.staircase import index_at, index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.running_resistance import gradient_force, running_resistance
 from tpss.vehicle.adhesion import adhesion_of
-from tpss.vehicle.phase import demand_of_phase, demand_standing, force_of_phase
+from tpss.vehicle.phase import (
+    demand_of_phase,
+    demand_standing,
+    force_of_phase,
+    voltage_decides,
+)
 from tpss.vehicle.train import MOST_CALLS, Passage, Phase, Train, copy_motion
 from tpss.vehicle.train_type import TrainType
 
@@ -172,7 +177,12 @@ def find_pull(
     voltage_v: float, aim: Aim, passage: Passage, train: Train,
     kind: TrainType, data: DrivingData, points: Points, scratch: Floats,
 ) -> Pull:  # fmt: skip
-    """Forces and acceleration of a phase, which belong to each other: the root of g."""
+    """Forces and acceleration of a phase, which belong to each other: the root of g.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.11), here at the mean speed.
+    """
     a = aim.acceleration_m_s2
     if a > 0.0:
         a = min(a, max(0.0, passage.acceleration_m_s2))
@@ -201,13 +211,13 @@ def find_pull(
 
 
 @inlined
-def _gradient_stays(
-    distance_m: float, passage: Passage, kind: TrainType, data: DrivingData
-) -> bool:
-    """Whether the gradient does not change over a distance ahead."""
-    from_m, following = data.gradients.from_m[at(kind.profile)], passage.motion.gradient + 1
-    end_m = passage.motion.position_m + distance_m
-    return following >= from_m.size or from_m[at(following)] >= end_m
+def _while_gradient_stays(passage: Passage, kind: TrainType, data: DrivingData) -> float:
+    """Time for which a speed can be held before the gradient changes, up to the end of the step. [s]"""
+    motion, following = passage.motion, passage.motion.gradient + 1
+    from_m = data.gradients.from_m[at(kind.profile)]
+    if following >= from_m.size:
+        return passage.left_s
+    return min(passage.left_s, (from_m[at(following)] - motion.position_m) / motion.speed_m_s)
 
 
 @inlined
@@ -282,15 +292,15 @@ def _add_phase(
     passage.running_j += pull.running_n * distance_m
     passage.gradient_j += pull.gradient_n * distance_m
     resistance = pull.running_n + pull.gradient_n
-    active, reactive, active_slope, reactive_slope, motor, current, breaches = demand_of_phase(
-        voltage_v, pull.mean_speed_m_s, resistance, pull.cap_n, kind, train.demand, points, scratch
-    )
+    active, reactive, reactive_slope, motor, current, breaches = demand_of_phase(
+        voltage_v, pull.mean_speed_m_s, resistance, pull.traction_n, pull.cap_n,
+        kind, train.demand, points, scratch,
+    )  # fmt: skip
     passage.breaches |= breaches
-    if active_slope != 0.0:
+    if voltage_decides(pull.traction_n, pull.cap_n, kind):
         passage.by_voltage = True
     passage.active_j += active * duration
     passage.reactive_vars += reactive * duration
-    passage.active_slope_j += active_slope * duration
     passage.reactive_slope_vars += reactive_slope * duration
     passage.motor_j += motor * duration
     passage.current_as += current * duration
@@ -333,8 +343,8 @@ def _choose_pull(
     """Forces, duration and end of the next phase.  A speed held where nothing changes is one phase."""
     pull = find_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
     v, a, longest_s = passage.motion.speed_m_s, pull.acceleration_m_s2, aim.longest_s
-    if a == 0.0 and v > 0.0 and _gradient_stays(v * passage.left_s, passage, kind, data):
-        longest_s = passage.left_s
+    if a == 0.0 and v > 0.0:
+        longest_s = max(longest_s, _while_gradient_stays(passage, kind, data))
     aim = Aim(
         aim.acceleration_m_s2, aim.until_m_s, longest_s, aim.below_m2_s2, aim.room_m, aim.target_m
     )
@@ -402,7 +412,7 @@ def _begin(passage: Passage, train: Train, step_s: float) -> None:
     passage.gradient_ns, passage.gradient_j = 0.0, 0.0
     passage.motor_j, passage.current_as = 0.0, 0.0
     passage.active_j, passage.reactive_vars = 0.0, 0.0
-    passage.active_slope_j, passage.reactive_slope_vars = 0.0, 0.0
+    passage.reactive_slope_vars = 0.0
 
 
 @kernel
@@ -452,7 +462,7 @@ def demand_of_passage(
     """
     passage, per_second = train.passage, 1.0 / data.options.step_s
     pass_through(voltage_v, passage, train, kind, data, points, scratch)
-    active_slope, reactive_slope = passage.active_slope_j, passage.reactive_slope_vars
+    active_slope, reactive_slope = 0.0, passage.reactive_slope_vars
     if with_slopes and passage.by_voltage:
         trial, change_v = train.trial, VOLTAGE_CHANGE * voltage_v
         pass_through(voltage_v + change_v, trial, train, kind, data, points, scratch)

@@ -192,7 +192,12 @@ def curve_at(x: float, first: int, count: int, points: Points) -> float:
 
 @inlined
 def extremes(curve: Curve, points: Points) -> tuple[float, float]:
-    """Lowest and highest value of a curve, which it has at its points."""
+    """Lowest and highest value of a curve, which it has at its points.
+
+    References
+    ----------
+    [FritschCarlson1980]_: between two points it is monotone.
+    """
     low = high = points[curve.first].value
     for k in range(curve.first + 1, curve.first + curve.points):
         low, high = min(low, points[k].value), max(high, points[k].value)

@@ -2,6 +2,7 @@
 
 from tpss.driving.data import MotionModel
 from tpss.driving.driver import prepare
+from tpss.driving.passage import SLACK_M
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember
@@ -150,8 +151,10 @@ def step_to_arrival(tries: int, step_s: float, model: Model, state: State) -> fl
         return full_s
     # With another mean voltage it is not there yet: what is left of its way, with the brakes.
     way_m = model.stops[at(train.route), at(motion.next_stop)].position_m - motion.position_m
-    left_s = 2.0 * way_m / motion.speed_m_s + ARRIVAL_S / 2.0
-    return min(full_s, step_s + left_s) if left_s > 0.0 else full_s
+    left_s = ARRIVAL_S / 2.0
+    if way_m > SLACK_M and motion.speed_m_s > 0.0:
+        left_s += 2.0 * way_m / motion.speed_m_s
+    return min(full_s, step_s + left_s)
 
 
 @kernel

@@ -131,7 +131,7 @@ def record_passage(
     begin_s: float, step_s: float, i: int, train: Train, kind: TrainType, row: TrainRow,
     calls: Records[Call],
 ) -> None:  # fmt: skip
-    """Works, current and stops of train `i` on its passage, which begins at a time and lasts a step. [s]"""
+    """Works, current and stops of train `i` on its passage, from a time on for a step. [s]"""
     passage, per_second = train.passage, 1.0 / step_s
     row.motor_current = passage.current_as * per_second
     if math.isnan(kind.base_speed_m_s):  # unknown while it stands, too

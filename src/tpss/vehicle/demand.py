@@ -59,7 +59,12 @@ def motors_force(
 
 @inlined
 def _at_mean_speed(force_n: float, demand: Demand) -> float:
-    """What the motors give at the step's mean speed, from what they give close by. [N]"""
+    """What the motors give at the step\'s mean speed, from what they give close by. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5) and (2.11), as `follow_speed` solves them.
+    """
     if demand.effort_growth == 0.0:  # without arithmetic, so without roundings
         return force_n
     return (force_n + demand.effort_shift_n) * (1.0 + demand.effort_growth)
@@ -67,7 +72,12 @@ def _at_mean_speed(force_n: float, demand: Demand) -> float:
 
 @inlined
 def _grown(slope_n_per_v: float, demand: Demand) -> float:
-    """The same of a slope over the voltage. [N/V]"""
+    """The same of a slope over the voltage. [N/V]
+
+    References
+    ----------
+    [Boullanger2009]_, as `_at_mean_speed`.
+    """
     if demand.effort_growth == 0.0:
         return slope_n_per_v
     return slope_n_per_v * (1.0 + demand.effort_growth)
@@ -86,7 +96,7 @@ def follow_speed(kind: TrainType, demand: Demand, points: Points) -> None:
     The force is known at a speed v* close by.  With r the rotors' share of the inertia, c/M, a force
     F_m of the motors accelerates by (F_m - F_res) / (M (1 + r)), so the mean speed is linear in it, and
 
-    .. math:: F_m = F_m^* + F' \Big(v + rac{h}{2} rac{F_m - F_{res}}{M (1 + r)} - v^*\Big)
+    .. math:: F_m = F_m^* + F' \Big(v + \frac{h}{2} \frac{F_m - F_{res}}{M (1 + r)} - v^*\Big)
 
     is solved for F_m: a shift and a factor.
 
@@ -109,6 +119,29 @@ def within_free_band(demand: Demand) -> bool:
     return not 0.0 < demand.free_band_v <= abs(demand.voltage_v - demand.free_voltage_v)
 
 
+@inlined
+def update_power_terms(
+    speed_m_s: float, kind: TrainType, demand: Demand, points: Points, scratch: Array
+) -> None:
+    """Evaluate what makes powers of forces, as far as it depends on the speed alone.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.14), (2.22), (F.25) and (F.26).
+    """
+    demand.terms_speed_m_s = demand.speed_m_s = speed_m_s
+    efficiency = curve_at(speed_m_s, kind.efficiency.first, kind.efficiency.points, points)
+    demand.per_efficiency = 1.0 / efficiency
+    if kind.reactive_model == ReactiveModel.POWER_FACTOR:
+        factor = power_factor(speed_m_s, kind.networks.power_factor, scratch[0])
+        demand.reactive_ratio = reactive_ratio(factor)
+    elif kind.reactive_model == ReactiveModel.POWER_FACTOR_CURVE:
+        curve = kind.power_factor
+        factor = curve_at(speed_m_s, curve.first, curve.points, points)
+        demand.reactive_ratio = reactive_ratio(factor)
+    demand.sine.reach_8 = 0.0
+
+
 @kernel
 def update_speed_terms(
     speed_m_s: float, kind: TrainType, demand: Demand, points: Points, scratch: Array
@@ -120,17 +153,7 @@ def update_speed_terms(
     """
     demand.free_voltage_v = demand.voltage_v
     if speed_m_s != demand.terms_speed_m_s:
-        demand.terms_speed_m_s = demand.speed_m_s = speed_m_s
-        efficiency = curve_at(speed_m_s, kind.efficiency.first, kind.efficiency.points, points)
-        demand.per_efficiency = 1.0 / efficiency
-        if kind.reactive_model == ReactiveModel.POWER_FACTOR:
-            factor = power_factor(speed_m_s, kind.networks.power_factor, scratch[0])
-            demand.reactive_ratio = reactive_ratio(factor)
-        elif kind.reactive_model == ReactiveModel.POWER_FACTOR_CURVE:
-            curve = kind.power_factor
-            factor = curve_at(speed_m_s, curve.first, curve.points, points)
-            demand.reactive_ratio = reactive_ratio(factor)
-        demand.sine.reach_8 = 0.0
+        update_power_terms(speed_m_s, kind, demand, points, scratch)
         network = kind.networks.tractive_effort
         update_effort(speed_m_s, kind.effort, demand.effort, network, points)
     network = kind.networks.tractive_effort

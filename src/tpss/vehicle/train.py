@@ -184,10 +184,8 @@ class Passage(Record):
     """Energy drawn. [J]"""
     reactive_vars: float
     """Reactive energy drawn. [var s]"""
-    active_slope_j: float
-    """Slope of the energy drawn over the line voltage, as long as nothing else changes. [J/V]"""
     reactive_slope_vars: float
-    """Slope of the reactive energy. [var s/V]"""
+    """Slope of the reactive energy over the line voltage, as long as no force changes. [var s/V]"""
     current_as: float
     """Charge of the motors' current. [A s]"""
 

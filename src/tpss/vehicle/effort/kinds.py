@@ -25,7 +25,12 @@ from tpss.vehicle.effort.limits import (
     steepest_slope,
     voltage_share,
 )
-from tpss.vehicle.effort.network import VOLTAGE, effort_outside_training, motor_force_series
+from tpss.vehicle.effort.network import (
+    VOLTAGE,
+    effort_outside_training,
+    motor_force,
+    motor_force_series,
+)
 from tpss.vehicle.effort.table import (
     EffortTable,
     TableTerms,
@@ -140,6 +145,47 @@ def highest_force(
             )
         return series_at(voltage_v, terms.series)
     return _described_force(voltage_v, effort, terms)
+
+
+@inlined
+def effort_at(
+    voltage_v: float,
+    speed_m_s: float,
+    effort: TractiveEffort,
+    terms: EffortTerms,
+    network: FeedForwardNetwork,
+    points: Points,
+    scratch: Array,
+) -> float:
+    """Largest force of all motors at a line voltage and a speed, neither of which is tried again. [N]
+
+    Parameters
+    ----------
+    voltage_v, speed_m_s : float
+        Voltage at the pantograph [V], train speed [m/s].
+    terms : EffortTerms
+        Scratch of a table.
+    effort, network, points, scratch
+        As in `update_effort` and `highest_force`.
+    """
+    if effort.kind == EffortKind.TABLE:
+        evaluate_rows(speed_m_s, effort.table, terms.table, points)
+        force, _ = table_force(voltage_v, effort.table, terms.table)
+        return force
+    if effort.kind == EffortKind.LIMITS:
+        share, _ = voltage_share(voltage_v, effort.limits)
+        return share * limited_force(speed_m_s, effort.limits)
+    return motor_force(speed_m_s, voltage_v, effort.highest_current_a, network, scratch)
+
+
+@inlined
+def follows_voltage(effort: TractiveEffort) -> bool:
+    """Whether the line voltage has a part in the force."""
+    if effort.kind == EffortKind.TABLE:
+        return effort.table.rows > 1
+    if effort.kind == EffortKind.LIMITS:
+        return effort.limits.full_voltage_v > effort.limits.zero_voltage_v
+    return True
 
 
 @inlined

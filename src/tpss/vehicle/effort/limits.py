@@ -62,6 +62,10 @@ def limited_by_speed(speed_m_s: float, force_n: float, limits: EffortLimits) -> 
     force_n : float
         `limited_force` there. [N]
     limits : EffortLimits
+
+    References
+    ----------
+    [Steimel2014]_, the derivative of `limited_force`.
     """
     if force_n >= limits.highest_force_n:
         return 0.0

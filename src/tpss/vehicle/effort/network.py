@@ -7,12 +7,42 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined
-from tpss.numerics.neural_network import NEURONS, FeedForwardNetwork, outside, weigh
+from tpss.numerics.neural_network import (
+    NEURONS,
+    FeedForwardNetwork,
+    logsig,
+    outside,
+    weigh,
+)
 from tpss.numerics.series import Series, make_series
 
 Array = npt.NDArray[np.float64]
 
 SPEED, VOLTAGE, CURRENT = 0, 1, 2
+
+
+@inlined
+def motor_force(
+    speed_m_s: float,
+    voltage_v: float,
+    current_a: float,
+    network: FeedForwardNetwork,
+    scratch: Array,
+) -> float:
+    """Largest force of all motors. [N]
+
+    Parameters are those of `motor_force_series`.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
+    """
+    weight = network.weight
+    for n in range(NEURONS):
+        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
+        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+    logsig(scratch[0])
+    return network.output_bias + weigh(network.output, scratch[0])
 
 
 @inlined

@@ -117,7 +117,12 @@ def table_force(voltage_v: float, table: EffortTable, terms: TableTerms) -> tupl
 
 @inlined
 def table_by_speed(voltage_v: float, speed_m_s: float, table: EffortTable, points: Points) -> float:
-    """Slope over the speed of the largest force at a line voltage, straight between rows. [N s/m]"""
+    """Slope over the speed of the largest force at a line voltage, straight between rows. [N s/m]
+
+    References
+    ----------
+    [FritschCarlson1980]_, the derivative of its cubic.
+    """
     count, row = table.first_row.points, 0
     while row + 1 < table.rows and voltage_v >= table.voltage_v[row + 1]:
         row += 1
