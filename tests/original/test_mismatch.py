@@ -71,7 +71,7 @@ def test_low_voltage_solution_within_the_plausible_band_is_refused():
     search = Search(
         lay_out(1, case.network, case.flow),
         1,
-        SimpleNamespace(network=case.network, types=loads.types),
+        SimpleNamespace(network=case.network, points=loads.points, **loads.driving._asdict()),
         SimpleNamespace(flow=case.flow, trains=loads.trains, scratch=loads.scratch),
     )
 

@@ -163,13 +163,13 @@ def aim(train: Train, data: DrivingData) -> None:
     if train.decision.course == Course.PASSAGE:
         return
     kind, h, v = data.types[at(train.train_type)], data.options.step_s, train.motion.speed_m_s
-    set_target(train, 0.0, 0.0, 0.0)
+    target = wanted = 0.0
     if train.motion.phase != Phase.DWELLING:
         here = index_at(train.motion.position_m, data.limits.from_m[at(kind.profile)])
         cruise = highest_speed_at(here, kind, data)
         target = min(cruise, v + kind.highest_acceleration_m_s2 * h)
         wanted = force_to_target(train, kind, target, h)
-        set_target(train, wanted, min(wanted, train.demand.adhesion_n), target)
+    set_target(train, wanted, min(wanted, train.demand.adhesion_n), target)
     certify_free_band(kind, train.demand)
     update_cap_terms(kind, train.demand)
 

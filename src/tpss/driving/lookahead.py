@@ -20,14 +20,13 @@ and a place at the distance d after :math:`t = 2 d / (v + \sqrt{v^2 + 2 a d})`.
 import math
 
 from tpss.driving.data import DrivingData
-from tpss.driving.stops import stop_position
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.staircase import index_at
 from tpss.vehicle.train import Motion
 from tpss.vehicle.train_type import TrainType
 
 
-@inlined
+@kernel
 def highest_speed_at(place: int, kind: TrainType, data: DrivingData) -> float:
     """Highest speed of a train where the limit with this index holds. [m/s]"""
     return min(data.limits.value[at(kind.profile)][at(place)], kind.highest_speed_m_s)
@@ -57,7 +56,7 @@ def what_to_brake_for(
     from_m = data.limits.from_m[at(kind.profile)]
     per_metre = 2.0 * kind.highest_retardation_m_s2
     position_m, fastest = motion.position_m, kind.highest_speed_m_s
-    target_m, target_m_s = stop_position(route, motion.next_stop, data.stops), 0.0
+    target_m, target_m_s = data.stops[at(route), at(motion.next_stop)].position_m, 0.0
     square = per_metre * (target_m - position_m)
     reach = fastest * (fastest + per_metre * data.options.step_s)
     j = index_at(position_m, from_m) + 1

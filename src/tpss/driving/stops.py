@@ -12,12 +12,6 @@ def distance_to_stop(train: Train, stops: Records[Stop]) -> float:
     return stops[at(train.route), at(train.motion.next_stop)].position_m - train.motion.position_m
 
 
-@fused
-def stop_position(route: int, stop: int, stops: Records[Stop]) -> float:
-    """Where a stop of a route is. [m]"""
-    return stops[at(route), at(stop)].position_m
-
-
 @kernel
 def stand_at_stop(step: int, train: Train, stops: Records[Stop]) -> None:
     """A train has come to its stop: it has arrived, dwells, or continues at once."""

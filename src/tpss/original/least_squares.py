@@ -20,12 +20,13 @@ from tpss.kernel import plain
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
+from tpss.powerflow.network import Loads
 from tpss.step.advance import begin_step, end_step, prepare_trains, step_to_arrival
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
-from tpss.step.state import State, Status, loads_of
+from tpss.step.state import State, Status
 
 SHORTEST_MOVE = 1e-8
 """The minimum is reached where a step changes the unknowns by less than this share of them.  Close to a
@@ -101,7 +102,8 @@ class Search:
 
     def __init__(self, grid: Grid, count: int, model: Model, state: State) -> None:
         self.grid, self.count, self.model, self.state = grid, count, model, state
-        self.loads = plain(loads_of)(model, state)
+        driving = plain(driving_data)(model)
+        self.loads = Loads(state.trains, model.types, state.scratch, driving, model.points)
         self.evaluations = 0
         self.base_v = model.network.system.base_voltage_v
         powers = np.zeros(2 * model.network.sources.size)

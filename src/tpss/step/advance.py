@@ -15,7 +15,7 @@ from tpss.step.state import Counter, State, Status
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.vehicle.train import Course, Phase
 
-ARRIVAL_S = 1e-3
+ARRIVAL_S = 1e-6
 """A run ends with the arrival of its studied train, or so soon after it. [s]"""
 
 SHORTEST_STEP_S = 0.01
