@@ -11,7 +11,7 @@ from tpss.kernel import plain
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.powerflow.chain import FLAT, WARM
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
@@ -105,7 +105,7 @@ def raise_loads_within_the_band(model: Model, state: State) -> float:
     while share < 1.0 and rise > FINEST:
         before: list[Any] = [flow.nodes.voltage_v.copy(), flow.sections.current_a.copy()]
         target = min(1.0, share + rise)
-        status, _ = newton(target, start, model.network, flow, loads)
+        status, _ = newton(target, start, MOST_PASSES, model.network, flow, loads)
         if status == Solution.SOLVED:
             share, start = target, WARM
         else:

@@ -16,7 +16,6 @@ import threading
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 
 from tpss.audit.aggregate import gather, new_figures
@@ -24,10 +23,9 @@ from tpss.driving.braking import shortest_stop
 from tpss.driving.stops import stand_at_stop
 from tpss.driving.whole_steps import replan
 from tpss.driving.within_step import replan as replan_within
-from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, switch
+from tpss.kernel import cache_folder, compile_for, kernels_are_compiled, quick_inlining, switch
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.newton import newton
-from tpss.powerflow.solve import SOLVED, solve_from_zero
+from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
 from tpss.step.advance import advance
@@ -84,8 +82,7 @@ def load_flow_calls(model: Model) -> list[Call]:
     state = _start(model)
     loads = loads_of(model, state)
     return [
-        (newton, (1.0, WARM, model.network, state.flow, loads)),
-        (solve_from_zero, (SOLVED, model.network, state.flow, loads)),
+        (newton, (1.0, WARM, MOST_PASSES, model.network, state.flow, loads)),
     ]
 
 
@@ -123,8 +120,7 @@ def _start(model: Model) -> State:
 def compile_calls(calls: list[Call]) -> None:
     """Compile each kernel for its arguments, or load it from the cache, without running it."""
     for function, arguments in calls:
-        if hasattr(function, "compile"):  # not if compilation is switched off
-            function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        compile_for(function, arguments)
 
 
 def _compile_in_parts(model: Model) -> None:

@@ -2,15 +2,15 @@
 
 from tpss.driving.data import MotionModel
 from tpss.driving.driver import prepare
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined, kernel, plain
 from tpss.powerflow.placing import locate_trains, measure_pieces
-from tpss.powerflow.solve import predict, remember
+from tpss.powerflow.solve import answer_in_turn, asks, predict, remember
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant, record_network, record_train
 from tpss.step.recording import Recording
-from tpss.step.state import Counter, State, Status
+from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived
 from tpss.vehicle.train import Course, Phase
 
@@ -147,7 +147,65 @@ def step_to_arrival(tries: int, step_s: float, model: Model, state: State) -> fl
     return min(full_s, step_s + left_s) if left_s > 0.0 else full_s
 
 
+@inlined
+def solve_lengths(step: int, goes_on: bool, model: Model, state: State) -> float:
+    """Solve a step, with lengths until it ends with the arrival of the studied train, if it does.
+
+    Parameters
+    ----------
+    goes_on : bool
+        Whether that is done in part, up to a search, which has been answered.
+
+    Returns
+    -------
+    float
+        As `solve_step`.
+    """
+    clock = state.clock[0]
+    while True:
+        now = with_step(model, clock.last_step_s)
+        if not goes_on:
+            prepare_trains(clock.on_line, now, state)
+        share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
+        clock.passes += passes
+        if asks(state.flow) or share < 1.0:
+            return share
+        goes_on = False
+        clock.lengths_tried += 1
+        wanted_s = step_to_arrival(clock.lengths_tried, clock.last_step_s, model, state)
+        if wanted_s == clock.last_step_s:
+            return share
+        clock.last_step_s = wanted_s
+
+
 @kernel
+def run_steps(
+    first: int, last: int, model: Model, state: State, recording: Recording
+) -> tuple[int, int]:
+    """`advance` up to the first step that needs a search: `Status.SEARCHING`.
+
+    Once the search is done, the next call goes on with this step.
+    """
+    step, clock = first, state.clock[0]
+    status: int = Status.RUNNING
+    while step < last and status == Status.RUNNING:
+        goes_on = asks(state.flow)
+        if not goes_on:
+            clock.on_line = begin_step(step, model, state, recording)
+            clock.last_step_s, clock.lengths_tried, clock.passes = model.options.step_s, 0, 0
+            if step > 0:
+                predict(state.flow)
+        share = solve_lengths(step, goes_on, model, state)
+        if asks(state.flow):
+            return Status.SEARCHING, step
+        now = with_step(model, clock.last_step_s)
+        status = end_step(step, clock.on_line, share, clock.passes, now, state, recording)
+        if status == Status.RUNNING or status == Status.FINISHED:
+            step += 1
+    record_instant(step, state.trains, recording)
+    return status, step
+
+
 def advance(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
@@ -157,26 +215,8 @@ def advance(
     `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
     which is not carried out.
     """
-    step = first
-    status: int = Status.RUNNING
-    while step < last and status == Status.RUNNING:
-        count = begin_step(step, model, state, recording)
-        if step > 0:
-            predict(state.flow)
-        step_s, passes, tries, share = model.options.step_s, 0, 0, 0.0
-        while True:
-            now = with_step(model, step_s)
-            prepare_trains(count, now, state)
-            share, more = solve_step(count, step + tries > 0, now, state)
-            passes, tries = passes + more, tries + 1
-            wanted_s = step_s if share < 1.0 else step_to_arrival(tries, step_s, model, state)
-            if wanted_s == step_s:
-                break
-            step_s = wanted_s
-        state.clock[0].last_step_s = step_s
-        now = with_step(model, step_s)
-        status = end_step(step, count, share, passes, now, state, recording)
-        if status == Status.RUNNING or status == Status.FINISHED:
-            step += 1
-    record_instant(step, state.trains, recording)
+    status, step = run_steps(first, last, model, state, recording)
+    while status == Status.SEARCHING:
+        answer_in_turn(model.network, state.flow, plain(loads_of)(model, state))
+        status, step = run_steps(step, last, model, state, recording)
     return status, step

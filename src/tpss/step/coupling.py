@@ -13,7 +13,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.load import find_demand
 from tpss.powerflow.network import Standing
-from tpss.powerflow.solve import solve
+from tpss.powerflow.solve import asks, solve_or_ask
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
 from tpss.step.state import State, loads_of
@@ -35,7 +35,8 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     Returns
     -------
     share : float
-        1.0, or the share of the load that the line can carry.
+        1.0, or the share of the load that the line can carry.  Nothing, if a search is asked for:
+        once it is done, a second call goes on.
     passes : int
         Evaluations of the network.
     """
@@ -44,7 +45,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         passes += more
-        if share < 1.0 or apply_solutions(count, model, state):
+        if asks(state.flow) or share < 1.0 or apply_solutions(count, model, state):
             return share, passes
         warm = True
 
@@ -115,7 +116,9 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
             find_demand(fixed_v, False, state.trains[at(flow.standing[at(k)].train)], loads)
         return 1.0, 0
     loads = loads_of(model, state)
-    share, passes = solve(warm, model.network, flow, loads)
+    share, passes = solve_or_ask(warm, model.network, flow, loads)
+    if asks(flow):
+        return share, passes
     for k in range(count):
         place = flow.standing[at(k)]
         state.trains[at(place.train)].demand.voltage_v = magnitude(place.voltage_v)
