@@ -20,7 +20,7 @@ from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
 from tpss.kernel import plain
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
-from tpss.step.advance import begin_step, end_step, prepare_trains, step_to_arrival
+from tpss.step.advance import begin_step, end_step, prepare_step, step_to_arrival
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
@@ -45,7 +45,7 @@ def advance_by_least_squares(
         step_s, evaluations, tries, share = model.options.step_s, 0, 0, 0.0
         while True:
             now = plain(with_step)(model, step_s)
-            prepare_trains(count, now, state)
+            prepare_step(count, now, state)
             share, more = solve_step(count, step + tries > 0, now, state)
             evaluations, tries = evaluations + more, tries + 1
             wanted_s = plain(step_to_arrival)(tries, step_s, model, state)

@@ -313,12 +313,12 @@ def solve_or_ask(warm: bool, network: Network, flow: Flow, loads: Loads) -> tupl
         asked.request = Request.NOTHING
         return asked.share, asked.passes
     status: int = Solution.NOT_CONVERGED
-    if warm:
-        status, passes = newton(1.0, WARM, MOST_PASSES, network, flow, loads)
-    if status != Solution.SOLVED:
-        start_flat(network, flow)
-        status, more = newton(1.0, FLAT, MOST_PASSES, network, flow, loads)
-        passes += more
+    for start in (WARM, FLAT):
+        if status != Solution.SOLVED and (warm or start == FLAT):
+            if start == FLAT:
+                start_flat(network, flow)
+            status, more = newton(1.0, start, MOST_PASSES, network, flow, loads)
+            passes += more
     if status != Solution.SOLVED:
         asked.request = Request.SOLUTION
     elif stations_jumped(network, flow, loads):

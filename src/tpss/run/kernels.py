@@ -28,10 +28,10 @@ from tpss.powerflow.chain import WARM
 from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
-from tpss.step.advance import advance
+from tpss.step.advance import advance, prepare_trains
 from tpss.step.coupling import decide
 from tpss.step.model import Model, driving_data
-from tpss.step.record import record_instant
+from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import new_recording
 from tpss.step.state import State, loads_of, new_state
 from tpss.step.traffic import list_trains
@@ -99,6 +99,24 @@ def step_calls(model: Model) -> list[Call]:
         (replan_within, (train, kind, data)),
         (stand_at_stop, (step, train, model.stops)),
         (list_trains, (state.trains, state.flow)),
+        (
+            prepare_trains,
+            (step, state.flow.standing, state.trains, data, model.points, state.scratch),
+        ),
+        (
+            record_trains,
+            (
+                step,
+                step,
+                model.options.step_s,
+                model.types,
+                model.points,
+                state.flow.standing,
+                state.trains,
+                recording,
+            ),
+        ),
+        (record_network, (step, model.network, state.flow, recording)),
         (record_instant, (step, state.trains, recording)),
     ]
 

@@ -1,18 +1,21 @@
 """The clock: the order of things in a step, and when a run ends."""
 
-from tpss.driving.data import MotionModel
+from tpss.driving.data import DrivingData, Floats, MotionModel
 from tpss.driving.driver import prepare
 from tpss.kernel import at, inlined, kernel, plain
+from tpss.numerics.curve import Points
+from tpss.powerflow.network import Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import answer_in_turn, asks, predict, remember
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.model import Model, driving_data, with_step
-from tpss.step.record import record_instant, record_network, record_train
+from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived
-from tpss.vehicle.train import Course, Phase
+from tpss.record import Records
+from tpss.vehicle.train import Course, Phase, Train
 
 ARRIVAL_S = 1e-3
 """A run ends with the arrival of its studied train, or so soon after it. [s]"""
@@ -60,13 +63,25 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     return count
 
 
-@inlined
-def prepare_trains(count: int, model: Model, state: State) -> None:
-    """Find what stays fixed while this step is solved, of the first `count` trains on the line."""
-    data = driving_data(model)
+@kernel
+def prepare_trains(
+    count: int,
+    standing: Records[Standing],
+    trains: Records[Train],
+    data: DrivingData,
+    points: Points,
+    scratch: Floats,
+) -> None:
+    """Find what stays fixed while a step is solved, of the first `count` trains on the line."""
     for k in range(count):
-        train = state.trains[at(state.flow.standing[at(k)].train)]
-        prepare(train, data, model.points, state.scratch)
+        prepare(trains[at(standing[at(k)].train)], data, points, scratch)
+
+
+@inlined
+def prepare_step(count: int, model: Model, state: State) -> None:
+    """`prepare_trains` of this step."""
+    data = driving_data(model)
+    prepare_trains(count, state.flow.standing, state.trains, data, model.points, state.scratch)
 
 
 @inlined
@@ -102,10 +117,12 @@ def end_step(
     if find_stalled(count, state):
         return Status.STALLED
     remember(step == 0, state.flow)
-    for k in range(count):
-        record_train(step, k, model, state, recording)
+    record_trains(
+        step, count, model.options.step_s, model.types, model.points, state.flow.standing,
+        state.trains, recording,
+    )  # fmt: skip
     if model.control.fixed_voltage_v <= 0.0:
-        record_network(step, model, state, recording)
+        record_network(step, model.network, state.flow, recording)
         note_loading(model, state)
     data = driving_data(model)
     for k in range(count):
@@ -165,7 +182,7 @@ def solve_lengths(step: int, goes_on: bool, model: Model, state: State) -> float
     while True:
         now = with_step(model, clock.last_step_s)
         if not goes_on:
-            prepare_trains(clock.on_line, now, state)
+            prepare_step(clock.on_line, now, state)
         share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
         clock.passes += passes
         if asks(state.flow) or share < 1.0:

@@ -11,8 +11,8 @@ from tpss.driving.continuous import apply_passage, must_pass, pass_instead
 from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
-from tpss.powerflow.load import find_demand
-from tpss.powerflow.network import Standing
+from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
+from tpss.powerflow.network import Loads, Standing
 from tpss.powerflow.solve import asks, solve_or_ask
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
@@ -102,18 +102,22 @@ def _must_decide_anew(train: Train, kind: TrainType, data: DrivingData) -> bool:
     return False
 
 
+@kernel
+def fix_voltage(voltage_v: float, count: int, standing: Records[Standing], loads: Loads) -> None:
+    """Let a voltage be that at all pantographs, and find what the trains draw there."""
+    for k in range(count):
+        train = loads.trains[at(standing[at(k)].train)]
+        train.demand.voltage_v = voltage_v
+        standing[at(k)].voltage_v = voltage_v
+        find_demand(voltage_v, WITHOUT_SLOPES, train, loads)
+
+
 @inlined
 def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
     """Voltages at all pantographs: by the load flow, or fixed if the model says so."""
     fixed_v, flow = model.control.fixed_voltage_v, state.flow
     if fixed_v > 0.0:
-        for k in range(count):
-            train = state.trains[at(flow.standing[at(k)].train)]
-            train.demand.voltage_v = fixed_v
-            flow.standing[at(k)].voltage_v = fixed_v
-        loads = loads_of(model, state)
-        for k in range(count):
-            find_demand(fixed_v, False, state.trains[at(flow.standing[at(k)].train)], loads)
+        fix_voltage(fixed_v, count, flow.standing, loads_of(model, state))
         return 1.0, 0
     loads = loads_of(model, state)
     share, passes = solve_or_ask(warm, model.network, flow, loads)
