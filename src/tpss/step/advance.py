@@ -7,6 +7,7 @@ from tpss.numerics.curve import Points
 from tpss.powerflow.network import Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import answer_in_turn, asks, predict, remember
+from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.model import Model, driving_data, with_step
@@ -14,7 +15,6 @@ from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived
-from tpss.record import Records
 from tpss.vehicle.train import Course, Phase, Train
 
 ARRIVAL_S = 1e-3

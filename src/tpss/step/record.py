@@ -176,7 +176,7 @@ def count_breaches(breaches: int, counters: Indices) -> None:
             counters[at(breach)] += 1
 
 
-@kernel
+@inlined
 def record_network(step: int, network: Network, flow: Flow, recording: Recording) -> None:
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
     for n in range(flow.nodes.size):
