@@ -119,7 +119,7 @@ def end_step(
     remember(step == 0, state.flow)
     record_trains(
         step, count, model.options.step_s, model.types, model.points, state.flow.standing,
-        state.trains, recording,
+        state.trains, recording.trains, recording.train_state, recording.calls, recording.counters,
     )  # fmt: skip
     if model.control.fixed_voltage_v <= 0.0:
         record_network(step, model.network, state.flow, recording)

@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from tpss.driving.work import mean_powers
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
@@ -87,7 +90,10 @@ def record_trains(
     points: Points,
     standing: Records[Standing],
     trains: Records[Train],
-    recording: Recording,
+    rows: Records[TrainRow],
+    states: npt.NDArray[np.int8],
+    calls: Records[Call],
+    counters: Indices,
 ) -> None:
     """Forces, voltages and powers of the first `count` trains along the line.
 
@@ -97,18 +103,20 @@ def record_trains(
         Length of the step. [s]
     kinds : records of TrainType
     points : records of CurvePoint
+    rows, states, calls, counters
+        Of the recording, which as a whole would cost more to hand over.
     """
     for k in range(count):
         i = standing[at(k)].train
-        train, row = trains[at(i)], recording.trains[at(step), at(i)]
-        recording.train_state[at(step), at(i)] = state_code(train)
+        train, row = trains[at(i)], rows[at(step), at(i)]
+        states[at(step), at(i)] = state_code(train)
         record_train(standing[at(k)].voltage_v, step_s, train, row)
         if train.decision.course == Course.PASSAGE:
-            record_passage(step, train, row, recording.calls[at(i)], step_s)
-            count_breaches(train.passage.breaches, recording.counters)
+            record_passage(step, train, row, calls[at(i)], step_s)
+            count_breaches(train.passage.breaches, counters)
         else:
             kind = kinds[at(train.train_type)]
-            record_step(step_s, train, kind, points, row, recording.counters)
+            record_step(step_s, train, kind, points, row, counters)
 
 
 @inlined
