@@ -19,7 +19,7 @@ A sound line needs 1 and 2 only.  So the clock's kernel does these, and asks for
 has done by a kernel that is compiled when it is needed.
 """
 
-from tpss.kernel import at, compile_quickly, inlined, kernel, plain, switch
+from tpss.kernel import at, compile_quickly, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Ending, Flow, Loads, Network, Request
@@ -49,6 +49,9 @@ UNSUSPICIOUS = 0.5
 
 OF_DRAWN = 4.0
 """How many times what the trains draw, now or a step ago, they may change by besides."""
+
+ASKS = -1.0
+"""In place of the share that is carried: a search is asked for. [1]"""
 
 SOLVED, UNSOLVED = switch(Solution.SOLVED), switch(Solution.NOT_CONVERGED)
 
@@ -304,7 +307,7 @@ def solve_or_ask(warm: bool, network: Network, flow: Flow, loads: Loads) -> tupl
     -------
     share : float
         1.0, or the share of all loads beyond which no solution was found; `flow` then holds the
-        state at that share, and in `search` why that is the end.  Nothing, if a search is asked for.
+        state at that share, and in `search` why that is the end.  `ASKS`, if a search is asked for.
     passes : int
         Evaluations of the whole network since the last call.
     """
@@ -323,13 +326,9 @@ def solve_or_ask(warm: bool, network: Network, flow: Flow, loads: Loads) -> tupl
         asked.request = Request.SOLUTION
     elif stations_jumped(network, flow, loads):
         asked.request = Request.CONFIRMATION
-    return 1.0, passes
-
-
-@inlined
-def asks(flow: Flow) -> bool:
-    """Whether a load flow waits for the answer of a search."""
-    return flow.search[0].request != Request.NOTHING
+    else:
+        return 1.0, passes
+    return ASKS, passes
 
 
 @kernel
@@ -360,7 +359,7 @@ def answer_in_turn(network: Network, flow: Flow, loads: Loads) -> None:
 def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
     """Solve a single load flow, with a search if need be; as `solve_or_ask`."""
     share, passes = solve_or_ask(warm, network, flow, loads)
-    if plain(asks)(flow):
+    if share == ASKS:
         answer_in_turn(network, flow, loads)
         share, more = solve_or_ask(warm, network, flow, loads)
         passes += more

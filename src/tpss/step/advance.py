@@ -4,9 +4,9 @@ from tpss.driving.data import DrivingData, Floats, MotionModel
 from tpss.driving.driver import prepare
 from tpss.kernel import at, inlined, kernel, plain
 from tpss.numerics.curve import Points
-from tpss.powerflow.network import Standing
+from tpss.powerflow.network import Request, Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces
-from tpss.powerflow.solve import answer_in_turn, asks, predict, remember
+from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
@@ -185,7 +185,7 @@ def solve_lengths(step: int, goes_on: bool, model: Model, state: State) -> float
             prepare_step(clock.on_line, now, state)
         share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
         clock.passes += passes
-        if asks(state.flow) or share < 1.0:
+        if share < 1.0:
             return share
         goes_on = False
         clock.lengths_tried += 1
@@ -206,14 +206,14 @@ def run_steps(
     step, clock = first, state.clock[0]
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
-        goes_on = asks(state.flow)
+        goes_on = state.flow.search[0].request == Request.ANSWERED
         if not goes_on:
             clock.on_line = begin_step(step, model, state, recording)
             clock.last_step_s, clock.lengths_tried, clock.passes = model.options.step_s, 0, 0
             if step > 0:
                 predict(state.flow)
         share = solve_lengths(step, goes_on, model, state)
-        if asks(state.flow):
+        if share == ASKS:
             return Status.SEARCHING, step
         now = with_step(model, clock.last_step_s)
         status = end_step(step, clock.on_line, share, clock.passes, now, state, recording)

@@ -13,7 +13,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
 from tpss.powerflow.network import Loads, Standing
-from tpss.powerflow.solve import asks, solve_or_ask
+from tpss.powerflow.solve import ASKS, solve_or_ask
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
 from tpss.step.state import State, loads_of
@@ -35,8 +35,8 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     Returns
     -------
     share : float
-        1.0, or the share of the load that the line can carry.  Nothing, if a search is asked for:
-        once it is done, a second call goes on.
+        1.0, or the share of the load that the line can carry; or `ASKS`: once the search is
+        done, a second call goes on.
     passes : int
         Evaluations of the network.
     """
@@ -45,7 +45,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         passes += more
-        if asks(state.flow) or share < 1.0 or apply_solutions(count, model, state):
+        if share < 1.0 or apply_solutions(count, model, state):
             return share, passes
         warm = True
 
@@ -121,7 +121,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
         return 1.0, 0
     loads = loads_of(model, state)
     share, passes = solve_or_ask(warm, model.network, flow, loads)
-    if asks(flow):
+    if share == ASKS:
         return share, passes
     for k in range(count):
         place = flow.standing[at(k)]
