@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import solve
 
 from continuation import Complexes, Equations, carry
@@ -151,7 +151,7 @@ def from_the_lower_branch(rng: Random, line: Line, carried: float) -> tuple[str,
     if lower is None or np.abs(lower - upper).max() < DISTINCT:
         return None
     set_state(line, lower)
-    status, passes = newton(share, WARM, line.network, line.flow, line.loads)
+    status, passes = newton(share, WARM, MOST_PASSES, line.network, line.flow, line.loads)
     if status != Solution.SOLVED:
         return REFUSED, passes
     back = np.abs(voltages(line) - upper).max() < SAME_VOLTAGE_AT_THE_END

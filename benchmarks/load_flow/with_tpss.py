@@ -12,7 +12,7 @@ from tpss.kernel import kernel
 from tpss.physics.reactive_power import ReactiveModel
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Flow, Loads, Network, loads_alone, new_flow
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember, start_flat
 from tpss.vehicle.train import Train
@@ -57,7 +57,7 @@ def solve_steps(
         locate_trains(loads.trains.size, loads.trains, network, flow)
         measure_pieces(loads.trains.size, network, flow)
         predict(flow)
-        status, passes = newton(1.0, WARM, network, flow, loads)
+        status, passes = newton(1.0, WARM, MOST_PASSES, network, flow, loads)
         if status != Solution.SOLVED:
             return -1
         total += passes

@@ -8,6 +8,7 @@ therefore named after a digest of *all* kernel sources.
 import hashlib
 import os
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -143,13 +144,16 @@ def plain(function: _Function) -> _Function:
 TESTED_INLINER = "0.68."
 """numba whose inliner is known to need no copies of scopes and places in the source."""
 
+_one_compiles = threading.RLock()
+"""Held while the inliner is changed."""
+
 
 @contextmanager
 def quick_inlining() -> Iterator[None]:
     """Compile without the copies that numba's inliner makes of what it does not change.
 
     It copies the scope of every block, with all variables, twice a call that it inlines: a quarter of
-    the time that the kernels take to compile.  The compiled code is the same.
+    the time that the kernels take to compile.  The compiled code is the same.  One thread at a time.
     """
     from numba.core import ir
 
@@ -157,10 +161,24 @@ def quick_inlining() -> Iterator[None]:
         yield
         return
     copied = (ir.Scope, ir.Loc)
-    for each in copied:
-        setattr(each, "__deepcopy__", lambda self, _: self)  # noqa: B010
-    try:
-        yield
-    finally:
+    with _one_compiles:
         for each in copied:
-            delattr(each, "__deepcopy__")
+            setattr(each, "__deepcopy__", lambda self, _: self)  # noqa: B010
+        try:
+            yield
+        finally:
+            for each in copied:
+                delattr(each, "__deepcopy__")
+
+
+def compile_for(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    """Compile a kernel for its arguments, or load it from the cache, without running it."""
+    if hasattr(function, "compile"):  # not if compilation is switched off
+        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+
+
+def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    """`compile_for` of a kernel outside those of every run, unless that is done already."""
+    if not getattr(function, "signatures", True):
+        with quick_inlining():
+            compile_for(function, arguments)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import solve
 
 from networks import BT, ROTARY, STIFF, constant_loads, network_of, place, simple_line, sources
@@ -61,7 +61,7 @@ def test_the_root_beyond_the_turning_point_is_no_solution():
     turned = low * abs(source) / source
     case.flow.sections.current_a = (load / turned).conjugate()
     case.flow.nodes.voltage_v = [16_500.0, turned]
-    status, _ = newton(1.0, WARM, case.network, case.flow, case.loads)
+    status, _ = newton(1.0, WARM, MOST_PASSES, case.network, case.flow, case.loads)
     assert status == Solution.WRONG_BRANCH
     share, _ = solve(True, case.network, case.flow, case.loads)
     assert share == 1.0
@@ -75,7 +75,7 @@ def test_stations_in_antiphase_are_no_solution():
     case.flow.nodes.voltage_v = 16_500.0 * np.array([0.973, 0.996]) * np.exp([2.81j, -1.85j])
     west, east = case.flow.nodes.voltage_v
     case.flow.sections.current_a = (west - east) / (BT * 2e3)
-    status, _ = newton(1.0, WARM, case.network, case.flow, case.loads)
+    status, _ = newton(1.0, WARM, MOST_PASSES, case.network, case.flow, case.loads)
     assert status != Solution.SOLVED
     share, _ = solve(True, case.network, case.flow, case.loads)
     assert share == 1.0

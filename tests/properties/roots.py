@@ -11,11 +11,11 @@ from tpss.kernel import plain
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.powerflow.chain import FLAT, WARM
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
-from tpss.step.advance import begin_step, prepare_trains
+from tpss.step.advance import begin_step, prepare_step
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.state import State, loads_of
@@ -50,7 +50,7 @@ class Replay:
         untouched = copy.deepcopy(run.state)
         count = begin_step(step, run.model, run.state, run.recording)
         model = plain(with_step)(run.model, step_s)
-        prepare_trains(count, model, run.state)
+        prepare_step(count, model, run.state)
         share = solve_step_slowly(count, model, run.state)
         places = run.state.flow.standing[:count]
         voltages = np.full(len(run.trains), np.nan)
@@ -105,7 +105,7 @@ def raise_loads_within_the_band(model: Model, state: State) -> float:
     while share < 1.0 and rise > FINEST:
         before: list[Any] = [flow.nodes.voltage_v.copy(), flow.sections.current_a.copy()]
         target = min(1.0, share + rise)
-        status, _ = newton(target, start, model.network, flow, loads)
+        status, _ = newton(target, start, MOST_PASSES, model.network, flow, loads)
         if status == Solution.SOLVED:
             share, start = target, WARM
         else:

@@ -183,9 +183,11 @@ def apply_passage(train: Train, step_s: float) -> None:
     forces.running_resistance_n = passage.running_ns * per_second
     forces.gradient_n = passage.gradient_ns * per_second
     forces.next_speed_m_s = passage.motion.speed_m_s
+    train.decision.force_n = 0.0  # what its driver wants is a matter of the phases
     if passage.stalled:
         forces.next_speed_m_s = -1.0
         forces.tractive_n = passage.available_n
+        train.demand.wheel_force_n = passage.available_n
         train.demand.resistance_n = passage.needed_n
 
 

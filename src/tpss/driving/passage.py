@@ -379,6 +379,12 @@ def _drive(
         passage.stalled = True
         passage.needed_n = pull.running_n + pull.gradient_n
         passage.available_n = pull.traction_n
+        # For those who ask what limits it.
+        options = data.options
+        train.demand.force_cap_n = pull.cap_n
+        train.demand.adhesion_n = adhesion_of(
+            kind, pull.mean_speed_m_s, options.rail, options.adhesion_in_km_h, points
+        )
     # 3. Where that leads: to speeds and places exactly.
     motion.position_m = position_m + pull.mean_speed_m_s * pull.duration_s
     motion.speed_m_s = max(0.0, v + a * pull.duration_s)

@@ -1,10 +1,15 @@
 """What a train asks of the network, however it moves."""
 
+import numpy as np
+
 from tpss.driving.passage import demand_of_passage
 from tpss.kernel import at, inlined
 from tpss.powerflow.network import Loads
 from tpss.vehicle.demand import electrical_demand
 from tpss.vehicle.train import Course, Train
+
+WITHOUT_SLOPES: bool = np.bool_(False)  # type: ignore[assignment]
+"""As `with_slopes`, where it is known; see `kernel.switch`."""
 
 
 @inlined

@@ -60,6 +60,18 @@ class Ending(IntEnum):
     """The branch was followed no further, and no end of it was seen."""
 
 
+class Request(IntEnum):
+    """What a load flow asks of the search that few of them need."""
+
+    NOTHING = 0
+    SOLUTION = 1
+    """A solution, as no usual start has found any."""
+    CONFIRMATION = 2
+    """Whether the solution is the one to which the path from no load leads."""
+    ANSWERED = 3
+    """Nothing more: the search is done."""
+
+
 class Section(Record):
     """A stretch of contact line between two fixed nodes, from its smaller to its larger position."""
 
@@ -189,7 +201,7 @@ class Standing(Record):
 
 
 class Search(Record):
-    """How the last search for a solution ended that no usual start has found."""
+    """The search for a solution that no usual start has found: what is asked, how the last one ended."""
 
     ending: Ending
     """How it ended."""
@@ -201,6 +213,12 @@ class Search(Record):
     """Powers that the trains draw at the last solution, summed without sign. [VA]"""
     last_drawn_va: float
     """The same in the last time step. [VA]"""
+    request: Request
+    """What is asked of a search."""
+    share: float
+    """Share of the load that is carried, as the search has found it. [1]"""
+    passes: int
+    """Evaluations of the network that it took."""
 
 
 class Network(NamedTuple):

@@ -30,8 +30,7 @@ distinguishes the stable branch from the one beyond the turning point.
 
 A step is halved until it lowers the sum of squares.  Where the slope of a demand jumps (a current
 limitation begins, a machine reaches its limit) that may be in vain: the slope of this side leads
-across, and beyond it another one holds.  Linked steps (`Pass.LINKED`, see `chain`) are taken whole:
-the next one begins on the other side, with its slope, and from close by they end on the right one.
+across, and beyond it another one holds.  Linked steps (see `linked`) get past it.
 
 References
 ----------
@@ -41,7 +40,7 @@ References
 import math
 from enum import IntEnum
 
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined, kernel, switch
 from tpss.numerics.block_lu import Block, solve_blocks
 from tpss.numerics.pairs import (
     Pair,
@@ -55,12 +54,9 @@ from tpss.numerics.pairs import (
 from tpss.powerflow.chain import (
     CHECK,
     FLAT,
-    LINKED,
-    MOVE,
     WARM,
     Pass,
     run_chain,
-    run_linked_chain,
 )
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
@@ -69,11 +65,10 @@ CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
 its sign over so short a distance except at the turning point itself. [p.u.]"""
 
-MOST_PASSES = 40
-MOST_HALVINGS = 12
+MOST_PASSES = switch(40)
+"""Evaluations of the network after which it is given up."""
 
-SETTLED = 1e-7
-"""Linked passes end where no train's voltage moves further. [p.u.]"""
+MOST_HALVINGS = 12
 
 
 class Solution(IntEnum):
@@ -156,7 +151,7 @@ def _turn_source_row(
 
 
 @inlined
-def _evaluate_node(n: int, start: Pass, network: Network, flow: Flow) -> float:
+def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> float:
     """Square of the residual of node `n` [p.u.], and its row of the linear system.
 
     References
@@ -167,13 +162,39 @@ def _evaluate_node(n: int, start: Pass, network: Network, flow: Flow) -> float:
     if s < 0:
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
-    derivatives, running = start != CHECK and start != MOVE, flow.sources[at(s)].running
+    running = flow.sources[at(s)].running
     value, by_voltage, by_current = residual(
         node.voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
     )
     if derivatives:
         _turn_source_row(n, value, by_voltage, by_current, network, flow)
     return squared(value) * network.system.per_square_volt
+
+
+@inlined
+def begin_pass(derivatives: bool, network: Network, flow: Flow) -> None:
+    """Start the leaving currents, and the linear system, with the lumped branches."""
+    _leave_by_branches(network, flow)
+    if derivatives:
+        _stamp_branches(network, flow)
+
+
+@inlined
+def join_section(
+    s: int, end_v: complex, derivatives: bool, network: Network, flow: Flow
+) -> tuple[float, float]:
+    """Join a section that was pushed to its end, where its voltage is `end_v`, to its nodes.
+
+    Return the square of its gap [p.u.], and the sign of det B if it has derivatives.
+    """
+    section, solution = network.sections[at(s)], flow.sections[at(s)]
+    solution.gap_v = end_v - flow.nodes[at(section.end_node)].voltage_v
+    flow.nodes[at(section.start_node)].leaving_current_a += solution.current_a
+    flow.nodes[at(section.end_node)].leaving_current_a -= solution.end_current_a
+    sign = 1.0
+    if derivatives:
+        sign = _stamp_section(s, network, flow)
+    return squared(solution.gap_v) * network.system.per_square_volt, sign
 
 
 @inlined
@@ -195,31 +216,22 @@ def evaluate(
     merit : float
         Sum of squares that a step has to lower; infinite where the pass has no result.
     sign : float
-        Sign of the product of the sections' determinants (not with `CHECK` and `MOVE`).
+        Sign of the product of the sections' determinants (not with `CHECK`).
     """
+    derivatives = start != CHECK
     # 1. Lumped branches.
-    _leave_by_branches(network, flow)
-    if start != CHECK and start != MOVE:
-        _stamp_branches(network, flow)
+    begin_pass(derivatives, network, flow)
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        section, solution = network.sections[at(s)], flow.sections[at(s)]
-        if start >= LINKED:
-            gap = run_linked_chain(s, scale, start, network, flow, loads)
-        else:
-            gap = run_chain(s, scale, start, network, flow, loads)
-        solution.gap_v = gap - flow.nodes[at(section.end_node)].voltage_v
-        flow.nodes[at(section.start_node)].leaving_current_a += solution.current_a
-        flow.nodes[at(section.end_node)].leaving_current_a -= solution.end_current_a
-        if start != CHECK and start != MOVE:
-            sign *= _stamp_section(s, network, flow)
-        square = squared(solution.gap_v) * network.system.per_square_volt
-        largest = max(largest, square * section.gap_weight)
+        end_v = run_chain(s, scale, start, network, flow, loads)
+        square, side = join_section(s, end_v, derivatives, network, flow)
+        sign *= side
+        largest = max(largest, square * network.sections[at(s)].gap_weight)
         merit += square
     # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
-        square = _evaluate_node(n, start, network, flow)
+        square = evaluate_node(n, derivatives, network, flow)
         largest = max(largest, square)
         merit += square
     if not math.isfinite(merit):
@@ -228,7 +240,7 @@ def evaluate(
 
 
 @inlined
-def _find_direction(network: Network, flow: Flow) -> float:
+def find_direction(network: Network, flow: Flow) -> float:
     """Solve for the Newton step; return the sign of the node system's determinant."""
     sign = solve_blocks(network.pattern, flow.blocks, flow.nodes)
     for n in range(flow.nodes.size):
@@ -243,7 +255,8 @@ def _find_direction(network: Network, flow: Flow) -> float:
 
 
 @inlined
-def _mark_base(flow: Flow) -> None:
+def mark_base(flow: Flow) -> None:
+    """Let the next step start from this state."""
     for node in range(flow.nodes.size):
         flow.nodes[at(node)].base_v = flow.nodes[at(node)].voltage_v
     for s in range(flow.sections.size):
@@ -251,16 +264,8 @@ def _mark_base(flow: Flow) -> None:
 
 
 @inlined
-def _stay(flow: Flow) -> None:
-    """Make the step none: at a solution there may be no direction, as pivots may be singular."""
-    for n in range(flow.nodes.size):
-        flow.nodes[at(n)].direction_v = 0.0
-    for s in range(flow.sections.size):
-        flow.sections[at(s)].direction_a = 0.0
-
-
-@inlined
-def _take_step(size: float, flow: Flow) -> None:
+def take_step(size: float, flow: Flow) -> None:
+    """Take a share of the whole step from where it starts."""
     for n in range(flow.nodes.size):
         node = flow.nodes[at(n)]
         node.voltage_v = node.base_v + size * node.direction_v
@@ -325,26 +330,9 @@ def _conclude(sign: float, network: Network, flow: Flow) -> Solution:
     return Solution.SOLVED if sources_are_plausible(network, flow) else Solution.OUT_OF_STEP
 
 
-@inlined
-def _go_on_linked(kind: Pass, solved: bool, network: Network, flow: Flow) -> int:
-    """Find the next step after a linked pass, or whether the trains have settled after its move.
-
-    Return the kind of the next pass.
-    """
-    if kind == LINKED:
-        _find_direction(network, flow)
-        if solved:
-            _stay(flow)
-        _mark_base(flow)
-        flow.search[0].moved_v = 0.0
-        return MOVE
-    settled = flow.search[0].moved_v < SETTLED * network.system.base_voltage_v
-    return WARM if settled else LINKED
-
-
 @kernel
 def newton(
-    scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
+    scale: float, start: Pass, most: int, network: Network, flow: Flow, loads: Loads
 ) -> tuple[int, int]:
     """Solve from the state in `flow`, damped; return a status and the number of passes.
 
@@ -354,29 +342,24 @@ def newton(
         Factor on all loads. [1]
     start : Pass
         `WARM`, or `FLAT` to begin with all trains' currents at base voltage, whatever the state.
-        `LINKED` to begin with the trains' voltages too, in whole steps.
+    most : int
+        Number of passes after which it is given up.
     """
     kind, passes, after_flat = start, 0, False
     merit, sign, size, trials = math.inf, 1.0, 1.0, 1
-    while passes < MOST_PASSES:
+    while passes < most:
         if passes > 0:
-            _take_step(size, flow)
+            take_step(size, flow)
         mismatch, trial, chains = evaluate(scale, kind, network, flow, loads)
         passes += 1
         solved = mismatch < network.tolerance and kind != FLAT
-        if kind >= LINKED:
-            if not math.isfinite(trial):
-                break
-            kind = _go_on_linked(kind, solved, network, flow)  # type: ignore[assignment]
-            size = 1.0
-            continue
         if kind == CHECK:
             if not solved:
                 kind = WARM  # the derivatives at the same place
                 continue
         # After a flat pass the merits belong to different equations.
         elif trial < merit or solved or (after_flat and math.isfinite(trial)):
-            sign = chains * _find_direction(network, flow)
+            sign = chains * find_direction(network, flow)
         elif merit == math.inf or trials == MOST_HALVINGS:
             break
         else:
@@ -388,5 +371,5 @@ def newton(
         after_flat, merit = kind == FLAT, trial
         kind = CHECK if mismatch < CLOSE and kind == WARM else WARM
         size, trials = 1.0, 1
-        _mark_base(flow)
+        mark_base(flow)
     return Solution.NOT_CONVERGED, passes

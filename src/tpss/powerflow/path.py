@@ -20,7 +20,7 @@ A step begins on the straight line through the last two solutions,
 
 and counts if Newton's method ends there with the sign of the determinant that belongs to the stable
 branch, and close to where it began: else h is halved.  Where a demand's slope jumps, the line leads
-astray in proportion to h, so a small step gets past it with linked Newton steps (`chain.Pass`), and the
+astray in proportion to h, so a small step gets past it with linked Newton steps (`linked`), and the
 next line is that of the other side.
 
 What ends a path at t* < 1 is told by what happens there.  Beside a turn, x is x* ± c √(t* - t):
@@ -38,9 +38,10 @@ from enum import IntEnum
 
 from tpss.kernel import at, inlined, kernel, switch
 from tpss.numerics.pairs import squared
-from tpss.powerflow.chain import LINKED, WARM, Pass
+from tpss.powerflow.chain import WARM
+from tpss.powerflow.linked import newton_linked
 from tpss.powerflow.network import Ending, Flow, Loads, Network
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.sources.kinds import reserve, set_unloaded, unloaded
 
 FIRST_STEP, LARGEST_STEP, STEP_GROWTH = 0.25, 0.25, 1.5
@@ -71,6 +72,9 @@ LOADS_OF_LIKE_SOURCES, SOURCES_LOADED = (
     switch(Way.LOADS_OF_LIKE_SOURCES),
     switch(Way.SOURCES_LOADED),
 )
+PLAIN, LINKED = switch(0), switch(1)
+"""Newton's steps from a guess: over the nodes' voltages, or linked ones first."""
+
 STRICT, BEYOND = switch(0), switch(1)
 """Whether a path ends where a state is implausible, or is followed beyond."""
 
@@ -190,11 +194,11 @@ def start_alike(network: Network, flow: Flow) -> None:
         flow.sections[at(s)].current_a = 0.0
 
 
-@inlined
+@kernel
 def solve_on_way(
-    share: float, start: Pass, way: Way, network: Network, flow: Flow, loads: Loads
+    share: float, steps: int, way: Way, network: Network, flow: Flow, loads: Loads
 ) -> tuple[int, int]:
-    """`newton` for a share of what a way raises."""
+    """`newton`, or `newton_linked`, for a share of what a way raises."""
     scale, apart = share, 1.0
     if way == SOURCES_UNLOADED:
         scale, apart = 0.0, share
@@ -213,7 +217,9 @@ def solve_on_way(
         network.admittance_s,
         network.tolerance,
     )
-    return newton(scale, start, between, flow, loads)
+    if steps == LINKED:
+        return newton_linked(scale, between, flow, loads)
+    return newton(scale, WARM, MOST_PASSES, between, flow, loads)
 
 
 @inlined
@@ -238,7 +244,7 @@ def follow(
     passes : int
     """
     # 1. Where it begins.
-    status, passes = solve_on_way(share, WARM, way, network, flow, loads)
+    status, passes = solve_on_way(share, PLAIN, way, network, flow, loads)
     if not counts(status, beyond):
         return share, status, passes
     keep(flow)
@@ -273,9 +279,9 @@ def has_turned(
     while not turned and back < min(share, FURTHEST_BACK):
         # From beside the turning point Newton's method may come to either solution.
         predict_on_path(0.0, flow)
-        for start in (WARM, LINKED):
+        for steps in (PLAIN, LINKED):
             if not turned:
-                status, more = solve_on_way(share - back, start, way, network, flow, loads)
+                status, more = solve_on_way(share - back, steps, way, network, flow, loads)
                 passes += more
                 turned = status == Solution.WRONG_BRANCH and distance(0.0, flow) <= 3.0 * near_v
                 mirror_on_path(flow)

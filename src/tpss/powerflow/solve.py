@@ -14,13 +14,16 @@ What 1 to 3 find has the sign of the determinant that belongs to the stable bran
 may have it as well: stations out of phase can feed each other.  So where the stations' powers have
 changed by more than the trains draw, the solution is held against the one to which the path from the
 state without load leads, and that one counts.
+
+A sound line needs 1 and 2 only.  So the clock's kernel does these, and asks for the rest, which Python
+has done by a kernel that is compiled when it is needed.
 """
 
-from tpss.kernel import at, inlined, kernel, switch
+from tpss.kernel import at, compile_quickly, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
-from tpss.powerflow.network import Ending, Flow, Loads, Network
-from tpss.powerflow.newton import Solution, newton
+from tpss.powerflow.network import Ending, Flow, Loads, Network, Request
+from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.path import (
     BEYOND,
     LOADS,
@@ -46,6 +49,9 @@ UNSUSPICIOUS = 0.5
 
 OF_DRAWN = 4.0
 """How many times what the trains draw, now or a step ago, they may change by besides."""
+
+ASKS = -1.0
+"""In place of the share that is carried: a search is asked for. [1]"""
 
 SOLVED, UNSOLVED = switch(Solution.SOLVED), switch(Solution.NOT_CONVERGED)
 
@@ -100,7 +106,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
     while share < 1.0 and step >= SHORTEST_STEP:
         target = min(1.0, share + step)
         start = FLAT if share == 0.0 else WARM
-        status, more = newton(target, start, network, flow, loads)
+        status, more = newton(target, start, MOST_PASSES, network, flow, loads)
         passes += more
         if status == Solution.SOLVED:
             set_aside(flow)
@@ -111,7 +117,7 @@ def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[floa
             step /= 2.0
     if 0.0 < share < 1.0:
         # The last trial has left its voltages at the trains; find those of the share again.
-        newton(share, WARM, network, flow, loads)
+        newton(share, WARM, MOST_PASSES, network, flow, loads)
     return share, passes
 
 
@@ -129,7 +135,7 @@ def find_state_without_load(network: Network, flow: Flow, loads: Loads) -> tuple
     passes += more
     flow.search[0].without_load = True
     start_flat(network, flow)
-    status, more = newton(0.0, WARM, network, flow, loads)
+    status, more = newton(0.0, WARM, MOST_PASSES, network, flow, loads)
     if status != Solution.SOLVED:
         predict_on_path(0.0, flow)
     return status == Solution.SOLVED, passes + more
@@ -208,7 +214,7 @@ def search(
     # 3. The end of the loads' path; the last trials have left their voltages at the trains.
     take_back(flow)
     if known:
-        newton(share, WARM, network, flow, loads)
+        newton(share, WARM, MOST_PASSES, network, flow, loads)
     return share, passes
 
 
@@ -259,7 +265,7 @@ def take_root_of_path(known: bool, network: Network, flow: Flow, loads: Loads) -
         if share == 1.0 and status == Solution.SOLVED and differs_from_aside(network, flow):
             return passes
     take_back(flow)
-    _, more = newton(1.0, WARM, network, flow, loads)
+    _, more = newton(1.0, WARM, MOST_PASSES, network, flow, loads)
     return passes + more
 
 
@@ -287,8 +293,10 @@ def solve_from_zero(solved: int, network: Network, flow: Flow, loads: Loads) -> 
 
 
 @inlined
-def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
-    """Solve a load flow.
+def solve_or_ask(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+    """Solve a load flow as far as steps 1 and 2 do, or ask in `flow.search` for what they cannot do.
+
+    Once that is done (`answer`), a second call gives what it has found.
 
     Parameters
     ----------
@@ -299,22 +307,60 @@ def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float
     -------
     share : float
         1.0, or the share of all loads beyond which no solution was found; `flow` then holds the
-        state at that share, and in `search` why that is the end.
+        state at that share, and in `search` why that is the end.  `ASKS`, if a search is asked for.
     passes : int
-        Evaluations of the whole network.
+        Evaluations of the whole network since the last call.
     """
-    passes, share = 0, 1.0
+    asked, passes = flow.search[0], 0
+    if asked.request == Request.ANSWERED:
+        asked.request = Request.NOTHING
+        return asked.share, asked.passes
     status: int = Solution.NOT_CONVERGED
-    if warm:
-        status, passes = newton(1.0, WARM, network, flow, loads)
+    for start in (WARM, FLAT):
+        if status != Solution.SOLVED and (warm or start == FLAT):
+            if start == FLAT:
+                start_flat(network, flow)
+            status, more = newton(1.0, start, MOST_PASSES, network, flow, loads)
+            passes += more
     if status != Solution.SOLVED:
-        start_flat(network, flow)
-        status, more = newton(1.0, FLAT, network, flow, loads)
-        passes += more
-    if status != Solution.SOLVED:
-        share, more = solve_from_zero(UNSOLVED, network, flow, loads)
-        passes += more
-    if share == 1.0 and stations_jumped(network, flow, loads):
+        asked.request = Request.SOLUTION
+    elif stations_jumped(network, flow, loads):
+        asked.request = Request.CONFIRMATION
+    else:
+        return 1.0, passes
+    return ASKS, passes
+
+
+@kernel
+def answer(network: Network, flow: Flow, loads: Loads) -> None:
+    """Search for what `solve_or_ask` asks for.
+
+    Few runs ever ask, so this is called from Python: it is compiled when it is needed.
+    """
+    asked, share, passes = flow.search[0], 1.0, 0
+    jumped = asked.request == Request.CONFIRMATION
+    if not jumped:
+        share, passes = solve_from_zero(UNSOLVED, network, flow, loads)
+        jumped = share == 1.0 and stations_jumped(network, flow, loads)
+    if jumped:
         _, more = solve_from_zero(SOLVED, network, flow, loads)
+        passes += more
+    asked.share, asked.passes = share, passes
+    asked.request = Request.ANSWERED
+
+
+def answer_in_turn(network: Network, flow: Flow, loads: Loads) -> None:
+    """`answer`, compiled if it is the first one, while other threads wait for that only."""
+    arguments = (network, flow, loads)
+    compile_quickly(answer, arguments)
+    answer(*arguments)
+
+
+def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
+    """Solve a single load flow, with a search if need be; as `solve_or_ask`."""
+    share, passes = solve_or_ask(warm, network, flow, loads)
+    if share == ASKS:
+        answer_in_turn(network, flow, loads)
+        share, more = solve_or_ask(warm, network, flow, loads)
         passes += more
     return share, passes

@@ -1,10 +1,12 @@
 """Compiled kernels before the first step: a cold start on two cores.
 
 The kernels are compiled by two processes at once: first the load flow, and what prepares and carries
-out a step, which have little in common; then the clock, which calls both, and the audit.  The second
-process keeps what it compiles in a cache folder of its own, as two that write into one may spoil each
-other's entries.  The first one adopts from it whatever itself does not have.  Where a second process is
-of no use or does not succeed, the first one compiles everything, a little later.
+out a step, which have little in common; then the clock, which calls both, and the audit.  The search
+for a solution that no usual start finds is not among them: it is compiled when a line needs it.
+
+The second process keeps what it compiles in a cache folder of its own, as two that write into one may
+spoil each other's entries.  The first one adopts from it whatever itself does not have.  Where a second
+process is of no use or does not succeed, the first one compiles everything, a little later.
 """
 
 import os
@@ -16,7 +18,6 @@ import threading
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 
 from tpss.audit.aggregate import gather, new_figures
@@ -24,18 +25,25 @@ from tpss.driving.braking import shortest_stop
 from tpss.driving.stops import stand_at_stop
 from tpss.driving.whole_steps import replan
 from tpss.driving.within_step import replan as replan_within
-from tpss.kernel import cache_folder, kernels_are_compiled, quick_inlining, switch
+from tpss.kernel import (
+    cache_folder,
+    compile_for,
+    kernels_are_compiled,
+    plain,
+    quick_inlining,
+    switch,
+)
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.newton import newton
-from tpss.powerflow.solve import SOLVED, solve_from_zero
+from tpss.powerflow.network import Loads
+from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
-from tpss.step.advance import advance
+from tpss.step.advance import advance, prepare_trains
 from tpss.step.coupling import decide
 from tpss.step.model import Model, driving_data
-from tpss.step.record import record_instant
+from tpss.step.record import record_instant, record_trains
 from tpss.step.recording import new_recording
-from tpss.step.state import State, loads_of, new_state
+from tpss.step.state import State, new_state
 from tpss.step.traffic import list_trains
 from tpss.vehicle.demand import update_speed_terms
 
@@ -80,28 +88,30 @@ def are_ready() -> bool:
 
 
 def load_flow_calls(model: Model) -> list[Call]:
-    """Kernels that solve a load flow."""
+    """The kernel that solves a load flow, with all that it calls."""
     state = _start(model)
-    loads = loads_of(model, state)
-    return [
-        (newton, (1.0, WARM, model.network, state.flow, loads)),
-        (solve_from_zero, (SOLVED, model.network, state.flow, loads)),
-    ]
+    data = plain(driving_data)(model)
+    loads = Loads(state.trains, model.types, state.scratch, data, model.points)
+    return [(newton, (1.0, WARM, MOST_PASSES, model.network, state.flow, loads))]
 
 
 def step_calls(model: Model) -> list[Call]:
     """Kernels that prepare a step, and that carry it out."""
-    state, data = _start(model), driving_data(model)
+    state, data = _start(model), plain(driving_data)(model)
     recording = new_recording(model, 0, state.trains.size)
     train, kind, step = state.trains[0], model.types[0], switch(0)
+    on_line = (state.flow.standing, state.trains)
+    of_trains = (recording.trains, recording.train_state, recording.calls, recording.counters)
     return [
-        (decide, (step, state.flow.standing, state.trains, data)),
+        (decide, (step, *on_line, data)),
         (update_speed_terms, (1.0, kind, train.demand, model.points, state.scratch)),
         (shortest_stop, (1.0, 1.0, 1.0)),
         (replan, (train, kind, data)),
         (replan_within, (train, kind, data)),
         (stand_at_stop, (step, train, model.stops)),
         (list_trains, (state.trains, state.flow)),
+        (prepare_trains, (step, *on_line, data, model.points, state.scratch)),
+        (record_trains, (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains)),
         (record_instant, (step, state.trains, recording)),
     ]
 
@@ -123,8 +133,7 @@ def _start(model: Model) -> State:
 def compile_calls(calls: list[Call]) -> None:
     """Compile each kernel for its arguments, or load it from the cache, without running it."""
     for function, arguments in calls:
-        if hasattr(function, "compile"):  # not if compilation is switched off
-            function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        compile_for(function, arguments)
 
 
 def _compile_in_parts(model: Model) -> None:

@@ -1,19 +1,22 @@
 """The clock: the order of things in a step, and when a run ends."""
 
-from tpss.driving.data import MotionModel
+from tpss.driving.data import DrivingData, Floats, MotionModel
 from tpss.driving.driver import prepare
 from tpss.driving.passage import SLACK_M
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined, kernel, plain
+from tpss.numerics.curve import Points
+from tpss.powerflow.network import Request, Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces
-from tpss.powerflow.solve import predict, remember
+from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
+from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.model import Model, driving_data, with_step
-from tpss.step.record import record_instant, record_network, record_train
+from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
-from tpss.step.state import Counter, State, Status
+from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
-from tpss.vehicle.train import Course, Phase
+from tpss.vehicle.train import Course, Phase, Train
 
 ARRIVAL_S = 1e-6
 """A run ends with the arrival of its studied train, or so soon after it. [s]"""
@@ -68,13 +71,25 @@ def place_trains(model: Model, state: State, recording: Recording) -> int:
     return count
 
 
-@inlined
-def prepare_trains(count: int, model: Model, state: State) -> None:
-    """Find what stays fixed while this step is solved, of the first `count` trains on the line."""
-    data = driving_data(model)
+@kernel
+def prepare_trains(
+    count: int,
+    standing: Records[Standing],
+    trains: Records[Train],
+    data: DrivingData,
+    points: Points,
+    scratch: Floats,
+) -> None:
+    """Find what stays fixed while a step is solved, of the first `count` trains on the line."""
     for k in range(count):
-        train = state.trains[at(state.flow.standing[at(k)].train)]
-        prepare(train, data, model.points, state.scratch)
+        prepare(trains[at(standing[at(k)].train)], data, points, scratch)
+
+
+@inlined
+def prepare_step(count: int, model: Model, state: State) -> None:
+    """`prepare_trains` of this step."""
+    data = driving_data(model)
+    prepare_trains(count, state.flow.standing, state.trains, data, model.points, state.scratch)
 
 
 @inlined
@@ -110,10 +125,13 @@ def end_step(
     if find_stalled(count, state):
         return Status.STALLED
     remember(step == 0, state.flow)
-    for k in range(count):
-        record_train(step, k, model, state, recording)
+    record_trains(
+        step, count, state.clock[0].begin_s, model.options.step_s, model.types, model.points,
+        state.flow.standing, state.trains, recording.trains, recording.train_state, recording.calls,
+        recording.counters,
+    )  # fmt: skip
     if model.control.fixed_voltage_v <= 0.0:
-        record_network(step, model, state, recording)
+        record_network(step, model.network, state.flow, recording)
         note_loading(model, state)
     data = driving_data(model)
     for k in range(count):
@@ -157,7 +175,69 @@ def step_to_arrival(tries: int, step_s: float, model: Model, state: State) -> fl
     return min(full_s, step_s + left_s)
 
 
+@inlined
+def solve_lengths(
+    step: int, goes_on: bool, model: Model, state: State, recording: Recording
+) -> float:
+    """Solve a step, with lengths until it ends with the arrival of the studied train, if it does.
+
+    Parameters
+    ----------
+    goes_on : bool
+        Whether that is done in part, up to a search, which has been answered.
+
+    Returns
+    -------
+    float
+        As `solve_step`.
+    """
+    clock = state.clock[0]
+    while True:
+        now = with_step(model, clock.last_step_s)
+        if not goes_on:
+            prepare_step(clock.on_line, now, state)
+        share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
+        clock.passes += passes
+        if share < 1.0:
+            return share
+        goes_on = False
+        clock.lengths_tried += 1
+        wanted_s = step_to_arrival(clock.lengths_tried, clock.last_step_s, model, state)
+        if wanted_s == clock.last_step_s:
+            return share
+        clock.last_step_s = wanted_s
+        if withhold(step, wanted_s, state.trains, recording):
+            clock.on_line = place_trains(model, state, recording)
+
+
 @kernel
+def run_steps(
+    first: int, last: int, model: Model, state: State, recording: Recording
+) -> tuple[int, int]:
+    """`advance` up to the first step that needs a search: `Status.SEARCHING`.
+
+    Once the search is done, the next call goes on with this step.
+    """
+    step, clock = first, state.clock[0]
+    status: int = Status.RUNNING
+    while step < last and status == Status.RUNNING:
+        goes_on = state.flow.search[0].request == Request.ANSWERED
+        if not goes_on:
+            clock.on_line = begin_step(step, model, state, recording)
+            clock.last_step_s, clock.lengths_tried, clock.passes = model.options.step_s, 0, 0
+            if step > 0:
+                predict(state.flow)
+        share = solve_lengths(step, goes_on, model, state, recording)
+        if share == ASKS:
+            return Status.SEARCHING, step
+        now = with_step(model, clock.last_step_s)
+        status = end_step(step, clock.on_line, share, clock.passes, now, state, recording)
+        if status == Status.RUNNING or status == Status.FINISHED:
+            step += 1
+    record_instant(step, state.trains, recording)
+    return status, step
+
+
 def advance(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
@@ -167,28 +247,8 @@ def advance(
     `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
     which is not carried out.
     """
-    step = first
-    status: int = Status.RUNNING
-    while step < last and status == Status.RUNNING:
-        count = begin_step(step, model, state, recording)
-        if step > 0:
-            predict(state.flow)
-        step_s, passes, tries, share = model.options.step_s, 0, 0, 0.0
-        while True:
-            now = with_step(model, step_s)
-            prepare_trains(count, now, state)
-            share, more = solve_step(count, step + tries > 0, now, state)
-            passes, tries = passes + more, tries + 1
-            wanted_s = step_s if share < 1.0 else step_to_arrival(tries, step_s, model, state)
-            if wanted_s == step_s:
-                break
-            step_s = wanted_s
-            if withhold(step, step_s, state.trains, recording):
-                count = place_trains(model, state, recording)
-        state.clock[0].last_step_s = step_s
-        now = with_step(model, step_s)
-        status = end_step(step, count, share, passes, now, state, recording)
-        if status == Status.RUNNING or status == Status.FINISHED:
-            step += 1
-    record_instant(step, state.trains, recording)
+    status, step = run_steps(first, last, model, state, recording)
+    while status == Status.SEARCHING:
+        answer_in_turn(model.network, state.flow, plain(loads_of)(model, state))
+        status, step = run_steps(step, last, model, state, recording)
     return status, step

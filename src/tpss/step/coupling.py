@@ -11,9 +11,9 @@ from tpss.driving.driver import aim
 from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
-from tpss.powerflow.load import find_demand
-from tpss.powerflow.network import Standing
-from tpss.powerflow.solve import solve
+from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
+from tpss.powerflow.network import Loads, Standing
+from tpss.powerflow.solve import ASKS, solve_or_ask
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
 from tpss.step.state import State, loads_of
@@ -35,7 +35,8 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     Returns
     -------
     share : float
-        1.0, or the share of the load that the line can carry.
+        1.0, or the share of the load that the line can carry; or `ASKS`: once the search is
+        done, a second call goes on.
     passes : int
         Evaluations of the network.
     """
@@ -101,21 +102,27 @@ def _must_decide_anew(train: Train, kind: TrainType, data: DrivingData) -> bool:
     return False
 
 
+@kernel
+def fix_voltage(voltage_v: float, count: int, standing: Records[Standing], loads: Loads) -> None:
+    """Let a voltage be that at all pantographs, and find what the trains draw there."""
+    for k in range(count):
+        train = loads.trains[at(standing[at(k)].train)]
+        train.demand.voltage_v = voltage_v
+        standing[at(k)].voltage_v = voltage_v
+        find_demand(voltage_v, WITHOUT_SLOPES, train, loads)
+
+
 @inlined
 def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[float, int]:
     """Voltages at all pantographs: by the load flow, or fixed if the model says so."""
     fixed_v, flow = model.control.fixed_voltage_v, state.flow
     if fixed_v > 0.0:
-        for k in range(count):
-            train = state.trains[at(flow.standing[at(k)].train)]
-            train.demand.voltage_v = fixed_v
-            flow.standing[at(k)].voltage_v = fixed_v
-        loads = loads_of(model, state)
-        for k in range(count):
-            find_demand(fixed_v, False, state.trains[at(flow.standing[at(k)].train)], loads)
+        fix_voltage(fixed_v, count, flow.standing, loads_of(model, state))
         return 1.0, 0
     loads = loads_of(model, state)
-    share, passes = solve(warm, model.network, flow, loads)
+    share, passes = solve_or_ask(warm, model.network, flow, loads)
+    if share == ASKS:
+        return share, passes
     for k in range(count):
         place = flow.standing[at(k)]
         state.trains[at(place.train)].demand.voltage_v = magnitude(place.voltage_v)

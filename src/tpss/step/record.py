@@ -2,17 +2,21 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from tpss.driving.work import mean_powers
 from tpss.kernel import at, inlined, kernel
+from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
+from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
-from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Call, Indices, Recording
-from tpss.step.state import State, TrainState
+from tpss.step.state import TrainState
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
 from tpss.vehicle.train import (
@@ -78,15 +82,50 @@ def state_code(train: Train) -> TrainState:
     return TrainState.MOTORING if train.forces.tractive_n > 0.0 else TrainState.COASTING
 
 
+@kernel
+def record_trains(
+    step: int,
+    count: int,
+    begin_s: float,
+    step_s: float,
+    kinds: Records[TrainType],
+    points: Points,
+    standing: Records[Standing],
+    trains: Records[Train],
+    rows: Records[TrainRow],
+    states: npt.NDArray[np.int8],
+    calls: Records[Call],
+    counters: Indices,
+) -> None:
+    """Forces, voltages and powers of the first `count` trains along the line.
+
+    Parameters
+    ----------
+    begin_s, step_s : float
+        When the step begins, and how long it lasts. [s]
+    kinds : records of TrainType
+    points : records of CurvePoint
+    rows, states, calls, counters
+        Of the recording, which as a whole would cost more to hand over.
+    """
+    for k in range(count):
+        i = standing[at(k)].train
+        train, row = trains[at(i)], rows[at(step), at(i)]
+        kind = kinds[at(train.train_type)]
+        states[at(step), at(i)] = state_code(train)
+        record_train(standing[at(k)].voltage_v, step_s, train, row)
+        if train.decision.course == Course.PASSAGE:
+            record_passage(begin_s, step_s, i, train, kind, row, calls)
+            count_breaches(train.passage.breaches, counters)
+        else:
+            record_step(step_s, train, kind, points, row, counters)
+
+
 @inlined
-def record_train(step: int, k: int, model: Model, state: State, recording: Recording) -> None:
-    """Forces, voltage and powers of the `k`-th train along the line."""
-    i = state.flow.standing[at(k)].train
-    train, row = state.trains[at(i)], recording.trains[at(step), at(i)]
-    demand, forces = train.demand, train.forces
-    moving_share, voltage = train.decision.moving_share, state.flow.standing[at(k)].voltage_v
-    recording.train_state[at(step), at(i)] = state_code(train)
-    row.acceleration = (forces.next_speed_m_s - train.motion.speed_m_s) / model.options.step_s
+def record_train(voltage: complex, step_s: float, train: Train, row: TrainRow) -> None:
+    """What is recorded of every train: forces, and voltage and powers at its pantograph."""
+    demand, forces, moving_share = train.demand, train.forces, train.decision.moving_share
+    row.acceleration = (forces.next_speed_m_s - train.motion.speed_m_s) / step_s
     row.tractive_force = forces.tractive_n
     row.braking_force = forces.braking_n
     row.running_resistance = forces.running_resistance_n * moving_share
@@ -96,33 +135,26 @@ def record_train(step: int, k: int, model: Model, state: State, recording: Recor
     row.active_power = demand.active_power_w
     row.reactive_power = demand.reactive_power_var
     row.holding_time = train.decision.hold_s
-    if train.decision.course == Course.PASSAGE:
-        begin_s, step_s = state.clock[0].begin_s, model.options.step_s
-        kind = model.types[at(train.train_type)]
-        record_passage(begin_s, step_s, i, train, kind, row, recording.calls)
-        count_breaches(train.passage.breaches, recording.counters)
-    else:
-        record_step(train, row, model, recording.counters)
 
 
 @inlined
-def record_step(train: Train, row: TrainRow, model: Model, counters: Indices) -> None:
+def record_step(
+    step_s: float, train: Train, kind: TrainType, points: Points, row: TrainRow, counters: Indices
+) -> None:
     """Works, and the state of the machine, in a step that is no passage."""
-    kind, demand = model.types[at(train.train_type)], train.demand
+    demand = train.demand
     current, _ = armature_demand(demand.wheel_force_n, 0.0, kind, demand)
     if kind.voltage_model != MotorModel.NEW:
         current /= line_voltage_factor(demand.voltage_v, kind.voltage_model)
     row.motor_current = motor_current(current, kind.current_model)
     row.motor_power = (demand.active_power_w - kind.auxiliary_power_w) / demand.per_efficiency
-    traction_w, braking_w, running_w, gradient_w = mean_powers(train, model.options.step_s)
+    traction_w, braking_w, running_w, gradient_w = mean_powers(train, step_s)
     row.traction_power = traction_w
     row.braking_power = braking_w
     row.resistance_power = running_w
     row.gradient_power = gradient_w
     if demand.force_cap_n > 0.0:
-        breaches = find_breaches(
-            train.forces.tractive_n, demand.voltage_v, kind, demand, model.points
-        )
+        breaches = find_breaches(train.forces.tractive_n, demand.voltage_v, kind, demand, points)
         count_breaches(breaches, counters)
 
 
@@ -158,9 +190,8 @@ def count_breaches(breaches: int, counters: Indices) -> None:
 
 
 @inlined
-def record_network(step: int, model: Model, state: State, recording: Recording) -> None:
+def record_network(step: int, network: Network, flow: Flow, recording: Recording) -> None:
     """Voltages of nodes, powers of stations, currents of branches and section ends, losses."""
-    network, flow = model.network, state.flow
     for n in range(flow.nodes.size):
         recording.nodes[at(step), at(n)].node_real = flow.nodes[at(n)].voltage_v.real
         recording.nodes[at(step), at(n)].node_imag = flow.nodes[at(n)].voltage_v.imag
@@ -189,14 +220,14 @@ def record_network(step: int, model: Model, state: State, recording: Recording) 
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        lost_w += section_losses(s, model, state)
+        lost_w += section_losses(s, network, flow)
     recording.network_losses[at(step)] = lost_w
 
 
 @inlined
-def section_losses(s: int, model: Model, state: State) -> float:
+def section_losses(s: int, network: Network, flow: Flow) -> float:
     """Losses of a contact-line section, I²R piece by piece. [W]"""
-    section, solution, flow = model.network.sections[at(s)], state.flow.sections[at(s)], state.flow
+    section, solution = network.sections[at(s)], flow.sections[at(s)]
     voltage, z = flow.nodes[at(section.start_node)].voltage_v, section.impedance_ohm_per_m
     sum_v2_per_m = 0.0
     for k in range(solution.first, solution.end + 1):

@@ -27,6 +27,8 @@ class Status(IntEnum):
     FINISHED = 1
     COLLAPSED = 2
     STALLED = 3
+    SEARCHING = 4
+    """A step waits for the answer of a search."""
 
 
 class TrainState(IntEnum):
@@ -72,7 +74,13 @@ class Clock(Record):
     begin_s: float
     """When the present step begins. [s]"""
     last_step_s: float
-    """Length of the step that was carried out last. [s]"""
+    """Length of the step that was carried out last, or is tried now. [s]"""
+    lengths_tried: int
+    """Lengths tried of a step before."""
+    passes: int
+    """Evaluations of the network in a step so far."""
+    on_line: int
+    """Trains on the line in it."""
     carried_share: float
     """Share of the load that the line carries, where it cannot carry all of it. [1]"""
 
