@@ -69,7 +69,7 @@ def force_to_target(train: Train, kind: TrainType, target_m_s: float, step_s: fl
     return ideal_force(a, train.demand.resistance_n, kind.inertia_kg)
 
 
-@inlined
+@kernel
 def set_target(train: Train, force_n: float, cap_n: float, target_m_s: float) -> None:
     """Set target and force of a train, and the force that driver and adhesion allow at most."""
     train.demand.force_cap_n = max(0.0, cap_n)

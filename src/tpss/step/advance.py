@@ -133,7 +133,7 @@ def end_step(
     if model.control.fixed_voltage_v <= 0.0:
         record_network(step, model.network, state.flow, recording)
         note_loading(model, state)
-    data = driving_data(model)
+    data = loads_of(model, state).driving
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]
         move_train(step, train, data, state.clock[0])
