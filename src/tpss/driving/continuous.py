@@ -12,7 +12,7 @@ it, the step becomes a passage, and is solved again.
 """
 
 from tpss.driving.data import DrivingData, Floats
-from tpss.driving.lookahead import highest_speed_at, what_to_brake_for
+from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.motion import force_to_target, move_uniformly, set_target
 from tpss.driving.passage import LONGEST_PHASE_S
 from tpss.kernel import at, inlined, kernel
@@ -24,6 +24,7 @@ from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.demand import (
     certify_free_band,
     follow_speed,
+    take_speed_as_it_is,
     update_cap_terms,
     update_speed_terms,
     within_free_band,
@@ -65,10 +66,7 @@ def _expect_acceleration(
     a = train.decision.acceleration_m_s2
     mean = max(0.0, v + a * h / 2.0)
     _resist(mean, mean * h, train, kind, data)
-    a += (train.decision.resistance_n - train.demand.resistance_n) / kind.inertia_kg
-    mean = max(0.0, v + a * h / 2.0)
-    _resist(mean, mean * h, train, kind, data)
-    return a
+    return a + (train.decision.resistance_n - train.demand.resistance_n) / kind.inertia_kg
 
 
 @inlined
@@ -112,10 +110,12 @@ def _expect_one_phase(
     if mean_speed_m_s != demand.terms_speed_m_s or not within_free_band(demand):
         update_speed_terms(mean_speed_m_s, kind, demand, points, scratch)
     demand.speed_m_s = train.motion.speed_m_s
-    follow_speed(kind, demand, points)
+    take_speed_as_it_is(demand)
+    if mean_speed_m_s != demand.speed_m_s:
+        follow_speed(kind, demand, points)
 
 
-@kernel
+@inlined
 def look_ahead(
     train: Train, kind: TrainType, data: DrivingData, points: Points, scratch: Floats
 ) -> None:
@@ -134,12 +134,12 @@ def look_ahead(
     if motion.wait_s > 0.0 or v <= 0.0:
         return
     here = index_at(motion.position_m, data.limits.from_m[row])
-    cruise = highest_speed_at(here, kind, data)
+    cruise = highest_speed(data.limits.value[row][at(here)], kind)
     if v > cruise:
         return
     motion.gradient = index_from(motion.gradient, motion.position_m, data.gradients.from_m[row])
-    square, _, _ = what_to_brake_for(train.route, motion, kind, data)
-    decision.braking_square_m2_s2 = square
+    square, _, _ = what_to_brake_for(here, train.route, motion, kind, data)
+    decision.cruise_m_s, decision.braking_square_m2_s2 = cruise, square
     a = _expect_acceleration(cruise, train, kind, data)
     if not _is_one_phase(a, cruise, here, train, kind, data):
         return
@@ -165,9 +165,7 @@ def aim(train: Train, data: DrivingData) -> None:
     kind, h, v = data.types[at(train.train_type)], data.options.step_s, train.motion.speed_m_s
     target = wanted = 0.0
     if train.motion.phase != Phase.DWELLING:
-        here = index_at(train.motion.position_m, data.limits.from_m[at(kind.profile)])
-        cruise = highest_speed_at(here, kind, data)
-        target = min(cruise, v + kind.highest_acceleration_m_s2 * h)
+        target = min(train.decision.cruise_m_s, v + kind.highest_acceleration_m_s2 * h)
         wanted = force_to_target(train, kind, target, h)
     set_target(train, wanted, min(wanted, train.demand.adhesion_n), target)
     certify_free_band(kind, train.demand)
@@ -200,9 +198,8 @@ def must_pass(train: Train, kind: TrainType, data: DrivingData) -> bool:
     v, after = motion.speed_m_s, train.forces.next_speed_m_s
     if after < 0.0:
         return True
-    here = index_at(motion.position_m, data.limits.from_m[at(kind.profile)])
-    if after > v and after >= highest_speed_at(here, kind, data):
-        return True
+    if after != v and (v == decision.cruise_m_s or after >= decision.cruise_m_s):
+        return True  # a speed cannot be held, or the limit is reached
     mean = (v + after) / 2.0
     if abs(mean - train.demand.terms_speed_m_s) > FARTHEST_OFF * mean:
         return True

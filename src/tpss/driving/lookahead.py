@@ -20,21 +20,20 @@ and a place at the distance d after :math:`t = 2 d / (v + \sqrt{v^2 + 2 a d})`.
 import math
 
 from tpss.driving.data import DrivingData
-from tpss.kernel import at, inlined, kernel
-from tpss.numerics.staircase import index_at
+from tpss.kernel import at, fused, inlined
 from tpss.vehicle.train import Motion
 from tpss.vehicle.train_type import TrainType
 
 
-@kernel
-def highest_speed_at(place: int, kind: TrainType, data: DrivingData) -> float:
-    """Highest speed of a train where the limit with this index holds. [m/s]"""
-    return min(data.limits.value[at(kind.profile)][at(place)], kind.highest_speed_m_s)
+@fused
+def highest_speed(limit_m_s: float, kind: TrainType) -> float:
+    """Highest speed of a train where a limit holds. [m/s]"""
+    return min(limit_m_s, kind.highest_speed_m_s)
 
 
-@kernel
+@inlined
 def what_to_brake_for(
-    route: int, motion: Motion, kind: TrainType, data: DrivingData
+    here: int, route: int, motion: Motion, kind: TrainType, data: DrivingData
 ) -> tuple[float, float, float]:
     """Square of the speed from which a train has to brake here, where it brakes to, and to which speed.
 
@@ -42,6 +41,8 @@ def what_to_brake_for(
 
     Parameters
     ----------
+    here : int
+        Index of the limit that holds where the train is.
     route : int
         Of the train.
     motion : Motion
@@ -53,18 +54,19 @@ def what_to_brake_for(
     ----------
     [Boullanger2009]_, implied by eq. (2.29) and (2.30).
     """
-    from_m = data.limits.from_m[at(kind.profile)]
+    row = at(kind.profile)
+    from_m, value = data.limits.from_m[row], data.limits.value[row]
     per_metre = 2.0 * kind.highest_retardation_m_s2
     position_m, fastest = motion.position_m, kind.highest_speed_m_s
     target_m, target_m_s = data.stops[at(route), at(motion.next_stop)].position_m, 0.0
     square = per_metre * (target_m - position_m)
     reach = fastest * (fastest + per_metre * data.options.step_s)
-    j = index_at(position_m, from_m) + 1
+    j = here + 1
     while j < from_m.size:
         room = per_metre * (from_m[at(j)] - position_m)
         if room >= min(square, reach):
             break
-        limit_m_s = highest_speed_at(j, kind, data)
+        limit_m_s = highest_speed(value[at(j)], kind)
         if room + limit_m_s**2 < square:
             square, target_m, target_m_s = room + limit_m_s**2, from_m[at(j)], limit_m_s
         j += 1

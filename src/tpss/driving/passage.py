@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import (
-    highest_speed_at,
+    highest_speed,
     time_to_braking,
     time_to_place,
     what_to_brake_for,
@@ -310,17 +310,16 @@ def _add_phase(
 
 @inlined
 def _aim(
-    square: float, target_m: float, target_m_s: float, passage: Passage, kind: TrainType,
-    data: DrivingData,
+    here: int, square: float, target_m: float, target_m_s: float, passage: Passage,
+    kind: TrainType, data: DrivingData,
 ) -> Aim:  # fmt: skip
     """What the driver of a moving train, or of one that is to start, wants now.
 
-    Parameters are what `what_to_brake_for` gives.
+    Parameters are what `what_to_brake_for` takes and gives.
     """
     motion, from_m = passage.motion, data.limits.from_m[at(kind.profile)]
     v, b, left = motion.speed_m_s, kind.highest_retardation_m_s2, passage.left_s
-    here = index_at(motion.position_m, from_m)
-    cruise = highest_speed_at(here, kind, data)
+    cruise = highest_speed(data.limits.value[at(kind.profile)][at(here)], kind)
     if v > target_m_s and v * v >= square * (1.0 - ROUNDING):
         # b leads to the place but for roundings; another one where a train has been placed too near.
         square_m2_s2, way_m = v * v - target_m_s * target_m_s, target_m - motion.position_m
@@ -369,8 +368,9 @@ def _drive(
         motion.gradient, position_m, data.gradients.from_m[at(kind.profile)]
     )
     # 1. What the driver wants.
-    square, target_m, target_m_s = what_to_brake_for(train.route, motion, kind, data)
-    aim = _aim(square, target_m, target_m_s, passage, kind, data)
+    here = index_at(position_m, data.limits.from_m[at(kind.profile)])
+    square, target_m, target_m_s = what_to_brake_for(here, train.route, motion, kind, data)
+    aim = _aim(here, square, target_m, target_m_s, passage, kind, data)
     # 2. What the machine gives.
     pull, end = _choose_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)

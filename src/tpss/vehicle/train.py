@@ -113,6 +113,8 @@ class Decision(Record):
     """Acceleration at the end of the step before, if it moves continuously. [m/s²]"""
     resistance_n: float
     """Resistances then. [N]"""
+    cruise_m_s: float
+    """Highest speed where it is, at the start of the step, if it moves continuously. [m/s]"""
     braking_square_m2_s2: float
     """Square of the speed from which it has to brake, at the start of the step. [m²/s²]"""
 
