@@ -297,7 +297,7 @@ def _add_phase(
         kind, train.demand, points, scratch,
     )  # fmt: skip
     passage.breaches |= breaches
-    if voltage_decides(pull.traction_n, pull.cap_n, kind):
+    if voltage_decides(pull.traction_n, pull.cap_n, kind, train.demand):
         passage.by_voltage = True
     passage.active_j += active * duration
     passage.reactive_vars += reactive * duration

@@ -29,7 +29,7 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     stood_min = np.where(seen, time_min[:, None], -np.inf).max(axis=0) - arrival_min
     there = np.isfinite(voltage_kv).astype(float)
     # One that departs within a step is there from the instant before.
-    waited_min = np.nan_to_num(departure_min - time_min[np.isfinite(voltage_kv).argmax(axis=0)])
+    waited_min = np.nan_to_num(departure_min - time_min[there.argmax(axis=0)]) * drawn
     moving_min = over_time(there, dataset) / 60.0 - np.nan_to_num(stood_min) - waited_min
     return pd.DataFrame(
         {

@@ -249,6 +249,7 @@ def advance(
     """
     status, step = run_steps(first, last, model, state, recording)
     while status == Status.SEARCHING:
-        answer_in_turn(model.network, state.flow, plain(loads_of)(model, state))
+        now = plain(with_step)(model, state.clock[0].last_step_s)
+        answer_in_turn(model.network, state.flow, plain(loads_of)(now, state))
         status, step = run_steps(step, last, model, state, recording)
     return status, step

@@ -71,10 +71,10 @@ def force_of_phase(
 
 
 @inlined
-def voltage_decides(force_n: float, cap_n: float, kind: TrainType) -> bool:
+def voltage_decides(force_n: float, cap_n: float, kind: TrainType, demand: Demand) -> bool:
     """Whether the force of a phase is one that the line voltage decides about."""
     limited = kind.line_current.highest_current_a < math.inf
-    return force_n < cap_n and (limited or follows_voltage(kind.effort))
+    return force_n < cap_n and (limited or follows_voltage(kind.effort, demand.effort))
 
 
 @kernel

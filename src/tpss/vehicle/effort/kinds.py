@@ -164,28 +164,21 @@ def effort_at(
     voltage_v, speed_m_s : float
         Voltage at the pantograph [V], train speed [m/s].
     terms : EffortTerms
-        Scratch of a table.
+        Written, but for a network.
     effort, network, points, scratch
         As in `update_effort` and `highest_force`.
     """
-    if effort.kind == EffortKind.TABLE:
-        evaluate_rows(speed_m_s, effort.table, terms.table, points)
-        force, _ = table_force(voltage_v, effort.table, terms.table)
-        return force
-    if effort.kind == EffortKind.LIMITS:
-        share, _ = voltage_share(voltage_v, effort.limits)
-        return share * limited_force(speed_m_s, effort.limits)
-    return motor_force(speed_m_s, voltage_v, effort.highest_current_a, network, scratch)
+    if effort.kind == EffortKind.NETWORK:
+        return motor_force(speed_m_s, voltage_v, effort.highest_current_a, network, scratch)
+    update_effort(speed_m_s, effort, terms, network, points)
+    force, _ = _described_force(voltage_v, effort, terms)
+    return force
 
 
 @inlined
-def follows_voltage(effort: TractiveEffort) -> bool:
-    """Whether the line voltage has a part in the force."""
-    if effort.kind == EffortKind.TABLE:
-        return effort.table.rows > 1
-    if effort.kind == EffortKind.LIMITS:
-        return effort.limits.full_voltage_v > effort.limits.zero_voltage_v
-    return True
+def follows_voltage(effort: TractiveEffort, terms: EffortTerms) -> bool:
+    """Whether the line voltage has a part in the force that `effort_at` has found."""
+    return bool(effort.kind == EffortKind.NETWORK or terms.steepest_n_per_v > 0.0)
 
 
 @inlined
