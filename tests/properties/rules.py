@@ -70,6 +70,10 @@ def judge_departures(result: Result) -> None:
                 for minute, step in zip(asked_min, step_of, strict=True)
                 if step < max(begun, 1) and (begun == 0 or 60.0 * minute < end_s)
             ]
+            if result.status != "finished":  # a step that was to end with an arrival is shorter
+                left_out = due_s[len(departed_s) :]
+                assert all(time_s >= h * (begun - 1) for time_s in left_out), entry.name
+                due_s = due_s[: len(departed_s)]
             assert departed_s.tolist() == pytest.approx(due_s, rel=0.0, abs=2e-6), entry.name
             continue
         due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]

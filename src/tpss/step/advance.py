@@ -24,7 +24,7 @@ ARRIVAL_S = 1e-6
 SHORTEST_STEP_S = 0.01
 """A last step is no shorter: means over less than this would be roundings. [s]"""
 
-MOST_LENGTHS = 8
+MOST_LENGTHS = 30
 """Lengths of a last step that are tried."""
 
 
@@ -205,8 +205,12 @@ def solve_lengths(
         wanted_s = step_to_arrival(clock.lengths_tried, clock.last_step_s, model, state)
         if wanted_s == clock.last_step_s:
             return share
+        longer = wanted_s > clock.last_step_s
         clock.last_step_s = wanted_s
-        if withhold(step, wanted_s, state.trains, recording):
+        if longer:  # who was withheld may depart in time after all
+            depart(step, state.trains)
+        if withhold(step, wanted_s, state.trains, recording) or longer:
+            record_instant(step, state.trains, recording)
             clock.on_line = place_trains(model, state, recording)
 
 
