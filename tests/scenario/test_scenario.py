@@ -82,6 +82,15 @@ def test_a_high_voltage_line_has_132_kv_and_the_library_s_transformers():
     assert high_voltage.station_transformer.x_ohm == 0.54
 
 
+def test_changes_of_a_scenario_leave_what_they_were_given_as_it_is():
+    """A second path leads into the list that the first one has set."""
+    level = [{"from_km": 0.0, "permille": 5.0}]
+    changes = {"line.gradients": level, "line.gradients.0.permille": 30.0}
+    changed = short_line(changes)
+    assert changed.line.gradients[0].permille == 30.0
+    assert level == [{"from_km": 0.0, "permille": 5.0}]
+
+
 def test_a_train_starts_from_its_model_and_overrides_what_it_gives():
     scenario = short_line({"trains.freight.mass_t": 900.0, "trains.freight.slip": 0.02})
     train = scenario.trains["freight"]

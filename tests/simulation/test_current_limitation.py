@@ -50,6 +50,7 @@ def allowed_a(voltage_v):
 def test_the_limit_is_kept_at_every_step_and_met_where_it_holds(train, sampling):
     """`run` asserts the audit and the rules of every run besides."""
     result = on_weak_line(train, **LIMIT, **{"simulation.power_sampling": sampling})
+    assert result.status == "finished", result.summary["problem"]
     data = result.dataset.isel(time=slice(0, -1))
     power_va = np.hypot(data.active_power, data.reactive_power)
     current_a = (power_va / data.pantograph_voltage).to_numpy()

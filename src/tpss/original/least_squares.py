@@ -21,13 +21,18 @@ from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
 from tpss.powerflow.network import Loads
 from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
-from tpss.step.advance import begin_step, end_step, place_trains, prepare_step, step_to_arrival
+from tpss.step.advance import (
+    begin_step,
+    change_length,
+    end_step,
+    prepare_step,
+    step_to_arrival,
+)
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
 from tpss.step.state import State, Status
-from tpss.step.traffic import withhold
 
 SHORTEST_MOVE = 1e-8
 """The minimum is reached where a step changes the unknowns by less than this share of them.  Close to a
@@ -43,21 +48,19 @@ def advance_by_least_squares(
     step = first
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
-        count = begin_step(step, model, state, recording)
-        step_s, evaluations, tries, share = model.options.step_s, 0, 0, 0.0
+        clock = state.clock[0]
+        clock.on_line = begin_step(step, model, state, recording)
+        evaluations, tries = 0, 0
         while True:
-            now = plain(with_step)(model, step_s)
-            prepare_step(count, now, state)
-            share, more = solve_step(count, step + tries > 0, now, state)
+            now = plain(with_step)(model, clock.last_step_s)
+            prepare_step(clock.on_line, now, state)
+            share, more = solve_step(clock.on_line, step + tries > 0, now, state)
             evaluations, tries = evaluations + more, tries + 1
-            wanted_s = plain(step_to_arrival)(tries, step_s, model, state)
-            if share < 1.0 or wanted_s == step_s:
+            wanted_s = plain(step_to_arrival)(tries, clock.last_step_s, model, state)
+            if share < 1.0 or wanted_s == clock.last_step_s:
                 break
-            step_s = wanted_s
-            if withhold(step, step_s, state.trains, recording):
-                count = place_trains(model, state, recording)
-        state.clock[0].last_step_s = step_s
-        status = end_step(step, count, share, evaluations, now, state, recording)
+            change_length(step, wanted_s, model, state, recording)
+        status = end_step(step, clock.on_line, share, evaluations, now, state, recording)
         if status in (Status.RUNNING, Status.FINISHED):
             step += 1
     record_instant(step, state.trains, recording)

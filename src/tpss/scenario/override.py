@@ -42,7 +42,8 @@ def put_in(document: dict[str, Any], changes: Mapping[str, Any], source: Path) -
     findings = []
     for path, value in changes.items():
         try:
-            _set(document, path.split("."), value)
+            # A copy: a later path may lead into it, and the caller's own must stay as it is.
+            _set(document, path.split("."), copy_of(value))
         except (KeyError, IndexError, ValueError, TypeError):
             problem = "no such place in the scenario"
             remedy = "name tables by their keys and list items by their number from 0"

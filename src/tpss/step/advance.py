@@ -52,22 +52,22 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     """Traffic, converter control, places; return the number of trains on the line."""
     # 1. Departures, and removal of arrived trains, which this instant still shows.
     state.clock[0].begin_s = step * model.options.step_s
+    state.clock[0].last_step_s = model.options.step_s
     depart(step, state.trains)
     record_instant(step, state.trains, recording)
     remove_arrived(state.trains)
     # 2. Converter control (3.6)-(3.9).
     control_converters(step * model.options.step_s, model, state)
     # 3. Where the trains stand.
-    return place_trains(model, state, recording)
+    return place_trains(model, state)
 
 
 @kernel
-def place_trains(model: Model, state: State, recording: Recording) -> int:
+def place_trains(model: Model, state: State) -> int:
     """Find where the trains on the line stand; return their number."""
     count = list_trains(state.trains, state.flow)
     locate_trains(count, state.trains, model.network, state.flow)
-    short = measure_pieces(count, model.network, state.flow)
-    recording.counters[Counter.SHORT_PIECE] += short
+    state.clock[0].short_pieces = measure_pieces(count, model.network, state.flow)
     return count
 
 
@@ -119,6 +119,7 @@ def end_step(
         With `Status.COLLAPSED` and `Status.STALLED` the step is not carried out.
     """
     recording.passes[at(step)] = passes
+    recording.counters[Counter.SHORT_PIECE] += state.clock[0].short_pieces
     if share < 1.0:
         state.clock[0].carried_share = share
         return Status.COLLAPSED
@@ -205,13 +206,22 @@ def solve_lengths(
         wanted_s = step_to_arrival(clock.lengths_tried, clock.last_step_s, model, state)
         if wanted_s == clock.last_step_s:
             return share
-        longer = wanted_s > clock.last_step_s
-        clock.last_step_s = wanted_s
-        if longer:  # who was withheld may depart in time after all
-            depart(step, state.trains)
-        if withhold(step, wanted_s, state.trains, recording) or longer:
-            record_instant(step, state.trains, recording)
-            clock.on_line = place_trains(model, state, recording)
+        change_length(step, wanted_s, model, state, recording)
+
+
+@kernel
+def change_length(
+    step: int, step_s: float, model: Model, state: State, recording: Recording
+) -> None:
+    """Give a step that is to end with an arrival another length; who is on the line may change. [s]"""
+    clock = state.clock[0]
+    longer = step_s > clock.last_step_s
+    clock.last_step_s = step_s
+    if longer:  # who was withheld may depart in time after all
+        depart(step, state.trains)
+    if withhold(step, step_s, state.trains, recording) or longer:
+        record_instant(step, state.trains, recording)
+        clock.on_line = place_trains(model, state)
 
 
 @kernel
@@ -228,7 +238,7 @@ def run_steps(
         goes_on = state.flow.search[0].request == Request.ANSWERED
         if not goes_on:
             clock.on_line = begin_step(step, model, state, recording)
-            clock.last_step_s, clock.lengths_tried, clock.passes = model.options.step_s, 0, 0
+            clock.lengths_tried, clock.passes = 0, 0
             if step > 0:
                 predict(state.flow)
         share = solve_lengths(step, goes_on, model, state, recording)

@@ -73,6 +73,8 @@ class Clock(Record):
     """Force that it has. [N]"""
     begin_s: float
     """When the present step begins. [s]"""
+    short_pieces: int
+    """Pieces of line between trains and nodes that were too short, in the present step."""
     last_step_s: float
     """Length of the step that was carried out last, or is tried now. [s]"""
     lengths_tried: int

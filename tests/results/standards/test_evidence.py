@@ -200,7 +200,7 @@ def test_a_peak_window_beyond_the_run_is_told(main_line):
     late = main_line.with_standards({"peak_from_min": 60.0, "peak_to_min": 120.0})
     assert late.summary["standards"]["mean_useful_voltage"]["zones_kv"] == {"West-East": None}
     (note,) = late.standards.notes
-    assert note.startswith("The peak window of 60 min to 120 min is not within the run (99.5 min)")
+    assert note.startswith("The peak window of 60 min to 120 min is not within the run (99.19 min)")
 
 
 def test_a_run_that_ended_early_says_so():

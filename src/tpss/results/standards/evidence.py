@@ -20,7 +20,6 @@ from tpss.results.standards.low_voltage import LowVoltagePlace, find_low_voltage
 from tpss.results.standards.violations import Violation, find_violations, voltage_in_words
 from tpss.results.standards.voltage_limits import Excursion, find_excursions
 from tpss.results.standards.windows import WINDOWS_MIN, Floats, table_of
-from tpss.results.tables import step_s
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.standards import Standards
 
@@ -153,19 +152,19 @@ class Evidence:
     @property
     def notes(self) -> list[str]:
         """Notes on missing figures."""
-        run_min = (self.dataset.sizes["time"] - 1) * step_s(self.dataset) / 60.0
+        run_min = float(self.dataset.time[-1]) / 60.0
+        the_run = f"the run ({round(run_min, 2):g} min)"
         notes = []
         longer = [f"{window:g}" for window in WINDOWS_MIN if window > run_min * (1.0 + 1e-9)]
         if longer:
             notes.append(
-                f"Windows of {', '.join(longer)} min are longer than the run ({run_min:g} min): their "
-                "means are NaN"
+                f"Windows of {', '.join(longer)} min are longer than {the_run}: their means are NaN"
             )
         if self._window is None:
             begin, end = self.standards.peak_from_min, self.standards.peak_to_min
             upto = "the end of the run" if end is None else f"{end:g} min"
             notes.append(
-                f"The peak window of {begin:g} min to {upto} is not within the run ({run_min:g} min): "
+                f"The peak window of {begin:g} min to {upto} is not within {the_run}: "
                 "mean useful voltages are NaN"
             )
         if self.dataset.attrs["status"] != "finished":

@@ -22,6 +22,26 @@ SPEED, VOLTAGE, CURRENT = 0, 1, 2
 
 
 @inlined
+def _put_in(
+    speed_m_s: float,
+    voltage_v: float,
+    current_a: float,
+    network: FeedForwardNetwork,
+    scratch: Array,
+) -> None:
+    """Put what each neuron is given into the first row of the scratch.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
+    """
+    weight = network.weight
+    for n in range(NEURONS):
+        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
+        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+
+
+@inlined
 def motor_force(
     speed_m_s: float,
     voltage_v: float,
@@ -37,10 +57,7 @@ def motor_force(
     ----------
     [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
     """
-    weight = network.weight
-    for n in range(NEURONS):
-        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
-        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+    _put_in(speed_m_s, voltage_v, current_a, network, scratch)
     logsig(scratch[0])
     return network.output_bias + weigh(network.output, scratch[0])
 
@@ -75,10 +92,7 @@ def motor_force_series(
     ----------
     [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
     """
-    weight = network.weight
-    for n in range(NEURONS):
-        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
-        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+    _put_in(speed_m_s, voltage_v, current_a, network, scratch)
     make_series(voltage_v, network, scratch, series)
     return weigh(network.by_first, scratch[1])
 
