@@ -117,3 +117,58 @@ def test_a_stall_for_want_of_grip_does_not_blame_the_limitation():
     result = on_weak_line("network", **LIMIT, **{"line.gradients.0.permille": 30.0})
     assert result.status == "stalled"
     assert "current limitation" not in result.summary["problem"]
+
+
+OVERLOADED = {
+    **WEAK,
+    "simulation.time_step_min": 0.5,
+    "simulation.braking": "within-step",
+    "simulation.duration_min": 80.0,
+    "line.length_km": 80.0,
+    "line.stations.2.position_km": 80.0,
+    **gradients((0.0, 0.0)),
+    "supply.catenary": "BT",
+    "supply.converter_stations.0.converters": 6,
+    "traffic.0.headway_min": 5.0,
+    "trains.freight.max_motor_current_a": 1250.0,
+    "trains.freight.filter_reactance_ohm": -0.45,
+    "trains.freight.reactive_power": "double-bridge",
+    "trains.freight.current_limitation": {
+        "max_current_a": 900.0, "umin2_kv": 12.0, "knee_factor": 0.95,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("motion", ["continuous", "stepped"])
+def test_a_line_of_limited_trains_is_solved_in_few_passes(motion):
+    """Fifteen trains of one station, ten of them within 0.2 kV of Umin2: each adds 0.4 S to what the
+    push along the line runs against.  Two starts that fail take 80 passes; a path takes thousands."""
+    result = run({**OVERLOADED, "simulation.motion": motion})
+    assert result.status == "finished"
+    assert result.dataset.pantograph_voltage.min() == pytest.approx(12e3, rel=0.005)
+    passes = result.dataset.load_flow_passes.to_numpy()
+    assert passes.max() <= 150
+    assert (passes > 80).any()
+
+
+def test_trains_that_come_to_stand_at_umin2_are_a_stall_not_a_collapse():
+    """On 4 per mille, one converter for sixteen trains.  Those at the end get no current for traction
+    and roll to a stand within a step, where they go on to draw what their auxiliaries need."""
+    changes = {
+        **OVERLOADED,
+        **gradients((0.0, 4.0)),
+        "simulation.time_step_min": 0.2,
+        "simulation.duration_min": 180.0,
+        "line.length_km": 120.0,
+        "line.stations.2.position_km": 120.0,
+        "simulation.motion": "continuous",
+        "supply.converter_stations.0.converters": 1,
+        "traffic.0.already_running": True,
+        "trains.freight.max_motor_current_a": 2080.0,
+        "trains.freight.current_limitation": {
+            "max_current_a": 600.0, "umin2_kv": 11.0, "knee_factor": 0.9,
+        },
+    }  # fmt: skip
+    result = run(changes)
+    assert result.status == "stalled"
+    assert "current limitation passes 0 % of the wanted force" in result.summary["problem"]

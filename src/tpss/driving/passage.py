@@ -237,6 +237,15 @@ def _note_arrival(passage: Passage, train: Train, step_s: float) -> None:
         passage.departure_s[place] = math.nan
 
 
+@kernel
+def _draw_standing(voltage_v: float, duration_s: float, passage: Passage, kind: TrainType) -> None:
+    """Add what a train draws while it stands."""
+    active, reactive, slope = demand_standing(voltage_v, kind)
+    passage.active_j += active * duration_s
+    passage.reactive_vars += reactive * duration_s
+    passage.reactive_slope_vars += slope * duration_s
+
+
 @inlined
 def _stand(
     voltage_v: float, passage: Passage, train: Train, kind: TrainType, step_s: float
@@ -245,10 +254,7 @@ def _stand(
     motion = passage.motion
     duration = min(motion.wait_s, passage.left_s)
     if motion.phase == Phase.DWELLING:
-        active, reactive, slope = demand_standing(voltage_v, kind)
-        passage.active_j += active * duration
-        passage.reactive_vars += reactive * duration
-        passage.reactive_slope_vars += slope * duration
+        _draw_standing(voltage_v, duration, passage, kind)
     passage.left_s -= duration
     motion.wait_s -= duration
     passage.acceleration_m_s2 = 0.0
@@ -379,6 +385,9 @@ def _drive(
         passage.stalled = True
         passage.needed_n = pull.running_n + pull.gradient_n
         passage.available_n = pull.traction_n
+        # A voltage tried may let the train stall that the solution does not: without the auxiliaries
+        # of the time that is left, the demand would jump there.
+        _draw_standing(voltage_v, passage.left_s, passage, kind)
         # For those who ask what limits it.
         options = data.options
         train.demand.force_cap_n = pull.cap_n

@@ -215,6 +215,8 @@ class Search(Record):
     """The same in the last time step. [VA]"""
     request: Request
     """What is asked of a search."""
+    warm: bool
+    """Whether there is a last time step from which it may begin."""
     share: float
     """Share of the load that is carried, as the search has found it. [1]"""
     passes: int

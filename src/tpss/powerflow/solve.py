@@ -2,15 +2,17 @@
 
 1. Newton from the last step's state.
 2. Newton from a flat start (all voltages at their base value).
-3. Load continuation from base voltage: all loads are raised together from zero, by steps that shrink
+3. Linked Newton steps (`powerflow.linked`) from the last step's state: behind many trains whose current
+   is limited, Newton over the nodes alone would have to begin very close.
+4. Load continuation from base voltage: all loads are raised together from zero, by steps that shrink
    where Newton fails.
-4. The paths of `powerflow.path`, with ever smaller steps: the state without load from that of like
+5. The paths of `powerflow.path`, with ever smaller steps: the state without load from that of like
    sources; from there the loads, to the whole of them or to the end of the path, also through states
    that are implausible; and once more, with the loads raised first and the sources brought apart then.
    Where no path leads to the whole load, the share at which that of the loads ends is the result, and
    `Flow.search` says how it ended.
 
-What 1 to 3 find has the sign of the determinant that belongs to the stable branch, but another branch
+What 1 to 4 find has the sign of the determinant that belongs to the stable branch, but another branch
 may have it as well: stations out of phase can feed each other.  So where the stations' powers have
 changed by more than the trains draw, the solution is held against the one to which the path from the
 state without load leads, and that one counts.
@@ -22,6 +24,7 @@ has done by a kernel that is compiled when it is needed.
 from tpss.kernel import at, compile_quickly, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
+from tpss.powerflow.linked import newton_linked
 from tpss.powerflow.network import Ending, Flow, Loads, Network, Request
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.path import (
@@ -92,6 +95,17 @@ def start_flat(network: Network, flow: Flow) -> None:
         flow.nodes[at(n)].voltage_v = network.system.base_voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].current_a = 0.0
+
+
+@inlined
+def start_from_last(flow: Flow, loads: Loads) -> None:
+    """Start with all voltages, those at the trains too, from the last time step."""
+    predict(flow)
+    for s in range(flow.sections.size):
+        section = flow.sections[at(s)]
+        for k in range(section.first, section.end):
+            place = flow.standing[at(k)]
+            place.voltage_v = loads.trains[at(place.train)].line_voltage_v
 
 
 @inlined
@@ -271,14 +285,20 @@ def take_root_of_path(known: bool, network: Network, flow: Flow, loads: Loads) -
 
 @kernel
 def solve_from_zero(solved: int, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
-    """Steps 3 and 4; or hold the solution in `flow` against that of the path, if it is `SOLVED`.
+    """Steps 3 to 5; or hold the solution in `flow` against that of the path, if it is `SOLVED`.
 
     Return the share of the load that is carried, and the passes.  All that is rarely asked for is one
     kernel, as each that calls `newton` takes seconds to compile.
     """
     share, passes = 1.0, 0
     if solved != Solution.SOLVED:
-        share, passes = continue_from_zero(network, flow, loads)
+        if flow.search[0].warm:
+            start_from_last(flow, loads)
+            status, passes = newton_linked(1.0, network, flow, loads)
+            if status == Solution.SOLVED:
+                return 1.0, passes
+        share, more = continue_from_zero(network, flow, loads)
+        passes += more
         if share == 1.0:
             return share, passes
     flow.search[0].ending, flow.search[0].without_load = Ending.FOUND, False
@@ -315,6 +335,7 @@ def solve_or_ask(warm: bool, network: Network, flow: Flow, loads: Loads) -> tupl
     if asked.request == Request.ANSWERED:
         asked.request = Request.NOTHING
         return asked.share, asked.passes
+    asked.warm = warm
     status: int = Solution.NOT_CONVERGED
     for start in (WARM, FLAT):
         if status != Solution.SOLVED and (warm or start == FLAT):

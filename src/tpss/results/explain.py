@@ -29,8 +29,9 @@ _UNLOADED = (
     "raises the voltage: the catenary's capacitance_nf_per_km, or no_load_voltage_kv of the stations."
 )
 _TRIED = (
-    "Tried were a start from the step before, from base voltage, the loads raised together from zero by "
-    "ever smaller steps, and stations made alike and brought apart."
+    "Tried were starts from the step before, the trains' voltages as unknowns too, from base voltage, "
+    "the loads raised together from zero by ever smaller steps, and stations made alike and brought "
+    "apart."
 )
 _TRY_OTHERS = "Try a shorter time step."
 _ALIGN = (

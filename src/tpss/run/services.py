@@ -135,7 +135,7 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
         if any(column):  # most of them are zero
             (records[part[0]] if part else records)[field] = column
     records["timetable"]["arrival_step"] = -1
-    records["demand"]["voltage_v"] = voltage_v
+    records["demand"]["voltage_v"] = records["line_voltage_v"] = voltage_v
     records["demand"]["terms_speed_m_s"] = -1.0
     return records
 

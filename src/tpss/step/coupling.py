@@ -125,5 +125,7 @@ def solve_network(count: int, warm: bool, model: Model, state: State) -> tuple[f
         return share, passes
     for k in range(count):
         place = flow.standing[at(k)]
-        state.trains[at(place.train)].demand.voltage_v = magnitude(place.voltage_v)
+        train = state.trains[at(place.train)]
+        train.line_voltage_v = place.voltage_v
+        train.demand.voltage_v = magnitude(place.voltage_v)
     return share, passes

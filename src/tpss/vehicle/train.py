@@ -205,6 +205,8 @@ class Train(Record):
     decision: Decision
     forces: Forces
     demand: Demand
+    line_voltage_v: complex
+    """Voltage at its pantograph in the last solution, at first the nominal one. [V]"""
     passage: Passage
     """Its way through the present step, at the voltage last tried."""
     trial: Passage
