@@ -100,6 +100,7 @@ COMPUTE_NO_EQUATION = {
         "within_free_band", "motor_power_demand", "armature_demand", "motors_current",
         "train_bridge_sine", "effort_outside_training", "outside_table", "effort_by_speed",
         "take_speed_as_it_is", "_settle", "effort_at", "follows_voltage", "voltage_decides",
+        "lay_out_bands", "band_above", "band_below",
         # Questions about the state of a train, and what keeps it.
         "is_on_line", "brakes_within_step", "current_limits", "find_breaches", "copy_motion",
     },

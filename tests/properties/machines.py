@@ -9,6 +9,17 @@ from .ranges import numbers
 Draw = Any
 Document = dict[str, Any]
 
+
+@st.composite
+def retardations(draw: Draw, lowest: float, highest: float) -> Any:
+    """A highest retardation: mostly a number, else one for each band of speeds."""
+    if draw(st.integers(0, 4)) < 4:
+        return draw(numbers(lowest, highest))
+    speeds = draw(st.lists(numbers(1.0, 250.0), max_size=4, unique=True))
+    each = st.lists(numbers(lowest, highest), min_size=len(speeds) + 1, max_size=len(speeds) + 1)
+    return {"from_speed_kmh": [0.0, *sorted(speeds)], "retardation_m_s2": draw(each)}
+
+
 TRAINS = st.fixed_dictionaries(
     {"model": st.just("Rc4-freight-1470t")},
     optional={
@@ -16,7 +27,7 @@ TRAINS = st.fixed_dictionaries(
         "adhesion": numbers(0.05, 0.4),
         "length_m": st.sampled_from([0.0, 25.0, 700.0]),
         "max_motor_current_a": st.sampled_from([150.0, 700.0, 1250.0, 2080.0, 2500.0, 5000.0]),
-        "max_retardation_m_s2": numbers(0.05, 2.0),
+        "max_retardation_m_s2": retardations(0.05, 2.0),
         "max_speed_kmh": numbers(20.0, 250.0),
         "efficiency": numbers(0.5, 1.0),
         "auxiliary_power_kw": st.one_of(numbers(0.0, 800.0), numbers(1000.0, 6000.0)),
@@ -61,7 +72,7 @@ EMUS = st.fixed_dictionaries(
         "resistance_b_n_s_per_m": numbers(0.0, 300.0),
         "resistance_c_n_s2_per_m2": numbers(0.0, 20.0),
         "max_speed_kmh": numbers(40.0, 300.0),
-        "max_retardation_m_s2": numbers(0.2, 1.5),
+        "max_retardation_m_s2": retardations(0.2, 1.5),
         "efficiency": numbers(0.6, 1.0),
         "auxiliary_power_kw": numbers(0.0, 800.0),
         "power_factor": numbers(0.8, 1.0),
@@ -135,7 +146,7 @@ ODD_TRAINS = st.builds(
             "resistance_b_n_s_per_m": numbers(0.0, 500.0),
             "resistance_c_n_s2_per_m2": numbers(0.0, 50.0),
             "max_speed_kmh": numbers(20.0, 250.0),
-            "max_retardation_m_s2": numbers(0.1, 1.5),
+            "max_retardation_m_s2": retardations(0.1, 1.5),
             "efficiency": numbers(0.5, 1.0),
             "auxiliary_power_kw": numbers(0.0, 300.0),
             "auxiliary_power_factor": numbers(0.5, 1.0),

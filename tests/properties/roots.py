@@ -1,6 +1,7 @@
 """The root that loads raised from zero in small steps lead to: a second opinion on a run."""
 
 import copy
+import math
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,13 @@ from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.run import Run, trains_on_line
 from tpss.run.services import departing_trains
-from tpss.step.advance import begin_step, prepare_step
+from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.state import State, loads_of
 
 from benchmarks.continuation import Equations
-from benchmarks.homotopy import is_sound, loads_last, sources_last
+from benchmarks.homotopy import End, is_sound, loads_last, sources_last
 
 RISE = 0.04
 """Share of the load by which it is raised at a time. [1]"""
@@ -41,15 +42,18 @@ class Replay:
         self.run = Run(model, trains, steps)
 
     def root_of_step(self, step: int, step_s: float) -> tuple[float, npt.NDArray[np.float64]]:
-        """Share of a step's load that is carried, and each train's pantograph voltage (NaN: none).
+        """Share of a step's load that is carried, and each train's pantograph voltage.
 
-        The step may be shorter than the others.
+        NaN where the share is not known, or a train draws nothing.  The step may be shorter than the
+        others; a train that would depart later is not on the line.
         """
         run = self.run
         run.advance_to(step)
         untouched = copy.deepcopy(run.state)
-        count = begin_step(step, run.model, run.state, run.recording)
-        model = plain(with_step)(run.model, step_s)
+        clock = run.state.clock[0]
+        clock.on_line = begin_step(step, run.model, run.state, run.recording)
+        change_length(step, step_s, run.model, run.state, run.recording)
+        count, model = clock.on_line, plain(with_step)(run.model, step_s)
         prepare_step(count, model, run.state)
         share = solve_step_slowly(count, model, run.state)
         places = run.state.flow.standing[:count]
@@ -64,7 +68,7 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
     while True:
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share = raise_loads(model, state)
-        if share < 1.0:
+        if share != 1.0:
             return share
         for place in state.flow.standing[:count]:
             state.trains[place.train].demand.voltage_v = abs(place.voltage_v)
@@ -83,17 +87,19 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
 
     Stations far apart have no solution without load near base voltage.  What filters feed into a weak
     line may lift the voltages out of the band at some part of the load, and back at the whole of it.
+    Return NaN where these have lost their way, and so know nothing.
     """
     standing = state.flow.standing[: state.flow.sections.end[-1]]
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
-    for found in (loads_last(equations), sources_last(equations)):
+    ends = [loads_last(equations), sources_last(equations)]
+    for found in ends:
         if found.voltage is not None and is_sound(equations, found.voltage):
             nodes, base_v = equations.nodes, model.network.system.base_voltage_v
             state.flow.nodes.voltage_v = base_v * found.voltage[:nodes]
             standing.voltage_v = base_v * found.voltage[nodes:]
             return 1.0
-    return share
+    return math.nan if all(found.end == End.LOST for found in ends) else share
 
 
 def raise_loads_within_the_band(model: Model, state: State) -> float:

@@ -1,12 +1,14 @@
 """What must hold of every run, whatever the scenario; an AssertionError says which rule is broken."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tpss import Result, library
 from tpss.model.build import steps_of
+from tpss.scenario.machine import RetardationBands
 from tpss.step.state import TrainState
 
 ROUNDING_M_S = 2e-9
@@ -205,9 +207,24 @@ class Journey:
 
     def brakes_no_harder_than_it_may(self) -> None:
         """Where its brakes act; a gradient may be steeper than they are strong."""
-        hardest = -self.a[self.braking > 0.0].min(initial=0.0)
-        highest = self.train.max_retardation_m_s2
-        assert hardest <= highest * (1.0 + 1e-9) + 1e-12, f"{self.name} brakes by {hardest} m/s²"
+        from_m_s, retardation = self.retardation
+        for k in np.flatnonzero(self.braking > 0.0):
+            hardest = -self.a[k]
+            slower = min(
+                self.v[k], self.v[k + 1]
+            )  # within a long step it may be faster than at its ends
+            highest = retardation[np.append(from_m_s[1:], np.inf) >= slower].max()
+            assert hardest <= highest * (1.0 + 1e-9) + 1e-12, (
+                f"{self.name} brakes by {hardest} m/s²"
+            )
+
+    @property
+    def retardation(self) -> tuple[Any, Any]:
+        """Speeds from which its highest retardations hold, and these. [m/s], [m/s²]"""
+        given = self.train.max_retardation_m_s2
+        if isinstance(given, RetardationBands):
+            return np.array(given.from_speed_kmh) / 3.6, np.array(given.retardation_m_s2)
+        return np.zeros(1), np.array([given])
 
     def gives_all_it_can(self) -> None:
         """Well before its next stop and lower limits, a train reaches its limit, or gives all it can.
@@ -219,7 +236,7 @@ class Journey:
             limit = self.limit[np.searchsorted(self.limit_m, self.x[k], side="right") - 1]
             if abs(self.v[k + 1] - limit) < ROUNDING_M_S:
                 continue
-            well_m = limit * (8.0 * self.step_s + 2.0 * limit / self.train.max_retardation_m_s2)
+            well_m = limit * (8.0 * self.step_s + 2.0 * limit / self.retardation[1].min())
             ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + well_m)
             # A train may begin within a rounding of its last stop.
             to_stop_m = min((end for end in ends if end > self.x[k]), default=self.x[k]) - self.x[k]
@@ -258,7 +275,7 @@ class Journey:
         """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""
         ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
         fastest = self.limit.max()
-        room_m = fastest * (2.0 * self.step_s + fastest / self.train.max_retardation_m_s2)
+        room_m = fastest * (2.0 * self.step_s + fastest / self.retardation[1].min())
         ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + room_m)
         at_stop = any(self.x[k] <= end <= self.x[k] + room_m for end in ends)
         return at_stop or bool((self.limit[ahead] < fastest).any())

@@ -195,6 +195,14 @@ BEGINNINGS_KM = st.sampled_from([False, False, False, False, True]).flatmap(
 """Kilometres where a fifth of the lines begin; None for 0."""
 
 
+def with_one_retardation(trains: Document) -> None:
+    """Leave trains that move in steps the retardation of their lowest speeds."""
+    for train in trains.values():
+        given = train.get("max_retardation_m_s2")
+        if isinstance(given, dict):
+            train["max_retardation_m_s2"] = given["retardation_m_s2"][0]
+
+
 @st.composite
 def sound_scenarios(draw: Draw) -> Document:
     """A scenario without faults, but for trains that may be placed too fast to stop.
@@ -214,6 +222,8 @@ def sound_scenarios(draw: Draw) -> Document:
             for i in range(draw(st.integers(1, 2)))
         },
     }
+    if document["simulation"].get("motion") == "stepped":
+        with_one_retardation(document["trains"])
     if draw(st.integers(0, 4)) == 4:
         document = on_25_kv(draw, document)
     step = document["simulation"]["time_step_min"]

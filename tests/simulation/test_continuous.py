@@ -174,6 +174,55 @@ def test_limits_are_met_at_their_places_within_a_step(step_min):
     assert result.summary["trip_time_min"] == pytest.approx(675.0 / 60.0, rel=1e-9)
 
 
+BANDS = {"from_speed_kmh": [0.0, 72.0, 144.0], "retardation_m_s2": [1.0, 0.5, 0.25]}
+
+
+@pytest.mark.parametrize("step_min", STEPS_MIN)
+def test_a_train_brakes_as_hard_as_it_may_at_its_speed(step_min):
+    """From 180 km/h = 50 m/s to 0: (50² - 40²)/0.5 + (40² - 20²)/1 + 20²/2 = 1800 + 1200 + 200 m.
+
+    That takes 10/0.25 + 20/0.5 + 20/1 = 100 s.  At 1 m/s² it starts in 50 s over 1250 m.  Of 20 km are
+    left 15,550 m at 50 m/s, 311 s: 461 s in all.
+    """
+    fast = {"max_speed_kmh": 180.0, "max_retardation_m_s2": BANDS}
+    result = run(line([0.0, 20.0], [(0.0, 180.0)], fast), step_min)
+    assert result.summary["trip_time_min"] == pytest.approx(461.0 / 60.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("step_min", STEPS_MIN)
+def test_a_lower_limit_is_met_across_bands_of_retardation(step_min):
+    """Down to 90 km/h = 25 m/s at 10 km: (50² - 40²)/0.5 + (40² - 25²)/1 = 1800 + 975 m, in 40 + 30 s.
+
+    Before it 1250 m in 50 s, and 5975 m at 50 m/s in 119.5 s.  From it 10 km at 25 m/s, but for the last
+    (25² - 20²)/1 + 20²/2 = 225 + 200 m, in 10 + 20 s: 383 s more.  In all 652.5 s.
+    """
+    fast = {"max_speed_kmh": 180.0, "max_retardation_m_s2": BANDS}
+    result = run(line([0.0, 20.0], [(0.0, 180.0), (10.0, 90.0)], fast), step_min)
+    assert result.summary["trip_time_min"] == pytest.approx(652.5 / 60.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("edges", [[0.0], [0.0, 30.0], [0.0, 30.0, 60.0, 61.0]])
+def test_bands_of_one_retardation_are_none(edges):
+    """A suburban line, accelerating, holding and braking across the edges, ends as without them."""
+    bands = {"from_speed_kmh": edges, "retardation_m_s2": [0.8] * len(edges)}
+    plain = run(SUBURBAN, 0.01, trains__t__max_retardation_m_s2=0.8)
+    banded = run(SUBURBAN, 0.01, trains__t__max_retardation_m_s2=bands)
+    trip = pytest.approx(plain.summary["trip_time_min"], rel=1e-5)
+    assert banded.summary["trip_time_min"] == trip
+    energy = pytest.approx(plain.trips.energy_mwh.sum(), rel=1e-4)
+    assert banded.trips.energy_mwh.sum() == energy
+
+
+def test_stepped_motion_refuses_bands_of_retardation():
+    document = line([0.0, 10.0], [(0.0, 72.0)], {"max_retardation_m_s2": BANDS})
+    for choice in ({"motion": "stepped"}, {"braking": "whole-steps"}):
+        document["simulation"] = {"time_step_min": 0.1, **choice}
+        with pytest.raises(tpss.ScenarioError, match=f"{next(iter(choice))}.*not know") as caught:
+            tpss.Scenario.from_document(document, "line")
+        (finding,) = caught.value.findings
+        assert finding.key == "trains.t.max_retardation_m_s2"
+
+
 @pytest.mark.parametrize("step_min", [0.01, 0.07, 0.5, 1.0, 7.3])
 def test_departures_dwells_and_arrivals_are_to_the_second(step_min):
     """Departure after 7.3 min, 5 km in 270 s (20 m/s, 1 m/s²), 0.7 min at the stop, 5 km again."""

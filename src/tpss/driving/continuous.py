@@ -21,6 +21,7 @@ from tpss.numerics.staircase import index_at, index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.running_resistance import gradient_force, running_resistance
 from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.braking import braking_square
 from tpss.vehicle.demand import (
     certify_free_band,
     follow_speed,
@@ -91,8 +92,9 @@ def _is_one_phase(
     if v == cruise_m_s and here + 1 < from_m.size and from_m[at(here + 1)] < end_m:
         return False
     # 3. The train has to brake.
-    per_metre = 2.0 * kind.highest_retardation_m_s2
-    return after * after + per_metre * way_m < train.decision.braking_square_m2_s2
+    b = kind.highest_retardation_m_s2
+    square = braking_square(after, b, kind.braking)
+    return square + 2.0 * b * way_m < train.decision.braking_square_m2_s2
 
 
 @inlined
@@ -203,8 +205,9 @@ def must_pass(train: Train, kind: TrainType, data: DrivingData) -> bool:
     mean = (v + after) / 2.0
     if abs(mean - train.demand.terms_speed_m_s) > FARTHEST_OFF * mean:
         return True
-    per_metre = 2.0 * kind.highest_retardation_m_s2
-    return after * after + per_metre * mean * h > decision.braking_square_m2_s2
+    b = kind.highest_retardation_m_s2
+    square = braking_square(after, b, kind.braking)
+    return square + 2.0 * b * mean * h > decision.braking_square_m2_s2
 
 
 @kernel

@@ -5,10 +5,12 @@ fast as
 
 .. math:: v^2 = w^2 + 2 b d .
 
-Over the distance these are straight lines of one slope, so of all limits and stops ahead one binds,
-whatever the speed: that whose line is the lowest.
+Where b depends on the speed, the squares q of `vehicle.braking` take the place of v² and w².  Over the
+distance these are straight lines of one slope, so of all limits and stops ahead one binds, whatever the
+speed: that whose line is the lowest.
 
-A train with the acceleration a reaches a line, K above the square of its speed, after the time
+A train with the acceleration a reaches a line, K above the square of its speed, after the time (in the
+band of its speed: with its b, and K in the same measure)
 
 .. math:: (v + a t)^2 = v^2 + K - 2 b (v t + a t^2 / 2)
           \;\Rightarrow\;
@@ -21,6 +23,7 @@ import math
 
 from tpss.driving.data import DrivingData
 from tpss.kernel import at, fused, inlined
+from tpss.vehicle.braking import braking_square
 from tpss.vehicle.train import Motion
 from tpss.vehicle.train_type import TrainType
 
@@ -35,7 +38,7 @@ def highest_speed(limit_m_s: float, kind: TrainType) -> float:
 def what_to_brake_for(
     here: int, route: int, motion: Motion, kind: TrainType, data: DrivingData
 ) -> tuple[float, float, float]:
-    """Square of the speed from which a train has to brake here, where it brakes to, and to which speed.
+    """Square q of the speed from which a train has to brake here; where to, and to which speed.
 
     In m²/s², m and m/s.  Limits are looked for as far as they can matter within a step.
 
@@ -60,15 +63,17 @@ def what_to_brake_for(
     position_m, fastest = motion.position_m, kind.highest_speed_m_s
     target_m, target_m_s = data.stops[at(route), at(motion.next_stop)].position_m, 0.0
     square = per_metre * (target_m - position_m)
-    reach = fastest * (fastest + per_metre * data.options.step_s)
+    b, bands = kind.highest_retardation_m_s2, kind.braking
+    reach = braking_square(fastest, b, bands) + fastest * per_metre * data.options.step_s
     j = here + 1
     while j < from_m.size:
         room = per_metre * (from_m[at(j)] - position_m)
         if room >= min(square, reach):
             break
         limit_m_s = highest_speed(value[at(j)], kind)
-        if room + limit_m_s**2 < square:
-            square, target_m, target_m_s = room + limit_m_s**2, from_m[at(j)], limit_m_s
+        from_there = room + braking_square(limit_m_s, b, bands)
+        if from_there < square:
+            square, target_m, target_m_s = from_there, from_m[at(j)], limit_m_s
         j += 1
     return square, target_m, target_m_s
 
@@ -84,9 +89,10 @@ def time_to_braking(
     acceleration_m_s2, speed_m_s : float
         Of the train. [m/s²], [m/s]
     below_m2_s2 : float
-        Square of the speed from which it has to brake here, less that of its own. [m²/s²]
+        Square of the speed from which it has to brake here, less that of its own, in the band of its
+        speed. [m²/s²]
     retardation_m_s2 : float
-        Its highest retardation. [m/s²]
+        Its highest retardation in that band. [m/s²]
     """
     nearing = acceleration_m_s2 + retardation_m_s2
     root = (nearing * speed_m_s) ** 2 + acceleration_m_s2 * nearing * below_m2_s2

@@ -43,6 +43,7 @@ from tpss.numerics.staircase import index_at, index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.running_resistance import gradient_force, running_resistance
 from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.braking import band_above, band_below, braking_square
 from tpss.vehicle.phase import (
     demand_of_phase,
     demand_standing,
@@ -99,6 +100,11 @@ class Aim(NamedTuple):
     """Distance to the next limit. [m]"""
     target_m: float
     """Where that speed is to be reached; infinite: anywhere. [m]"""
+    retardation_m_s2: float
+    """Highest retardation at his speed. [m/s²]"""
+    slowest_m_s2: float
+    """Below this acceleration he looks ahead as with it: slowing down against his will, a train may
+    leave the band of its speed, and until then this is on the safe side. [m/s²]"""
 
 
 class Pull(NamedTuple):
@@ -116,9 +122,7 @@ class Pull(NamedTuple):
 
 
 @inlined
-def when_a_phase_ends(
-    acceleration_m_s2: float, speed_m_s: float, retardation_m_s2: float, aim: Aim
-) -> tuple[float, int]:
+def when_a_phase_ends(acceleration_m_s2: float, speed_m_s: float, aim: Aim) -> tuple[float, int]:
     """Duration of a phase with a given acceleration [s], and its `End`."""
     a, v = acceleration_m_s2, speed_m_s
     duration, end = aim.longest_s, End.TIME
@@ -128,7 +132,7 @@ def when_a_phase_ends(
             duration, end = time, End.SPEED
     if a < 0.0 and -v / a < duration:
         duration, end = -v / a, End.STANDSTILL
-    time = time_to_braking(a, v, aim.below_m2_s2, retardation_m_s2)
+    time = time_to_braking(max(a, aim.slowest_m_s2), v, aim.below_m2_s2, aim.retardation_m_s2)
     if time < duration:
         duration, end = time, End.BRAKING
     time = time_to_place(a, v, aim.room_m)
@@ -150,7 +154,7 @@ def pull_with(
     """
     motion, row, options = passage.motion, at(kind.profile), data.options
     v = motion.speed_m_s
-    duration, _ = when_a_phase_ends(acceleration_m_s2, v, kind.highest_retardation_m_s2, aim)
+    duration, _ = when_a_phase_ends(acceleration_m_s2, v, aim)
     mean = max(0.0, v + acceleration_m_s2 * duration / 2.0)
     slope = mean_gradient(
         motion.gradient, motion.position_m, mean * duration,
@@ -326,18 +330,32 @@ def _aim(
     motion, from_m = passage.motion, data.limits.from_m[at(kind.profile)]
     v, b, left = motion.speed_m_s, kind.highest_retardation_m_s2, passage.left_s
     cruise = highest_speed(data.limits.value[at(kind.profile)][at(here)], kind)
-    if v > target_m_s and v * v >= square * (1.0 - ROUNDING):
-        # b leads to the place but for roundings; another one where a train has been placed too near.
-        square_m2_s2, way_m = v * v - target_m_s * target_m_s, target_m - motion.position_m
-        retardation = b
-        if abs(square_m2_s2 / (2.0 * b) - way_m) > SLACK_M:
-            retardation = square_m2_s2 / (2.0 * way_m)
-        return Aim(-retardation, target_m_s, left, math.inf, math.inf, target_m)
-    if v > cruise:
-        return Aim(-b, cruise, left, math.inf, math.inf, math.inf)
+    bands = kind.braking
+    own = braking_square(v, b, bands)
+    to_brake = v > target_m_s and own >= square * (1.0 - ROUNDING)
+    if to_brake or v > cruise:
+        # 1. Brake, down to the speed wanted or to the next band.
+        wanted, band = target_m_s if to_brake else cruise, band_below(v, bands)
+        until, retardation = max(wanted, bands.from_m_s[at(band)]), bands.retardation_m_s2[at(band)]
+        if to_brake:
+            # That leads to the place but for roundings, unless a train has been placed too near.
+            excess, way_m = own - braking_square(target_m_s, b, bands), target_m - motion.position_m
+            if abs(excess / (2.0 * b) - way_m) > SLACK_M:
+                retardation *= excess / (2.0 * b * way_m)
+        place_m = target_m if to_brake and until == target_m_s else math.inf
+        return Aim(-retardation, until, left, math.inf, math.inf, place_m, retardation, -math.inf)
+    # 2. Go on, up to the limit or to the next band.
+    band = band_above(v, bands)
+    retardation = bands.retardation_m_s2[at(band)]
     room_m = from_m[at(here + 1)] - motion.position_m if here + 1 < from_m.size else math.inf
-    wanted, until = (kind.highest_acceleration_m_s2, cruise) if v < cruise else (0.0, math.inf)
-    return Aim(wanted, until, min(left, LONGEST_PHASE_S), square - v * v, room_m, math.inf)
+    wanted, until = 0.0, math.inf
+    if v < cruise:
+        wanted = kind.highest_acceleration_m_s2
+        until = min(cruise, bands.from_m_s[at(band + 1)])
+    return Aim(
+        wanted, until, min(left, LONGEST_PHASE_S), (square - own) * (retardation / b), room_m,
+        math.inf, retardation, 0.0 if band > 0 else -math.inf,
+    )  # fmt: skip
 
 
 @inlined
@@ -351,9 +369,10 @@ def _choose_pull(
     if a == 0.0 and v > 0.0:
         longest_s = max(longest_s, _while_gradient_stays(passage, kind, data))
     aim = Aim(
-        aim.acceleration_m_s2, aim.until_m_s, longest_s, aim.below_m2_s2, aim.room_m, aim.target_m
-    )
-    duration, end = when_a_phase_ends(a, v, kind.highest_retardation_m_s2, aim)
+        aim.acceleration_m_s2, aim.until_m_s, longest_s, aim.below_m2_s2, aim.room_m, aim.target_m,
+        aim.retardation_m_s2, aim.slowest_m_s2,
+    )  # fmt: skip
+    duration, end = when_a_phase_ends(a, v, aim)
     after = aim.until_m_s if end == End.SPEED else max(0.0, v + a * duration)
     chosen = Pull(
         a, duration, (v + after) / 2.0, pull.cap_n, pull.traction_n, pull.braking_n,

@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from tpss.driving.data import Profile, Profiles
 from tpss.kernel import plain
-from tpss.physics.running_resistance import curve_resistance
-from tpss.scenario.line import Line, TrackCurve
+from tpss.physics.running_resistance import by_radius, curve_resistance
+from tpss.scenario.line import CurveResistance, Line, TrackCurve
 from tpss.scenario.rolling_stock import Train
 from tpss.units import si, si_of_each
 
@@ -41,7 +41,7 @@ def build_profiles(line: Line, lengths_m: Sequence[float]) -> tuple[Profiles, Pr
         value=np.array([item.permille for item in line.gradients]) * 1e-3,
     )
     if line.curves:
-        gradients = with_curves(gradients, line.curves)
+        gradients = with_curves(gradients, line.curves, line.curve_resistance)
     limits = Profile(
         from_m=np.array(si_of_each(line.speed_limits, "from_km")),
         value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
@@ -68,17 +68,25 @@ def _filled(values: Array, count: int, rest: float) -> Array:
     return np.append(values, np.full(count - values.size, rest))
 
 
-def with_curves(gradients: Profile, curves: Sequence[TrackCurve]) -> Profile:
+def with_curves(
+    gradients: Profile, curves: Sequence[TrackCurve], formula: CurveResistance | None = None
+) -> Profile:
     """Gradients and resistances of curves, as shares of the weight of what is there. [1]"""
     begin_m, end_m = (np.array(si_of_each(curves, name)) for name in ("from_km", "to_km"))
     from_m = np.unique(np.concatenate([gradients.from_m, begin_m, end_m]))
     stair = np.maximum(np.searchsorted(gradients.from_m, from_m, side="right") - 1, 0)
     value = gradients.value[stair]
     for begin, end, curve in zip(begin_m, end_m, curves, strict=True):
-        value[(from_m >= begin) & (from_m < end)] += plain(curve_resistance)(curve.radius_m)
+        value[(from_m >= begin) & (from_m < end)] += _resistance(curve, formula)
     if from_m[0] == begin_m[0]:  # the first stair holds before it too, where there is no curve
         from_m, value = np.append(from_m[0] - 1.0, from_m), np.append(gradients.value[0], value)
     return Profile(from_m, value)
+
+
+def _resistance(curve: TrackCurve, formula: CurveResistance | None) -> float:
+    if formula is None:
+        return plain(curve_resistance)(curve.radius_m)
+    return plain(by_radius)(curve.radius_m, formula.permille_m, formula.offset_m)
 
 
 def lowest_under_train(limits: Profile, length_m: float) -> Profile:

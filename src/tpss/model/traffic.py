@@ -13,6 +13,8 @@ from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.model import Model
 from tpss.units import kilometres, si
+from tpss.vehicle.braking import braking_square
+from tpss.vehicle.train_type import TrainType
 
 
 def build_services(scenario: Scenario, model: Model) -> list[Service]:
@@ -65,21 +67,20 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
     kind = model.types[service.train_type]
     limits = Profile(*(values[kind.profile] for values in model.limits))
-    retardation = kind.highest_retardation_m_s2
     here = plain(index_at)(position_m, limits.from_m)
     limit = min(limits.value[here], kind.highest_speed_m_s)
     stop_m = min(m for m in service.stops_m if m > position_m)
     problem = ""
     if speed > limit and model.options.driver != Driver.AGGRESSIVE:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
-    elif plain(stopping_distance)(speed, retardation, model.options) > stop_m - position_m:
+    elif _stopping_distance(speed, kind, model.options) > stop_m - position_m:
         problem = f"too fast to stop at {kilometres(stop_m / 1e3)} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
         for j in range(here + 1, limits.from_m.size):
             lower = limits.value[j] < limits.value[j - 1]
             distance_m = limits.from_m[j] - position_m
-            if lower and not _meets(speed, distance_m, limits.value[j], retardation, model.options):
+            if lower and not _meets(speed, distance_m, limits.value[j], kind, model.options):
                 problem = f"too fast to meet the limit at {kilometres(limits.from_m[j] / 1e3)} km"
     if not problem:
         return []
@@ -87,12 +88,23 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     return [Finding(file, key, f"{speed * 3.6:g}", problem, remedy)]
 
 
+def _stopping_distance(speed_m_s: float, kind: TrainType, options: Options) -> float:
+    """Shortest distance in which a train stops. [m]"""
+    retardation_m_s2 = kind.highest_retardation_m_s2
+    if options.motion == MotionModel.CONTINUOUS:
+        square = plain(braking_square)(speed_m_s, retardation_m_s2, kind.braking)
+        return square / (2.0 * retardation_m_s2)
+    return plain(stopping_distance)(speed_m_s, retardation_m_s2, options)
+
+
 def _meets(
-    speed_m_s: float, distance_m: float, limit_m_s: float, retardation_m_s2: float, options: Options
+    speed_m_s: float, distance_m: float, limit_m_s: float, kind: TrainType, options: Options
 ) -> bool:
     """Whether a train that brakes with all it may is slow enough at a limit ahead."""
+    retardation_m_s2 = kind.highest_retardation_m_s2
     if options.motion == MotionModel.CONTINUOUS:
-        excess = speed_m_s**2 - limit_m_s**2
+        excess = plain(braking_square)(speed_m_s, retardation_m_s2, kind.braking)
+        excess -= plain(braking_square)(limit_m_s, retardation_m_s2, kind.braking)
         return excess <= 2.0 * retardation_m_s2 * distance_m
     slowest = max(0.0, speed_m_s - retardation_m_s2 * options.step_s)
     return can_meet_limit(

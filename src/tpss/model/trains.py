@@ -17,9 +17,10 @@ from tpss.physics.motor import MotorModel
 from tpss.physics.reactive_power import ReactiveModel, reactive_ratio
 from tpss.physics.running_resistance import DavisCoefficients
 from tpss.record import Records
-from tpss.scenario.machine import Curve, EffortLimits, EffortTable
+from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationBands
 from tpss.scenario.rolling_stock import Train
 from tpss.units import si, si_list
+from tpss.vehicle.braking import lay_out_bands
 from tpss.vehicle.effort.kinds import EffortKind, TractiveEffort
 from tpss.vehicle.effort.limits import EffortLimits as Limits
 from tpss.vehicle.effort.table import MOST_VOLTAGES
@@ -74,7 +75,7 @@ def _train_type(train: Train, lengths_m: list[float], book: CurveBook) -> Any:
             c_n_s2_per_m2=si(train, "resistance_c_n_s2_per_m2"),
         ),
         highest_acceleration_m_s2=_si_or(train, "max_acceleration_m_s2", math.inf),
-        highest_retardation_m_s2=si(train, "max_retardation_m_s2"),
+        **_braking(train),
         highest_speed_m_s=si(train, "max_speed_kmh"),
         profile=lengths_m.index(si(train, "length_m")),
         adhesion=CurvePlace.row() if train.adhesion is None else _over_speed(train.adhesion, book),
@@ -94,6 +95,19 @@ def _inertias(train: Train, mass_kg: float, adhesive_kg: float) -> dict[str, flo
     return {
         "inertia_kg": adhesive_kg + (mass_kg - adhesive_kg) * with_rotating,
         "coasting_inertia_kg": mass_kg * with_rotating,
+    }
+
+
+def _braking(train: Train) -> dict[str, Any]:
+    """Fields of `TrainType` for the highest retardation."""
+    given = train.max_retardation_m_s2
+    if isinstance(given, RetardationBands):
+        from_m_s, values = si_list(given, "from_speed_kmh"), si_list(given, "retardation_m_s2")
+    else:
+        from_m_s, values = [0.0], [given]
+    return {
+        "highest_retardation_m_s2": max(values),
+        "braking": lay_out_bands(from_m_s, values),
     }
 
 

@@ -77,5 +77,25 @@ def curve_resistance(radius_m: float) -> float:
     [Wende2003]_.
     """
     if radius_m >= 300.0:
-        return 0.650 / (radius_m - 55.0)
-    return 0.500 / (radius_m - 30.0)
+        return by_radius(radius_m, 650.0, 55.0)
+    return by_radius(radius_m, 500.0, 30.0)
+
+
+@kernel
+def by_radius(radius_m: float, permille_m: float, offset_m: float) -> float:
+    r"""Resistance of a curve as a share of the train's weight, by a formula of one's own. [1]
+
+    .. math:: w = \frac{k}{R - c} ‰
+
+    Parameters
+    ----------
+    radius_m : float
+        Radius of the curve, R, more than the offset. [m]
+    permille_m, offset_m : float
+        k, in per mille times metres, and c. [m]
+
+    References
+    ----------
+    [Wende2003]_, the form of Röckl's formula.
+    """
+    return permille_m / 1000.0 / (radius_m - offset_m)

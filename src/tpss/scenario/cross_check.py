@@ -14,6 +14,7 @@ from tpss import library
 from tpss.errors import Finding, closest
 from tpss.scenario.line import FARTHEST_KM, end_of_line
 from tpss.scenario.machine import CurrentLimitation
+from tpss.scenario.simulation import OF_STEPPED_MOTION
 from tpss.scenario.supply.supply import STATIONS
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 from tpss.units import kilometres
@@ -24,7 +25,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     line, supply = _table(document, "line"), _table(document, "supply")
     simulation = _table(document, "simulation")
     findings = [*_kilometres(document), *_stations_apart(supply)]
-    findings += [*_open_step(simulation), *_driver(simulation)]
+    findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     trains, falls = list(_table(document, "trains")), kilometres_fall(document)
     places = _places(line)
@@ -238,6 +239,19 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
         problem = "too long for the aggressive driver, who checks the speed only once per step"
         remedy = f'use {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
+
+
+def _bands(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[_Fault]:
+    """Retardations that depend on the speed, with stepped motion, whose plans know a single one."""
+    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
+    choices += [
+        f'{key} = "{value}"' for key, value in OF_STEPPED_MOTION if simulation.get(key) == value
+    ]
+    for name, train in _table(document, "trains").items():
+        if choices and isinstance(train, Mapping) and _table(train, "max_retardation_m_s2"):
+            problem = f"one for each band of speeds, which {choices[0]} does not know"
+            remedy = f"give a number, or leave {choices[0]} out"
+            yield f"trains.{name}.max_retardation_m_s2", "", problem, remedy
 
 
 def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[_Fault]:

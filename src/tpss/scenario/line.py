@@ -59,6 +59,17 @@ class TrackCurve(Part):
         return self
 
 
+class CurveResistance(Part):
+    """A formula for the resistance of curves, k / (R - c) in per mille of the train's weight."""
+
+    permille_m: Real = Field(
+        ge=0,
+        le=5_000,
+        description="k, per mille times metres: 800 for 800 / R, 650 for 650 / (R - 55).",
+    )
+    offset_m: Real = Field(default=0.0, ge=0, le=90, description="c, less than any radius.")
+
+
 def _one_after_another(curves: Sequence[TrackCurve]) -> Sequence[TrackCurve]:
     for before, after in pairwise(curves):
         if after.from_km < before.to_km:
@@ -104,6 +115,9 @@ class Line(Part):
     )
     curves: Annotated[tuple[TrackCurve, ...], AfterValidator(_one_after_another)] = Field(
         default=(), description="Curves; between them the track is straight."
+    )
+    curve_resistance: CurveResistance | None = Field(
+        default=None, description="Formula for their resistance; leave it out: that of Röckl."
     )
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")

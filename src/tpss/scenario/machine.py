@@ -10,8 +10,12 @@ from tpss.scenario.fields import Part, Real, ascending, fault
 MOST_VOLTAGES = 16
 """Rows that a table of tractive effort may have."""
 
+MOST_BANDS = 8
+"""Bands that a retardation over speed may have."""
+
 Ratio = Annotated[Real, Field(ge=0.1, le=1)]
 Coefficient = Annotated[Real, Field(ge=0.01, le=1)]
+Retardation = Annotated[Real, Field(ge=0.01, le=5)]
 
 Speeds = Annotated[
     tuple[Annotated[Real, Field(ge=0, le=500)], ...],
@@ -66,6 +70,43 @@ AdhesionOverSpeed = Annotated[
     Discriminator(lambda value: "curve" if _is_a_table(value) else "number"),
 ]
 """A coefficient, or a curve over speed."""
+
+
+class RetardationBands(Part):
+    """A highest retardation by bands of speed, each from its speed up to that of the next one."""
+
+    from_speed_kmh: Annotated[
+        tuple[Annotated[Real, Field(ge=0, le=500)], ...],
+        Field(min_length=1, max_length=MOST_BANDS),
+        ascending("from_speed_kmh"),
+    ] = Field(description="Speeds from which the bands hold, ascending, the first 0.")
+    retardation_m_s2: tuple[Retardation, ...] = Field(
+        description="Highest deceleration by braking in each of these bands."
+    )
+
+    @field_validator("from_speed_kmh")
+    @classmethod
+    def _begins_at_a_stand(cls, value: tuple[float, ...]) -> tuple[float, ...]:
+        if value[0] != 0.0:
+            raise fault("the first band does not begin at 0", "begin it at 0")
+        return value
+
+    @field_validator("retardation_m_s2")
+    @classmethod
+    def _one_value_per_band(
+        cls, value: tuple[float, ...], info: ValidationInfo
+    ) -> tuple[float, ...]:
+        if "from_speed_kmh" in info.data:
+            speeds = info.data["from_speed_kmh"]
+            _demand_length(value, "retardation_m_s2", len(speeds), "from_speed_kmh")
+        return value
+
+
+RetardationOverSpeed = Annotated[
+    Annotated[Retardation, Tag("number")] | Annotated[RetardationBands, Tag("bands")],
+    Discriminator(lambda value: "bands" if _is_a_table(value) else "number"),
+]
+"""A number, or one for each band of speeds."""
 
 
 def _depth(value: object) -> str:

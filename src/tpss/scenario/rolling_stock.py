@@ -12,6 +12,7 @@ from tpss.scenario.machine import (
     CurrentLimitation,
     EffortTable,
     RatioOverSpeed,
+    RetardationOverSpeed,
     TractiveEffort,
 )
 
@@ -96,8 +97,9 @@ class Train(Part):
         le=10,
         description="Highest acceleration; leave it out: no such limit.",
     )
-    max_retardation_m_s2: Real = Field(
-        ge=0.01, le=5, description="Highest deceleration by braking."
+    max_retardation_m_s2: RetardationOverSpeed = Field(
+        description="Highest deceleration by braking: a number, or one for each band of speeds, "
+        "with continuous motion."
     )
     efficiency: RatioOverSpeed = Field(
         description="From pantograph to motor shaft: a number, or a curve over speed."

@@ -58,7 +58,9 @@ class Scenario(Part):
         if not isinstance(supply, dict) or not isinstance(standards, dict):
             return given  # which has a fault of its own
         limits, system = standards.get("voltage_limits", {}), supply.get("system", DEFAULT_SYSTEM)
-        if not isinstance(limits, dict) or system not in library.entries(SYSTEMS):
+        if not isinstance(limits, dict) or not isinstance(system, str):
+            return given
+        if system not in library.entries(SYSTEMS):
             return given
         standards = {**standards, "voltage_limits": {"system": system, **limits}}
         return {**given, "standards": standards}

@@ -6,6 +6,14 @@ from pydantic import ConfigDict, Field, model_validator
 
 from tpss.scenario.fields import Part, Real, either_or, fault
 
+OF_STEPPED_MOTION = (
+    ("power_sampling", "start"),
+    ("gradient_sampling", "start"),
+    ("driver", "aggressive"),
+    ("braking", "whole-steps"),
+)
+"""Choices of a simulation that go with stepped motion only."""
+
 
 class Simulation(Part):
     """Time step, end of the run, and choices between our models and those of the thesis."""
@@ -67,13 +75,9 @@ class Simulation(Part):
     @property
     def choices_of_stepped_motion(self) -> list[str]:
         """Choices made here that belong to stepped motion, each as it would be written."""
-        made = (
-            ("power_sampling", "start"),
-            ("gradient_sampling", "start"),
-            ("driver", "aggressive"),
-            ("braking", "whole-steps"),
-        )
-        return [f'{key} = "{value}"' for key, value in made if getattr(self, key) == value]
+        return [
+            f'{key} = "{value}"' for key, value in OF_STEPPED_MOTION if getattr(self, key) == value
+        ]
 
     @property
     def how_trains_move(self) -> Literal["continuous", "stepped"]:

@@ -8,6 +8,7 @@ from tpss.physics.motor import MotorModel
 from tpss.physics.reactive_power import ReactiveModel
 from tpss.physics.running_resistance import DavisCoefficients
 from tpss.record import Record
+from tpss.vehicle.braking import BrakingBands
 from tpss.vehicle.effort.kinds import TractiveEffort
 
 
@@ -73,7 +74,9 @@ class TrainType(Record):
     highest_acceleration_m_s2: float
     """Highest acceleration; infinite without such a limit. [m/s²]"""
     highest_retardation_m_s2: float
-    """Highest retardation, positive. [m/s²]"""
+    """Highest retardation, positive; of all speeds, where it depends on the speed. [m/s²]"""
+    braking: BrakingBands
+    """The highest retardation over speed."""
     highest_speed_m_s: float
     """Highest speed of the train. [m/s]"""
     profile: int

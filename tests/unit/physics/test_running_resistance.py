@@ -10,6 +10,7 @@ import pytest
 
 from tpss.physics.running_resistance import (
     DavisCoefficients,
+    by_radius,
     curve_resistance,
     gradient_force,
     running_resistance,
@@ -43,3 +44,9 @@ def test_level_track_adds_nothing(as_run):
 )
 def test_curve_resistance_by_hand(as_run, radius_m, permille):
     assert as_run(curve_resistance)(radius_m) == pytest.approx(permille * 1e-3, rel=1e-14)
+
+
+def test_a_formula_of_ones_own_by_hand(as_run):
+    """800 / R at 400 m, and 690 / (R - 40) at 500 m: 2 and 1.5 per mille."""
+    assert as_run(by_radius)(400.0, 800.0, 0.0) == pytest.approx(2e-3, rel=1e-14)
+    assert as_run(by_radius)(500.0, 690.0, 40.0) == pytest.approx(1.5e-3, rel=1e-14)
