@@ -82,7 +82,8 @@ def _collapse(
         return unloaded
     system = model.network.system
     lowest_kv, highest_kv = system.lowest_voltage_v / 1e3, system.highest_voltage_v / 1e3
-    asked = f"{len(places)} trains demand {active_mw:.2f} MW and {reactive_mvar:.2f} Mvar"
+    who = "1 train demands" if len(places) == 1 else f"{len(places)} trains demand"
+    asked = f"{who} {active_mw:.2f} MW and {reactive_mvar:.2f} Mvar"
     band = f"with all voltages between {lowest_kv:.2f} and {highest_kv:.2f} kV"
     cannot = f"At {time_min:.2f} min the line cannot carry its load: {asked}, and beyond "
     advice = STRENGTHEN

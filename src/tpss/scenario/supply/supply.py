@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Self
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticKnownError
 
 from tpss.scenario.fields import FromLibrary, Part, Real, demand_unique, fault, unique
@@ -24,6 +24,13 @@ def _frequency_of_the_system(data: dict[str, Any]) -> float:
     return system_named(system).frequency_hz
 
 
+def _alternates(frequency_hz: Any) -> Any:
+    """The frequency, unless it is that of direct current."""
+    if isinstance(frequency_hz, int | float) and frequency_hz == 0 and frequency_hz is not False:
+        raise fault("not modelled: direct current", "give the frequency of an alternating current")
+    return frequency_hz
+
+
 class Supply(Part):
     """Everything that feeds the trains."""
 
@@ -31,7 +38,7 @@ class Supply(Part):
         default=DEFAULT_SYSTEM,
         description="Electrification system, a library entry; the result is judged by its limits.",
     )
-    frequency_hz: Real = Field(
+    frequency_hz: Annotated[Real, BeforeValidator(_alternates)] = Field(
         default_factory=_frequency_of_the_system,
         ge=10,
         le=60,
