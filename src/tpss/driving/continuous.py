@@ -200,8 +200,8 @@ def must_pass(train: Train, kind: TrainType, data: DrivingData) -> bool:
     v, after = motion.speed_m_s, train.forces.next_speed_m_s
     if after < 0.0:
         return True
-    if after != v and (v == decision.cruise_m_s or after >= decision.cruise_m_s):
-        return True  # a speed cannot be held, or the limit is reached
+    if v != decision.cruise_m_s and after >= decision.cruise_m_s:
+        return True  # the limit is reached
     mean = (v + after) / 2.0
     if abs(mean - train.demand.terms_speed_m_s) > FARTHEST_OFF * mean:
         return True
