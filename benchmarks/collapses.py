@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from tpss.model.directions import Running
 from tpss.model.trains import build_train_types
 from tpss.powerflow.network import Ending
 from tpss.powerflow.solve import solve
@@ -40,7 +41,9 @@ from report import arguments, caption, deliver, machine, table
 LIMITATION = {"max_current_a": 600.0, "umin2_kv": 11.0, "knee_factor": 0.9}
 LIMITED, LIMITED_POINTS = build_train_types(
     [
-        Train(model=MODEL, current_limitation={**LIMITATION, "max_current_a": amperes}, **kind)
+        Running(
+            Train(model=MODEL, current_limitation={**LIMITATION, "max_current_a": amperes}, **kind)
+        )
         for amperes in (300.0, 600.0)
         for kind in ({}, {"reactive_power": "double-bridge", "filter_reactance_ohm": -0.45})
     ]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tpss.kernel import kernel
+from tpss.model.directions import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail, adhesion_limit
@@ -34,10 +35,10 @@ MODEL = "Rc4-freight-1470t"
 LIMITS = {"max_force_kn": 300, "max_power_kw": 6000, "full_voltage_kv": 15, "zero_voltage_kv": 10}
 LOCOMOTIVES, POINTS = build_train_types(
     [
-        Train(model=MODEL),
-        Train(model=MODEL, reactive_power="double-bridge", motor_voltage="former"),
-        Train(model=MODEL, reactive_power="double-bridge", filter_reactance_ohm=-0.45),
-        Train(model=MODEL, tractive_effort=LIMITS, power_factor=0.95),
+        Running(Train(model=MODEL)),
+        Running(Train(model=MODEL, reactive_power="double-bridge", motor_voltage="former")),
+        Running(Train(model=MODEL, reactive_power="double-bridge", filter_reactance_ohm=-0.45)),
+        Running(Train(model=MODEL, tractive_effort=LIMITS, power_factor=0.95)),
     ]
 )
 SCRATCH = np.zeros(SCRATCH_SHAPE)

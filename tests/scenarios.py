@@ -36,6 +36,51 @@ SHORT_LINE: dict[str, Any] = {
 }
 
 
+COLD: dict[str, Any] = {
+    "format": 1,
+    "name": "chainage",
+    "simulation": {"time_step_min": 0.1},
+    "line": {
+        "length_km": 40.0,
+        "gradients": [{"from_km": 0.0, "permille": 2.0}],
+        "speed_limits": [{"from_km": 0.0, "speed_kmh": 160.0}],
+        "stations": [{"name": "A", "position_km": 0.0}, {"name": "B", "position_km": 40.0}],
+    },
+    "supply": {
+        "catenary": {"r_ohm_per_km": 0.1, "x_ohm_per_km": 0.1, "capacitance_nf_per_km": 100.0},
+        "converter_stations": [
+            {"name": "W", "position_km": 0.0, "type": "Q48/Q49", "converters": 2},
+            {"name": "E", "position_km": 40.0, "type": "Q48/Q49", "converters": 2},
+        ],
+    },
+    "trains": {"t": {"model": "Rc4-freight-1470t"}},
+    "traffic": [
+        {"name": "s", "train": "t", "from": "A", "to": "B", "departures_min": [0.0, 10.0, 20.0]}
+    ],
+}
+"""40 km of a line whose capacitance counts: kilometres of dead contact line would show."""
+
+BUSY: dict[str, Any] = copy.deepcopy(SHORT_LINE)
+"""Limits, a hill, transformers, zones, stops, and trains on the line at the start."""
+BUSY["line"]["gradients"] += [
+    {"from_km": 7.3, "permille": 6.0},
+    {"from_km": 15.0, "permille": -4.0},
+]
+BUSY["line"]["speed_limits"] += [{"from_km": 4.1, "speed_kmh": 90.0}]
+BUSY["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [5.0, 12.6]}
+BUSY["standards"] = {
+    "zones": [
+        {"name": "first", "from_km": 0.0, "to_km": 8.0},
+        {"name": "last", "from_km": 8.0, "to_km": 20.0},
+    ]
+}
+BUSY["traffic"][0] |= {
+    "headway_min": 6.0,
+    "stops": [{"station": "Middle", "dwell_min": 0.5}],
+    "initial_trains": [{"position_km": 11.7, "speed_kmh": 40.0}],
+}
+
+
 def short_line(changes: dict[str, Any] | None = None) -> tpss.Scenario:
     """The short line with some values changed by key path."""
     scenario = tpss.Scenario.from_document(copy.deepcopy(SHORT_LINE), "short-line")

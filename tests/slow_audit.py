@@ -96,6 +96,14 @@ def _kinds(outcome: Outcome, model: Model) -> Any:
     return model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
 
 
+def _along_routes(trains: Any, outcome: Outcome) -> Any:
+    """Recorded rows of the trains with positions that grow as they go."""
+    turned = trains.copy()
+    sign = np.where([train.runs_down for train in outcome.trains], -1.0, 1.0)
+    turned["position"] = sign * trains["position"]
+    return turned
+
+
 def _nan_is_largest(value: float) -> float:
     return np.inf if np.isnan(value) else value
 
@@ -343,7 +351,8 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     [Boullanger2009]_, eq. (2.11) and (F.19).
     """
     rows = slice(0, outcome.steps)
-    trains, state = outcome.recording.trains[rows], outcome.recording.train_state[rows]
+    trains = _along_routes(outcome.recording.trains[rows], outcome)
+    state = outcome.recording.train_state[rows]
     kind = _kinds(outcome, model)
     rest = trains["tractive_force"] - trains["braking_force"]
     rest = rest - trains["running_resistance"] - trains["gradient_force"]
@@ -371,7 +380,7 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
     ----------
     [Boullanger2009]_, implied by eq. (2.29) and (2.30).
     """
-    trains, step_s = outcome.recording.trains, model.options.step_s
+    trains, step_s = _along_routes(outcome.recording.trains, outcome), model.options.step_s
     before, after = trains[:-1], trains[1:]
     # Present at both instants; positions that are not numbers stay, and fail.
     both = (outcome.recording.train_state[:-1] >= 0) & (
@@ -392,7 +401,8 @@ def continuous_motion_error_m(outcome: Outcome, model: Model, both: npt.NDArray[
 
     A train that comes to an instant faster than its limit there, and no slower than it was, is over it.
     """
-    trains, kind = outcome.recording.trains, _kinds(outcome, model)
+    trains = _along_routes(outcome.recording.trains, outcome)
+    kind = _kinds(outcome, model)
     h = intervals_s(outcome, model)[:, np.newaxis]
     before, after = trains[:-1], trains[1:]
     from_m, to_m = before["position"], after["position"]

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from tpss.model.directions import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.curve import Points
 from tpss.numerics.series import SCRATCH_SHAPE
@@ -19,7 +20,7 @@ SCRATCH = np.zeros(SCRATCH_SHAPE)
 def kind_of(**changes: Any) -> tuple[TrainType, Points]:
     """A freight train with some values changed: its record, and the points of its curves."""
     scenario = short_line({f"trains.freight.{name}": value for name, value in changes.items()})
-    kinds, points = build_train_types([scenario.trains["freight"]])
+    kinds, points = build_train_types([Running(scenario.trains["freight"])])
     return kinds[0], points
 
 

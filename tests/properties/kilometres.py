@@ -1,6 +1,7 @@
 """The same line at other kilometres."""
 
 import copy
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -21,18 +22,61 @@ def moved(document: Document, begin_km: float) -> Document:
         for place in places_of(document, pattern):
             _move(document, place, begin_km)
     document["line"]["begins_at_km"] = begin_km
-    for profile in ("gradients", "speed_limits"):
-        document["line"][profile] = _once(document["line"][profile])
+    for profile in ("gradients", "speed_limits", "speed_limits_down"):
+        if profile in document["line"]:
+            document["line"][profile] = _once(document["line"][profile])
     return document
 
 
+def mirrored(document: Document) -> Document:
+    """The same line with kilometres from its other end, and its trains, which run down it then."""
+    document = copy.deepcopy(document)
+    length_km, line = document["line"]["length_km"], document["line"]
+    up, down = line["speed_limits"], line.get("speed_limits_down")
+    line["gradients"] = [
+        {"from_km": from_km, "permille": -item["permille"]}
+        for from_km, item in _turned(line["gradients"], length_km)
+    ]
+    if down is not None:
+        line["speed_limits"] = [{**each, "from_km": km} for km, each in _turned(down, length_km)]
+    line["speed_limits_down"] = [{**each, "from_km": km} for km, each in _turned(up, length_km)]
+    if down is None:
+        line["speed_limits"] = line.pop("speed_limits_down")
+    for curve in line.get("curves", []):
+        curve["from_km"], curve["to_km"] = length_km - curve["to_km"], length_km - curve["from_km"]
+    line.get("curves", []).reverse()
+    for zone in document.get("standards", {}).get("zones", []):
+        zone["from_km"], zone["to_km"] = length_km - zone["to_km"], length_km - zone["from_km"]
+    document.get("standards", {}).get("zones", []).reverse()
+    for place in (each for pattern in PLACES for each in places_of(document, pattern)):
+        if place.split(".")[-1] == "position_km":
+            _put(document, place, lambda km: length_km - km)
+    high_voltage = document["supply"].get("high_voltage_line")
+    if high_voltage and "transformers_km" in high_voltage:
+        high_voltage["transformers_km"] = [
+            length_km - km for km in reversed(high_voltage["transformers_km"])
+        ]
+    return document
+
+
+def _turned(profile: list[Document], length_km: float) -> list[tuple[float, Document]]:
+    """Items of a profile from its other end, and where each begins from there. [km]"""
+    begins = [0.0, *(length_km - item["from_km"] for item in profile[:0:-1])]
+    return list(zip(begins, reversed(profile), strict=True))
+
+
 def _move(document: Document, place: str, begin_km: float) -> None:
+    _put(document, place, lambda km: round(km + begin_km, DIGITS))
+
+
+def _put(document: Document, place: str, changed: Callable[[float], float]) -> None:
+    """Change the number at a key path."""
     *above, last = place.split(".")
     container: Any = document
     for key in above:
         container = container[int(key) if isinstance(container, list) else key]
     at: Any = int(last) if isinstance(container, list) else last
-    container[at] = round(container[at] + begin_km, DIGITS)
+    container[at] = changed(container[at])
 
 
 def _once(profile: list[Document]) -> list[Document]:

@@ -134,11 +134,15 @@ class Journey:
         service = str(data.service.to_numpy()[i])
         self.entry = next(entry for entry in result.scenario.traffic if entry.name == service)
         self.train = result.scenario.trains[self.entry.train]
-        self.limit_m = np.array([limit.from_km * 1e3 for limit in line.speed_limits])
-        limits = [min(item.speed_kmh, self.train.max_speed_kmh) for item in line.speed_limits]
-        self.limit = np.array(limits) / 3.6
-        self.keep_limits_until_the_tail_has_passed()
         self.place_m = {station.name: station.position_km * 1e3 for station in line.stations}
+        down = self.place_m[self.entry.destination] < self.place_m[self.entry.origin]
+        given = (line.speed_limits_down if down else ()) or line.speed_limits
+        self.limit_m = np.array([limit.from_km * 1e3 for limit in given])
+        limits = [min(item.speed_kmh, self.train.max_speed_kmh) for item in given]
+        self.limit = np.array(limits) / 3.6
+        if down:
+            self.look_towards_falling_kilometres()
+        self.keep_limits_until_the_tail_has_passed()
         self.end_m = self.place_m[self.entry.destination]
         self.force, self.volts, resistance, climb = (
             data[name].to_numpy()[rows, i]
@@ -149,6 +153,15 @@ class Journey:
         self.opposing = resistance + climb
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
+
+    def look_towards_falling_kilometres(self) -> None:
+        """Replace positions by minus these: an item of the profile ends where it began, and begins where
+        the next one did."""
+        self.x = -self.x
+        self.place_m = {name: -place_m for name, place_m in self.place_m.items()}
+        farthest_m = min(self.x.min(), *self.place_m.values(), -self.limit_m[-1]) - 1.0
+        self.limit_m = np.array([farthest_m, *-self.limit_m[:0:-1]])
+        self.limit = self.limit[::-1].copy()
 
     def keep_limits_until_the_tail_has_passed(self) -> None:
         """Replace the limits by the lowest ones under the train."""

@@ -42,6 +42,15 @@ def places_km(draw: Draw, length_km: float, least: int, most: int) -> list[float
 
 
 @st.composite
+def others_down(draw: Draw, length_km: float, speeds: st.SearchStrategy[float]) -> Document:
+    """Speed limits of the other direction, on a quarter of the lines."""
+    if draw(st.integers(0, 3)) < 3:
+        return {}
+    kms = sorted({0.0, *draw(st.lists(numbers(0.0, length_km), max_size=3))})
+    return {"speed_limits_down": [{"from_km": km, "speed_kmh": draw(speeds)} for km in kms]}
+
+
+@st.composite
 def lines(draw: Draw) -> Document:
     """A line of 100 m to 300 km."""
     longest_km = draw(st.sampled_from([60.0, 300.0, 120.0, 20.0, 3.0, 0.3]))
@@ -61,6 +70,7 @@ def lines(draw: Draw) -> Document:
             {"from_km": km, "permille": draw(numbers(-steep, steep))} for km in sorted(gradient_km)
         ],
         "speed_limits": [{"from_km": km, "speed_kmh": draw(speeds)} for km in sorted(limit_km)],
+        **draw(others_down(length_km, speeds)),
         "stations": [{"name": f"S{i}", "position_km": km} for i, km in enumerate(stations)],
     }
 
@@ -131,6 +141,8 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
     """A traffic entry between two stations, with a timetable of one kind or another."""
     stations = sorted(document["line"]["stations"], key=lambda s: s["position_km"])
     step = document["simulation"]["time_step_min"]
+    if draw(st.integers(0, 2)) == 2:
+        stations.reverse()
     first = draw(st.integers(0, len(stations) - 2))
     last = draw(st.integers(first + 1, len(stations) - 1))
     whole_steps = st.integers(0, MOST_STEPS).map(lambda k: k * step)
@@ -163,9 +175,13 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
         entry["initial_trains"] = [
             {"position_km": km, "speed_kmh": draw(speeds)}
             for km in draw(
-                st.lists(numbers(begin, end), min_size=draw(st.sampled_from([3, 0])), max_size=5)
+                st.lists(
+                    numbers(*sorted((begin, end))),
+                    min_size=draw(st.sampled_from([3, 0])),
+                    max_size=5,
+                )
             )
-            if km < end
+            if km != end
         ]
     return entry
 

@@ -127,7 +127,13 @@ def test_other_faults_are_told_beside_falling_kilometres():
     ]  # fmt: skip
 
 
-def test_trains_alone_that_run_backwards_are_a_fault_of_theirs():
-    ((key, _, _, remedy),) = faults_of({"traffic.0.from": "East", "traffic.0.to": "West"})
-    assert key == "traffic.0.to"
-    assert "swap the two" in remedy
+def test_limits_of_the_other_direction_begin_with_the_line_and_within_it():
+    late = [{"from_km": 440.0, "speed_kmh": 60.0}]
+    before = [{"from_km": 437.0, "speed_kmh": 60.0}]
+    ((key, _, problem, _),) = faults_of({"line.speed_limits_down": late})
+    assert (key, problem) == (
+        "line.speed_limits_down.0.from_km", "no speed limit applies at the beginning of the line",
+    )  # fmt: skip
+    ((key, _, problem, _),) = faults_of({"line.speed_limits_down": before})
+    assert key == "line.speed_limits_down.0.from_km"
+    assert problem.startswith("outside the line")

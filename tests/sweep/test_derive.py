@@ -193,6 +193,7 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "line.curves.*.from_km",
         "line.curves.*.to_km",
         "line.speed_limits.*.from_km",
+        "line.speed_limits_down.*.from_km",
         "supply.converter_stations.*.position_km",
         "supply.transformer_stations.*.position_km",
         "supply.high_voltage_line.transformers_km.*",

@@ -1,7 +1,7 @@
 """The command ``tpss check``: what a scenario describes, without simulating it."""
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.fields import Part, library_name
-from tpss.scenario.line import Line
+from tpss.scenario.line import Line, SpeedLimit
 from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
@@ -77,11 +77,15 @@ def _line(line: Line) -> Iterator[tuple[str, str]]:
     climb_m = sum((end - start) * permille for start, end, permille in pieces)
     spread = f"{lowest:g} ‰" if lowest == highest else f"{lowest:g} to {highest:g} ‰"
     yield "gradients", f"{spread}; from beginning to end {climb_m:+.0f} m"
-    limits = [
-        f"{limit.speed_kmh:g} km/h from {kilometres(limit.from_km)} km"
-        for limit in line.speed_limits
-    ]
-    yield "speed limits", _listed(limits)
+    yield "speed limits", _limits(line.speed_limits)
+    if line.speed_limits_down:
+        yield "... down", _limits(line.speed_limits_down)
+
+
+def _limits(limits: Sequence[SpeedLimit]) -> str:
+    return _listed(
+        [f"{each.speed_kmh:g} km/h from {kilometres(each.from_km)} km" for each in limits]
+    )
 
 
 def _listed(texts: list[str]) -> str:

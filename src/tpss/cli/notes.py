@@ -8,6 +8,7 @@ import numpy as np
 from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
+from tpss.model.directions import runs_down
 from tpss.model.effort_curve import adhesion
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
@@ -55,12 +56,15 @@ def _profile(line: Line) -> Iterator[str]:
         )
     if last > line.end_km:
         yield f"line.gradients continues to {kilometres(last)} km, but the line ends at {end} km"
-    for i, limit in enumerate(line.speed_limits):
-        if limit.from_km >= line.end_km:
-            yield (
-                f"line.speed_limits.{i} begins at {kilometres(limit.from_km)} km, where the line has "
-                f"ended ({end} km)"
-            )
+    limits = (("speed_limits", line.speed_limits), ("speed_limits_down", line.speed_limits_down))
+    beyond = (
+        (f"line.{key}.{i}", limit.from_km)
+        for key, profile in limits
+        for i, limit in enumerate(profile)
+        if limit.from_km >= line.end_km
+    )
+    for key, from_km in beyond:
+        yield f"{key} begins at {kilometres(from_km)} km, where the line has ended ({end} km)"
 
 
 def _dead_stretches(line: Line) -> Iterator[str]:
@@ -118,7 +122,7 @@ def _voltage_limits(scenario: Scenario) -> Iterator[str]:
 
 def _trains(scenario: Scenario) -> Iterator[str]:
     used = {entry.train for entry in scenario.traffic}
-    slowest = min(limit.speed_kmh for limit in scenario.line.speed_limits)
+    slowest = min(scenario.line.speeds_kmh)
     for name, train in scenario.trains.items():
         if name not in used:
             yield f"trains.{name} is used by no traffic entry"
@@ -138,7 +142,7 @@ def _early_end(name: str, train: Train, line: Line) -> Iterator[str]:
     if not isinstance(effort, EffortTable):
         return
     last_kmh = effort.speed_kmh[-1]
-    fastest_kmh = min(train.max_speed_kmh, max(limit.speed_kmh for limit in line.speed_limits))
+    fastest_kmh = min(train.max_speed_kmh, max(line.speeds_kmh))
     force_kn = max(row[-1] for row in rows_of(effort))
     if fastest_kmh > last_kmh and force_kn > 0.0:
         yield (
@@ -197,9 +201,11 @@ def _is_whole(steps: float) -> bool:
 def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
     """The steepest place of a service's route, if its train could not start there."""
     position_km = {station.name: station.position_km for station in scenario.line.stations}
-    ends_km = position_km[entry.origin], position_km[entry.destination]
+    ends_km = sorted((position_km[entry.origin], position_km[entry.destination]))
+    sign = -1.0 if runs_down(entry, scenario.line) else 1.0
     route = scenario.line.gradients_between(*ends_km)
-    start_km, end_km, permille = max(route, key=lambda piece: piece[2])
+    start_km, end_km, permille = max(route, key=lambda piece: sign * piece[2])
+    permille *= sign
     train = scenario.trains[entry.train]
     needed_kn = _starting_force_n(train, permille) / 1e3
     available_kn = float(adhesion(train, np.zeros(1), scenario.simulation)[0]) / 1e3

@@ -7,7 +7,8 @@ import numpy as np
 
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
-from tpss.model.profiles import build_profiles, lengths_of
+from tpss.model.directions import running_trains, runs_down
+from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.supply import SupplyPlan, build_supply
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
@@ -32,9 +33,9 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     network, plan = build_supply(scenario.supply, scenario.line.begins_at_km, scenario.line.end_km)
-    trains = list(scenario.trains.values())
-    types, points = build_train_types(trains)
-    gradients, limits = build_profiles(scenario.line, lengths_of(trains))
+    running = running_trains(scenario)
+    types, points = build_train_types(running)
+    gradients, limits = build_profiles(scenario.line, rows_seen(running))
     model = Model(
         options=_options(scenario),
         control=RunControl(),
@@ -84,10 +85,12 @@ def _member(choice: str) -> str:
 
 def _stops(scenario: Scenario, step_s: float) -> Records[Stop]:
     """Stops, one row a traffic entry, the destination last."""
-    position_m = {s.name: si(s, "position_km") for s in scenario.line.stations}
+    line = scenario.line
     most = max(len(entry.stops) for entry in scenario.traffic) + 1
     rows: Any = Stop.blank(len(scenario.traffic), most)
     for route, entry in enumerate(scenario.traffic):
+        seen = line.mirrored() if runs_down(entry, line) else line
+        position_m = {station.name: si(station, "position_km") for station in seen.stations}
         for k, stop in enumerate(entry.stops):
             dwell_s = si(stop, "dwell_min")
             rows[route, k] = (position_m[stop.station], steps_of(dwell_s, step_s), dwell_s, False)

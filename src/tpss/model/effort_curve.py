@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import plain
+from tpss.model.directions import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.curve import curve_at
 from tpss.numerics.series import SCRATCH_SHAPE
@@ -20,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 def machine_limit(train: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
     """Highest force at the wheel rim by machine and line current, on level track. [N]"""
-    types, points = build_train_types([train])
+    types, points = build_train_types([Running(train)])
     kind, demand, scratch = types[0], Demand.blank(1)[0], np.empty(SCRATCH_SHAPE)
     demand.force_cap_n = demand.adhesion_n = FULL_EFFORT_N
     demand.voltage_v, demand.speed_m_s, demand.free_band_v = voltage_v, -1.0, -1.0
@@ -34,14 +35,14 @@ def machine_limit(train: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
 
 def level_resistance(train: Train, speed_m_s: Floats) -> Floats:
     """Running resistance on level track. [N]"""
-    davis = build_train_types([train])[0][0].resistance
+    davis = build_train_types([Running(train)])[0][0].resistance
     return np.array([plain(running_resistance)(speed, davis) for speed in speed_m_s])
 
 
 def adhesion(train: Train, speed_m_s: Floats, simulation: Simulation) -> Floats:
     """Force that the rails pass on. [N]"""
     if train.adhesion is not None:
-        types, points = build_train_types([train])
+        types, points = build_train_types([Running(train)])
         curve, weight_n = types[0].adhesion, types[0].adhesive_mass_kg * GRAVITY_M_S2
         return np.array(
             [weight_n * plain(curve_at)(v, curve.first, curve.points, points) for v in speed_m_s]

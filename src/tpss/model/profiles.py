@@ -1,5 +1,7 @@
 r"""Gradients and speed limits of a line as trains of a length see them, over their heads' positions.
 
+Trains that run towards falling kilometres see the mirrored line, see `model.directions`.
+
 A limit rises for a train once its tail has passed: it has to keep the lowest limit under it.  The
 gradient acts on all of its mass, taken as spread evenly over its length L,
 
@@ -12,15 +14,16 @@ Curves oppose trains, which go towards higher positions, as gradients do, and ar
 """
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.data import Profile, Profiles
 from tpss.kernel import plain
+from tpss.model.directions import Running
 from tpss.physics.running_resistance import by_radius, curve_resistance
 from tpss.scenario.line import CurveResistance, Line, TrackCurve
-from tpss.scenario.rolling_stock import Train
 from tpss.units import si, si_of_each
 
 Array = npt.NDArray[np.float64]
@@ -29,13 +32,38 @@ PIECES = 16
 """Stairs over the length of a train after a change of gradient."""
 
 
-def lengths_of(trains: Sequence[Train]) -> list[float]:
-    """Lengths that trains have, each once, in the order of the rows of the profiles. [m]"""
-    return list(dict.fromkeys(si(train, "length_m") for train in trains))
+class Seen(NamedTuple):
+    """What a row of the profiles belongs to."""
+
+    length_m: float
+    """Length of trains. [m]"""
+    runs_down: bool
+    """Whether they run towards falling kilometres; positions are minus these then."""
 
 
-def build_profiles(line: Line, lengths_m: Sequence[float]) -> tuple[Profiles, Profiles]:
-    """Gradients [1] and speed limits [m/s] of a line, a row for each length of train."""
+def rows_seen(running: Sequence[Running]) -> list[Seen]:
+    """Rows of the profiles, each once."""
+    return list(dict.fromkeys(row_seen(each) for each in running))
+
+
+def row_seen(running: Running) -> Seen:
+    """Row of the profiles of a train in a direction."""
+    return Seen(si(running.train, "length_m"), running.runs_down)
+
+
+def build_profiles(line: Line, rows: Sequence[Seen]) -> tuple[Profiles, Profiles]:
+    """Gradients [1] and speed limits [m/s] of a line, a row for each length of train and direction."""
+    lines = {
+        down: _profiles_of(line.mirrored() if down else line) for _, down in dict.fromkeys(rows)
+    }
+    return (
+        _rows([lines[row.runs_down][0] for row in rows], mean_under_train, rows),
+        _rows([lines[row.runs_down][1] for row in rows], lowest_under_train, rows),
+    )
+
+
+def _profiles_of(line: Line) -> tuple[Profile, Profile]:
+    """Gradients and limits under a point. [1], [m/s]"""
     gradients = Profile(
         from_m=np.array(si_of_each(line.gradients, "from_km")),
         value=np.array([item.permille for item in line.gradients]) * 1e-3,
@@ -46,17 +74,19 @@ def build_profiles(line: Line, lengths_m: Sequence[float]) -> tuple[Profiles, Pr
         from_m=np.array(si_of_each(line.speed_limits, "from_km")),
         value=np.array(si_of_each(line.speed_limits, "speed_kmh")),
     )
-    return (
-        _rows(gradients, mean_under_train, lengths_m),
-        _rows(limits, lowest_under_train, lengths_m),
-    )
+    return gradients, limits
 
 
 def _rows(
-    profile: Profile, under_train: Callable[[Profile, float], Profile], lengths_m: Sequence[float]
+    profiles: Sequence[Profile],
+    under_train: Callable[[Profile, float], Profile],
+    rows: Sequence[Seen],
 ) -> Profiles:
-    """A profile for each length, in rows of the same number of stairs."""
-    seen = [under_train(profile, length_m) if length_m > 0.0 else profile for length_m in lengths_m]
+    """What each row sees of its profile, in rows of the same number of stairs."""
+    seen = [
+        under_train(profile, row.length_m) if row.length_m > 0.0 else profile
+        for profile, row in zip(profiles, rows, strict=True)
+    ]
     most = max(each.from_m.size for each in seen)
     return Profiles(
         from_m=np.array([_filled(each.from_m, most, np.inf) for each in seen]),

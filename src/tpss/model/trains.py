@@ -9,7 +9,8 @@ import numpy as np
 from tpss import library
 from tpss.kernel import plain
 from tpss.model.curves import CurveBook, interpolate
-from tpss.model.profiles import lengths_of
+from tpss.model.directions import Running
+from tpss.model.profiles import row_seen, rows_seen
 from tpss.numerics.curve import Curve as CurvePlace
 from tpss.numerics.curve import Points
 from tpss.numerics.neural_network import FeedForwardNetwork, build_network
@@ -54,14 +55,14 @@ def _no_networks() -> Any:
     return (FeedForwardNetwork.blank(1)[0].tolist(),) * len(_NETWORK_INPUTS)  # type: ignore[attr-defined]
 
 
-def build_train_types(trains: list[Train]) -> tuple[Records[TrainType], Points]:
+def build_train_types(running: list[Running]) -> tuple[Records[TrainType], Points]:
     """The types in the order of the trains, and the points of their curves."""
-    book, lengths_m = CurveBook(), lengths_of(trains)
-    rows = [_train_type(train, lengths_m, book) for train in trains]
+    book, seen = CurveBook(), rows_seen(running)
+    rows = [_train_type(each.train, seen.index(row_seen(each)), book) for each in running]
     return TrainType.array(rows), book.points()
 
 
-def _train_type(train: Train, lengths_m: list[float], book: CurveBook) -> Any:
+def _train_type(train: Train, profile: int, book: CurveBook) -> Any:
     mass, adhesive = si(train, "mass_t"), si(train, "adhesive_mass_t")
     return TrainType.row(
         mass_kg=mass,
@@ -77,7 +78,7 @@ def _train_type(train: Train, lengths_m: list[float], book: CurveBook) -> Any:
         highest_acceleration_m_s2=_si_or(train, "max_acceleration_m_s2", math.inf),
         **_braking(train),
         highest_speed_m_s=si(train, "max_speed_kmh"),
-        profile=lengths_m.index(si(train, "length_m")),
+        profile=profile,
         adhesion=CurvePlace.row() if train.adhesion is None else _over_speed(train.adhesion, book),
         efficiency=_over_speed(train.efficiency, book),
         effort=_effort(train, book),

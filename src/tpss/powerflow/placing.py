@@ -3,7 +3,7 @@
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Network, Section, Standing
 from tpss.record import Records
-from tpss.vehicle.train import Train
+from tpss.vehicle.train import Train, place_on_line
 
 
 @inlined
@@ -46,7 +46,7 @@ def locate_trains(count: int, trains: Records[Train], network: Network, flow: Fl
     for k in range(count):
         standing = flow.standing[at(k)]
         train = standing.train
-        place_m = trains[at(train)].motion.position_m
+        place_m = place_on_line(trains[at(train)])
         section = section_at(place_m, section, network.sections)
         standing.section = section
         standing.place_m = place_m

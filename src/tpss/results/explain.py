@@ -15,6 +15,7 @@ from tpss.scenario.scenario import Scenario
 from tpss.sources.kinds import SourceKind, unloaded
 from tpss.step.model import Model, RunControl
 from tpss.step.state import Status
+from tpss.vehicle.train import place_on_line
 
 ALMOST = 0.99
 """Share of the highest plausible voltage above which the voltages count as too high."""
@@ -107,7 +108,7 @@ def _collapse(
         too_high = voltage_kv.max() > ALMOST * highest_kv
         k = int(np.argmax(voltage_kv) if too_high else np.argmin(voltage_kv))
         train, which = int(places[k].train), "highest" if too_high else "lowest"
-        place_km = state.trains[train].motion.position_m / 1e3
+        place_km = plain(place_on_line)(state.trains[train]) / 1e3
         name = outcome.trains[train].name
         problem += f" There, {name} at {place_km:.2f} km has {voltage_kv[k]:.2f} kV, the {which}."
         advice = (
@@ -203,9 +204,10 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
     train = outcome.state.trains[clock.stalled_train]
     scheduled = outcome.trains[clock.stalled_train]
     motion, demand, kind = train.motion, train.demand, model.types[train.train_type]
+    place_km = plain(place_on_line)(train) / 1e3
     doing = "cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
     problem = (
-        f"At {time_min:.2f} min {scheduled.name} {doing} at {motion.position_m / 1e3:.2f} km: "
+        f"At {time_min:.2f} min {scheduled.name} {doing} at {place_km:.2f} km: "
         f"resistance and gradient demand {clock.force_needed_n / 1e3:.1f} kN, its machine and adhesion "
         f"give {clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
         f"{motion.speed_m_s * 3.6:.1f} km/h."

@@ -33,6 +33,7 @@ def notes(result: Result) -> list[str]:
         *_circulation(result),
         *extrapolations(result),
         *_closeness(result),
+        *_passing(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
 
@@ -103,6 +104,43 @@ def _closeness(result: Result) -> Iterator[str]:
                 f"{node_m / 1e3:.2f} km and counted as {CLOSE_M:g} m away, in {len(step)} "
                 f"train-steps, first {names[train[0]]} at {step[0] * step_s(data) / 60.0:.2f} min"
             )
+
+
+def _passing(result: Result) -> Iterator[str]:
+    """Trains that passed through each other: the line has one track, and nothing keeps them apart."""
+    data, names = result.dataset, result.dataset.train.to_numpy()
+    place_m = data.position.to_numpy()
+    count, first = 0, ""
+    for step in _steps_of_another_order(place_m):
+        there = np.flatnonzero(np.isfinite(place_m[step]) & np.isfinite(place_m[step + 1]))
+        ordered = there[np.argsort(place_m[step, there], kind="stable")]
+        after_m = place_m[step + 1, ordered]
+        passed = np.argwhere(np.triu(after_m[:, None] > after_m))
+        if len(passed) and not count:
+            one, other = ordered[passed[0]]
+            km = (place_m[step + 1, one] + place_m[step + 1, other]) / 2e3
+            first = (
+                f"{names[one]} and {names[other]} near {km:.1f} km at "
+                f"{float(data.time[step]) / 60.0:.1f} min"
+            )
+        count += len(passed)
+    if count:
+        times = "once" if count == 1 else f"{count} times"
+        yield (
+            f"trains passed through each other {times}, first {first}: the line has one track, and "
+            "nothing keeps trains apart"
+        )
+
+
+def _steps_of_another_order(place_m: Floats) -> Floats:
+    """Steps after which the trains present may stand in another order than before."""
+    here, after = place_m[:-1], place_m[1:]
+    order = np.argsort(np.where(np.isfinite(here), here, np.inf), axis=1, kind="stable")
+    moved = np.take_along_axis(after, order, axis=1)
+    with np.errstate(invalid="ignore"):  # trains that are not there
+        turned = (np.diff(moved, axis=1) < 0.0).any(axis=1)
+    left = (np.isfinite(here) & ~np.isfinite(after)).any(axis=1)
+    return np.asarray(np.flatnonzero(turned | left))
 
 
 def _nodes_between_stations(result: Result) -> Floats:

@@ -85,6 +85,6 @@ def _arrival_s(
     speed, held_s = float(speed_m_s[before]), float(holding_s[before])
     if speed <= 0.0:
         return instant * step_s
-    way_m = float(position_m[instant] - position_m[before])
+    way_m = abs(float(position_m[instant] - position_m[before]))
     braking_s = 2.0 * (way_m - speed * held_s) / speed
     return before * step_s + min(step_s, held_s + braking_s)

@@ -52,8 +52,8 @@ ABSENCES = (
     ),
     Absence(
         r"direction|reverse|return_trip|bidirectional",
-        "directions: all trains run towards growing positions",
-        "mirror the line to run the other direction on its own",
+        "a direction of its own: trains run from `from` to `to`",
+        "leave it out, and name the stations in the order of travel",
     ),
     Absence(
         r"time_?table|schedule|arrivals?(_min|_s)?$|arrive",

@@ -52,6 +52,8 @@ ROUNDING = 1e-9
 
 PROFILES = ("gradients", "speed_limits")
 
+SPEED_LIMITS = ("speed_limits", "speed_limits_down")
+
 LARGEST = 1e300
 """Larger numbers count as this one: an integer in a file has any number of digits."""
 
@@ -141,8 +143,9 @@ def _falling(line: Mapping[str, Any], ends: _Ends | None) -> _Fault:
     problem = f"kilometres fall in the direction of travel: {second:g} follows {first:g}"
     begin = f"{-ends[1]:.12g}" if ends else "minus the kilometre where the line ends"
     remedy = (
-        "trains run towards rising positions: write a minus sign before every position of the "
-        f"scenario, and line.begins_at_km = {begin}; the order and all gradients stay as they are"
+        "profiles are given in rising kilometres: turn their order, and the sign of gradients; or write "
+        "a minus sign before every position of the scenario, and line.begins_at_km = "
+        f"{begin}; the order and all gradients stay as they are then"
     )
     return f"line.{key}.1.from_km", f"{second:g}", problem, remedy
 
@@ -172,7 +175,7 @@ def _begins_elsewhere(document: Mapping[str, Any], ends: _Ends) -> _Fault | None
     """The fault that a line begins elsewhere, where it would hold all of its positions."""
     line = _table(document, "line")
     positions = [position for _, position in _positions(document)]
-    positions += _column(line, "speed_limits")
+    positions += [km for key in SPEED_LIMITS for km in _column(line, key)]
     low, high = min(positions, default=ends[0]), max(positions, default=ends[0])
     fits = high - low <= (ends[1] - ends[0]) * (1.0 + ROUNDING)
     if "begins_at_km" in line or not fits or (ends[0] <= low and high <= ends[1]):
@@ -198,10 +201,11 @@ def _profiles_outside(line: Mapping[str, Any], ends: _Ends) -> Iterator[_Fault]:
 
     What continues beyond a line that was cut or shortened is noted by `tpss.cli.notes`.
     """
-    for i, limit in _items(line, "speed_limits"):
-        position = _number(limit, "from_km")
-        if position is not None and position < ends[0]:
-            yield from _outside(f"line.speed_limits.{i}.from_km", position, ends)
+    for key in SPEED_LIMITS:
+        for i, limit in _items(line, key):
+            position = _number(limit, "from_km")
+            if position is not None and position < ends[0]:
+                yield from _outside(f"line.{key}.{i}.from_km", position, ends)
     gradients = (_number(item, "from_km") for _, item in _items(line, "gradients"))
     away = list(takewhile(lambda km: km is not None and not ends[0] <= km <= ends[1], gradients))
     if len(away) > 1 and len(away) == len(line["gradients"]):
@@ -216,12 +220,13 @@ def _profiles_outside(line: Mapping[str, Any], ends: _Ends) -> Iterator[_Fault]:
 
 
 def _without_limit(line: Mapping[str, Any], begin_km: float) -> Iterator[_Fault]:
-    first = next((limit for _, limit in _items(line, "speed_limits")), {})
-    position = _number(first, "from_km")
-    if position is not None and position > begin_km:
-        problem = "no speed limit applies at the beginning of the line"
-        remedy = f"make the first limit begin at {kilometres(begin_km)}"
-        yield "line.speed_limits.0.from_km", kilometres(position), problem, remedy
+    for key in SPEED_LIMITS:
+        first = next((limit for _, limit in _items(line, key)), {})
+        position = _number(first, "from_km")
+        if position is not None and position > begin_km:
+            problem = "no speed limit applies at the beginning of the line"
+            remedy = f"make the first limit begin at {kilometres(begin_km)}"
+            yield f"line.{key}.0.from_km", kilometres(position), problem, remedy
 
 
 def _open_step(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
@@ -382,31 +387,32 @@ def _route(key: str, entry: Mapping[str, Any], places: dict[str, float]) -> Iter
         return
     (begin, end), (start_km, end_km) = _ends_of(entry), route
     words = f"{end} ({kilometres(end_km)} km)", f"{begin} ({kilometres(start_km)} km)"
-    if end_km <= start_km:
-        problem = f"{words[0]} does not lie beyond {words[1]}"
-        remedy = "trains run towards increasing positions: swap the two, or mirror the line"
-        yield f"{key}.to", repr(end), problem, remedy
+    if end_km == start_km:
+        problem = f"trains would begin and end at the same place, {kilometres(end_km)} km"
+        yield f"{key}.to", repr(end), problem, "name another station"
         return
-    yield from _stops(key, entry, places, start_km, end_km)
+    sign = 1.0 if end_km > start_km else -1.0
+    yield from _stops(key, entry, places, route)
     for i, train in _items(entry, "initial_trains"):
         position = _number(train, "position_km")
-        if position is not None and not start_km <= position < end_km:
+        if position is not None and not sign * start_km <= sign * position < sign * end_km:
             problem = f"not between {words[1]} and {words[0]}"
             place = f"{key}.initial_trains.{i}.position_km"
             yield place, kilometres(position), problem, "place it on the route of its trains"
 
 
 def _stops(
-    key: str, entry: Mapping[str, Any], places: dict[str, float], start_km: float, end_km: float
+    key: str, entry: Mapping[str, Any], places: dict[str, float], route: _Ends
 ) -> Iterator[_Fault]:
-    before_km = start_km
+    before_km, end_km = route
+    sign = 1.0 if end_km > before_km else -1.0
     for i, stop in _items(entry, "stops"):
         name = stop.get("station")
         if not isinstance(name, str) or name not in places:
             continue
-        if not before_km < places[name] < end_km:
+        if not sign * before_km < sign * places[name] < sign * end_km:
             here, before, end = map(kilometres, (places[name], before_km, end_km))
             problem = f"at {here} km, not between {before} and {end} km"
             remedy = "list the stops in the order of travel, without the first and last station"
             yield f"{key}.stops.{i}.station", repr(name), problem, remedy
-        before_km = max(before_km, places[name])
+        before_km = sign * max(sign * before_km, sign * places[name])

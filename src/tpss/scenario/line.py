@@ -113,6 +113,11 @@ class Line(Part):
     speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
         Field(description="Speed limits; the first one begins where the line does.")
     )
+    speed_limits_down: Annotated[tuple[SpeedLimit, ...], ascending("from_km")] = Field(
+        default=(),
+        description="Speed limits of trains that run towards falling kilometres, if they are others; in "
+        "rising kilometres too.",
+    )
     curves: Annotated[tuple[TrackCurve, ...], AfterValidator(_one_after_another)] = Field(
         default=(), description="Curves; between them the track is straight."
     )
@@ -129,12 +134,47 @@ class Line(Part):
         return end_of_line(self.begins_at_km, self.length_km)
 
     @property
+    def speeds_kmh(self) -> list[float]:
+        """Speeds of all limits, those of both directions. [km/h]"""
+        return [limit.speed_kmh for limit in (*self.speed_limits, *self.speed_limits_down)]
+
+    @property
     def in_words(self) -> str:
         """Its length and, unless it begins at 0, its ends."""
         length, begin, end = map(kilometres, (self.length_km, self.begins_at_km, self.end_km))
         return (
             f"{length} km" if self.begins_at_km == 0.0 else f"{length} km, from {begin} to {end} km"
         )
+
+    def mirrored(self) -> Self:
+        """The line as trains see it that run towards falling kilometres: positions are minus those here.
+
+        It rises where this one falls.
+        """
+        gradients = [(each.from_km, each.permille) for each in self.gradients]
+        limits = [
+            (each.from_km, each.speed_kmh) for each in self.speed_limits_down or self.speed_limits
+        ]
+        turned = {
+            "begins_at_km": -self.end_km,
+            "gradients": tuple(
+                Gradient(from_km=from_km, permille=-permille)
+                for from_km, permille in _turned(gradients, self.end_km)
+            ),
+            "speed_limits": tuple(
+                SpeedLimit(from_km=from_km, speed_kmh=speed_kmh)
+                for from_km, speed_kmh in _turned(limits, self.end_km)
+            ),
+            "curves": tuple(
+                curve.model_copy(update={"from_km": -curve.to_km, "to_km": -curve.from_km})
+                for curve in reversed(self.curves)
+            ),
+            "stations": tuple(
+                station.model_copy(update={"position_km": -station.position_km})
+                for station in reversed(self.stations)
+            ),
+        }
+        return self.model_copy(update=turned)
 
     def gradients_between(self, start_km: float, end_km: float) -> list[Piece]:
         """Pieces of the gradient profile between two positions. [‰]"""
@@ -151,6 +191,13 @@ def end_of_line(begin_km: float, length_km: float) -> float:
     A sum such as 438.1 + 40.2 is not 478.3 to the last digit, where a station stands.
     """
     return length_km if begin_km == 0.0 else round(begin_km + length_km, DECIMALS)
+
+
+def _turned(profile: Sequence[tuple[float, float]], end_km: float) -> list[tuple[float, float]]:
+    """A profile over minus its positions; the outer values continue there too. [km]"""
+    last_km = profile[-1][0]
+    begins = [-end_km if last_km < end_km else -last_km - 1.0, *(-km for km, _ in profile[:0:-1])]
+    return list(zip(begins, (value for _, value in reversed(profile)), strict=True))
 
 
 def _pieces(profile: Sequence[tuple[float, float]], start_km: float, end_km: float) -> list[Piece]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+from tpss.model.directions import runs_down
 from tpss.model.supply import transformer_positions_km
 from tpss.scenario.fields import library_name
 from tpss.scenario.scenario import Scenario
@@ -65,12 +66,14 @@ class Inputs(NamedTuple):
 
 def inputs_of(scenario: Scenario) -> Inputs:
     """Inputs of a scenario."""
-    line, supply, first = scenario.line, scenario.supply, scenario.traffic[0]
+    supply, first = scenario.supply, scenario.traffic[0]
+    down = runs_down(first, scenario.line)
+    line, sign = (scenario.line.mirrored(), -1.0) if down else (scenario.line, 1.0)
     train, catenary = scenario.trains[first.train], supply.catenary
     place_km = {station.name: station.position_km for station in line.stations}
     begin_km, end_km = place_km[first.origin], place_km[first.destination]
-    stations_km = sorted(station.position_km for station in supply.stations)
-    transformers_km = transformer_positions_km(supply)
+    stations_km = sorted(sign * station.position_km for station in supply.stations)
+    transformers_km = [sign * km for km in transformer_positions_km(supply)]
     converters = [station.installed for station in supply.stations]
     ratings = [station.installed * station.unit_mva for station in supply.stations]
     headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]

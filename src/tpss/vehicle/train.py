@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import inlined, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.record import Record
 from tpss.vehicle.terms import Demand
 
@@ -197,6 +197,8 @@ class Train(Record):
 
     train_type: int
     """Index of its type."""
+    runs_down: bool
+    """Whether it runs towards falling kilometres: its position is minus that on the line."""
     route: int
     """Index of its route."""
     timetable: Timetable
@@ -230,6 +232,18 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.next_stop = source.next_stop
     target.dwell_steps_left = source.dwell_steps_left
     target.wait_s = source.wait_s
+
+
+@inlined
+def place_on_line(train: Train) -> float:
+    """Position of a train on the line, that of its kilometre post. [m]"""
+    return -train.motion.position_m if train.runs_down else train.motion.position_m
+
+
+@fused
+def along_route(place_m: float, train: Train) -> float:
+    """Position along a train's route of a place on the line. [m]"""
+    return -place_m if train.runs_down else place_m
 
 
 @kernel

@@ -442,7 +442,7 @@ def test_a_step_at_the_same_speed_asks_the_machine_anew_beyond_its_band_only(
     as_run, band_v, voltage_v, force_n
 ):
     model, _ = build_model(short_line())
-    train = train_records([ScheduledTrain("", "", 0, 0, 0, speed_m_s=60 / 3.6)], 15e3)[0]
+    train = train_records([ScheduledTrain("", "", 0, 0, False, 0, speed_m_s=60 / 3.6)], 15e3)[0]
     data = driving_data(model)
     as_run(prepare)(train, data, model.points, SCRATCH)
     assert train.demand.free_force_n == pytest.approx(169_170, abs=1.0)

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from tpss.model.directions import runs_down
 from tpss.report.drawings.parts import POSITION, TIME, Curve, Drawing, Panel
 from tpss.report.gradients import inclination
 from tpss.report.sampling import Floats
@@ -58,9 +59,16 @@ def journey(
     return Drawing(TIME if against == "time" else POSITION, panels)
 
 
+def _rise_ahead(result: Result, data: xr.Dataset) -> Floats:
+    """Gradient of the line where a train is, as it runs. [1]"""
+    entry = next(each for each in result.scenario.traffic if each.name == str(data.service.values))
+    sign = -1.0 if runs_down(entry, result.scenario.line) else 1.0
+    return sign * inclination(result, data.position.to_numpy())
+
+
 def _values(result: Result, data: xr.Dataset) -> dict[str, Floats]:
     return {
-        "gradient [‰]": inclination(result, data.position.to_numpy()) * 1e3,
+        "gradient [‰]": _rise_ahead(result, data) * 1e3,
         "speed [km/h]": data.speed.to_numpy() * 3.6,
         "active power [MW]": data.active_power.to_numpy() / 1e6,
         "reactive power [Mvar]": data.reactive_power.to_numpy() / 1e6,
