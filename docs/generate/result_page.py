@@ -74,6 +74,9 @@ STOPS = {
     "arrival_min": "when it came to stand; NaN where it begins",
     "departure_min": "when it went on; NaN where it ends",
     "dwell_min": "from one to the other",
+    "scheduled_arrival_min": "when it should have; NaN where nothing is scheduled or known",
+    "scheduled_departure_min": "when it should have gone on, likewise",
+    "late_min": "arrival, or departure where no arrival is scheduled, after its time; early: negative",
 }
 STATIONS = {
     "station": "name",

@@ -30,6 +30,9 @@ RISE = 0.04
 FINEST = 2e-4
 """Where not even this much more can be carried, the branch has ended. [1]"""
 
+MOST_TRAINS = 200
+"""On more, another load flow's paths are not followed: its matrices are dense."""
+
 
 class Replay:
     """A scenario's run, done again, to look into single steps of it in ascending order."""
@@ -87,9 +90,11 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
 
     Stations far apart have no solution without load near base voltage.  What filters feed into a weak
     line may lift the voltages out of the band at some part of the load, and back at the whole of it.
-    Return NaN where these have lost their way, and so know nothing.
+    Return NaN where these have lost their way, and so know nothing, or would take minutes.
     """
     standing = state.flow.standing[: state.flow.sections.end[-1]]
+    if standing.size > MOST_TRAINS:
+        return math.nan
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
     ends = [loads_last(equations), sources_last(equations)]

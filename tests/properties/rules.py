@@ -125,8 +125,10 @@ class Journey:
         calls = data.isel(train=i)
         self.arrived_s = calls.call_arrival_time.to_numpy()
         self.went_on_s = calls.call_departure_time.to_numpy()
+        self.departed_s = float(calls.departure_time)
         rows = np.flatnonzero(np.isfinite(data.position.to_numpy()[:, i]))
         assert (np.diff(rows) == 1).all(), f"{self.name} is away for a while"
+        self.time_s = data.time.to_numpy()[rows]
         self.x, self.v, self.braking, self.a, self.state = (
             data[name].to_numpy()[rows, i]
             for name in ("position", "speed", "braking_force", "acceleration", "train_state")
@@ -318,6 +320,12 @@ class Journey:
             if self.x[0] >= place or self.x[-1] <= place + STOP_ERROR_M:
                 continue
             stood_s = self.went_on_s[call] - self.arrived_s[call]
+            if stop.depart_after_min is not None:
+                if math.isnan(self.departed_s):  # it was on the line at the start
+                    assert stood_s >= dwell_s - 1e-6, f"{self.name} dwells {stood_s} s at {place} m"
+                    continue
+                leaves_s = self.departed_s + 60.0 * stop.depart_after_min
+                dwell_s = max(dwell_s, leaves_s - self.arrived_s[call])
             assert stood_s == pytest.approx(dwell_s, rel=1e-9, abs=1e-6), (
                 f"{self.name} dwells {stood_s} s at {place} m"
             )
@@ -331,10 +339,14 @@ class Journey:
     def stops_and_dwells(self) -> None:
         """At each stop it meets: within a millimetre, for the steps of its dwell."""
         stops = [
-            (self.place_m[stop.station], steps_of(60.0 * stop.dwell_min, self.step_s))
+            (
+                self.place_m[stop.station],
+                steps_of(60.0 * stop.dwell_min, self.step_s),
+                60.0 * (stop.depart_after_min or 0.0),
+            )
             for stop in self.entry.stops
         ]
-        for place, dwell in [*stops, (self.end_m, 0)]:
+        for place, dwell, leaves_s in [*stops, (self.end_m, 0, 0.0)]:
             stood = (np.abs(self.x - place) < STOP_ERROR_M) & (self.v == 0.0)
             left = self.x[-1] > place + STOP_ERROR_M
             if self.x[0] >= place or not (left or stood.any()):
@@ -342,4 +354,11 @@ class Journey:
             assert stood.any(), f"{self.name} runs through its stop at {place} m"
             if left:
                 dwelled = int((self.state[stood] == TrainState.DWELLING).sum())
+                if leaves_s > 0.0:
+                    if math.isnan(self.departed_s):
+                        assert dwelled >= dwell, f"{self.name} dwells {dwelled} steps at {place} m"
+                        continue
+                    arrived_s = float(self.time_s[np.flatnonzero(stood)[0]])
+                    early_s = self.departed_s + leaves_s - arrived_s
+                    dwell = max(dwell, steps_of(early_s, self.step_s))
                 assert dwelled == dwell, f"{self.name} dwells {dwelled} steps at {place} m"

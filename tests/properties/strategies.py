@@ -136,6 +136,18 @@ STEPPED = st.fixed_dictionaries(
 SIMULATIONS = st.one_of(CONTINUOUS, CONTINUOUS, STEPPED)
 
 
+def schedule(draw: Draw, entry: Document, span_min: float) -> None:
+    """Give some stops of a service scheduled times, in order, which may be too early or late."""
+    calls = 2 * len(entry["stops"])
+    times = iter(sorted(draw(st.lists(numbers(1e-3, span_min), min_size=calls, max_size=calls))))
+    for stop in entry["stops"]:
+        arrival, departure = next(times), next(times)
+        if draw(st.booleans()):
+            stop["arrive_after_min"] = arrival
+        if draw(st.booleans()):
+            stop["depart_after_min"] = departure
+
+
 @st.composite
 def services(draw: Draw, i: int, document: Document, span_min: float) -> Document:
     """A traffic entry between two stations, with a timetable of one kind or another."""
@@ -159,6 +171,8 @@ def services(draw: Draw, i: int, document: Document, span_min: float) -> Documen
             if draw(st.booleans())
         ],
     }
+    if draw(st.integers(0, 3)) == 3:
+        schedule(draw, entry, span_min)
     kind = draw(st.sampled_from(["headway", "timetable", "already running"]))
     if kind == "timetable":
         listed = draw(st.sets(st.one_of(st.just(0.0), times), min_size=1, max_size=4))

@@ -26,7 +26,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import HighVoltageLine, Supply
-from tpss.scenario.traffic import Traffic
+from tpss.scenario.traffic import Stop, Traffic
 from tpss.units import kilometres
 
 MOST_LISTED = 8
@@ -171,9 +171,16 @@ def _service(entry: Traffic) -> str:
     if entry.initial_trains:
         texts.append(f"trains on the line at the start: {len(entry.initial_trains)}")
     if entry.stops:
-        stops = [f"{stop.station} {stop.dwell_min:g} min" for stop in entry.stops]
+        stops = [_stop(stop) for stop in entry.stops]
         texts.append(f"stops: {_listed(stops)}")
     return ", ".join(texts)
+
+
+def _stop(stop: Stop) -> str:
+    text = f"{stop.station} {stop.dwell_min:g} min"
+    if stop.depart_after_min is None:
+        return text
+    return f"{text}, not before {stop.depart_after_min:g} min under way"
 
 
 def _simulation(simulation: Simulation, studied: str) -> str:

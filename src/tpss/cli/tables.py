@@ -16,6 +16,7 @@ from tpss.cli.terminal import say
 from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
+from tpss.results.stops import punctuality
 from tpss.results.tables import train_steps
 from tpss.step.recorded import RECORDED
 
@@ -130,6 +131,8 @@ def key_figures(result: Result) -> list[str]:
     summary, lines = result.summary, []
     if summary["trip_time_min"] is not None:
         lines.append(f"Trip time of {summary['studied_train']}: {summary['trip_time_min']:.2f} min")
+    if any(entry.is_scheduled for entry in result.scenario.traffic):
+        lines += punctuality(result.stops)
     total, losses = summary["total_energy_mwh"], summary["losses_mwh"]
     share = f" ({100 * losses / total:.2f} %)" if total > 0 else ""
     duration = summary["duration_min"]

@@ -49,6 +49,8 @@ class Stop(Record):
     """Steps that a train stands there, if it moves in steps."""
     dwell_s: float
     """Time that it stands there, if it moves continuously. [s]"""
+    leaves_after_s: float
+    """A train does not leave before this time since it departed at its origin; 0: whenever. [s]"""
     destination: bool
     """Whether the route ends there."""
 

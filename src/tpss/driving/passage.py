@@ -279,9 +279,10 @@ def _come_to_stop(passage: Passage, train: Train, data: DrivingData) -> None:
         passage.stood_s = passage.left_s
         return
     motion.next_stop += 1
-    motion.wait_s = stop.dwell_s
+    now_s = motion.under_way_s + data.options.step_s - passage.left_s
+    motion.wait_s = max(stop.dwell_s, stop.leaves_after_s - now_s)
     motion.phase = Phase.DWELLING
-    if stop.dwell_s <= 0.0:
+    if motion.wait_s <= 0.0:
         _note_departure(passage, train, data.options.step_s)
         motion.phase = Phase.DRIVING
 

@@ -129,5 +129,5 @@ def move(step: int, train: Train, data: DrivingData) -> float:
     if plan.step < plan_length(plan.hold_steps, plan.full_steps, plan.last):
         return 0.0
     error_m = abs(distance_to_stop(train, data.stops))
-    stand_at_stop(step + 1, train, data.stops)
+    stand_at_stop(step + 1, data.options.step_s, train, data.stops)
     return error_m

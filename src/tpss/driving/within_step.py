@@ -227,7 +227,7 @@ def _move_on_course(step: int, train: Train, data: DrivingData) -> float:
         return 0.0
     error_m = abs(distance_to_stop(train, data.stops))
     train.timetable.stood_s = max(0.0, data.options.step_s * (1.0 - decision.moving_share))
-    stand_at_stop(step + 1, train, data.stops)
+    stand_at_stop(step + 1, data.options.step_s, train, data.stops)
     return error_m
 
 

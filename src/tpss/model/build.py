@@ -92,8 +92,9 @@ def _stops(scenario: Scenario, step_s: float) -> Records[Stop]:
         seen = line.mirrored() if runs_down(entry, line) else line
         position_m = {station.name: si(station, "position_km") for station in seen.stations}
         for k, stop in enumerate(entry.stops):
-            dwell_s = si(stop, "dwell_min")
-            rows[route, k] = (position_m[stop.station], steps_of(dwell_s, step_s), dwell_s, False)
-        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, 0.0, True)
+            dwell_s, steps = si(stop, "dwell_min"), steps_of(si(stop, "dwell_min"), step_s)
+            leaves_s = 60.0 * (stop.depart_after_min or 0.0)
+            rows[route, k] = (position_m[stop.station], steps, dwell_s, leaves_s, False)
+        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, 0.0, 0.0, True)
     stops: Records[Stop] = rows
     return stops

@@ -1,5 +1,6 @@
 """Times at stops: when each train came to stand at its stations, and when it went on."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,9 @@ from tpss.step.state import TrainState
 AT_STOP_M = 0.01
 """A standing train is at a stop that is no further away. [m]"""
 
+LATE_MIN = 0.1
+"""A train that is later counts as late. [min]"""
+
 
 class StopTimes(NamedTuple):
     """A train at a station of its route."""
@@ -25,11 +29,16 @@ class StopTimes(NamedTuple):
     arrival_min: float
     departure_min: float
     dwell_min: float
+    scheduled_arrival_min: float
+    scheduled_departure_min: float
+    late_min: float
+    """How much later than scheduled it arrived, or departed where no arrival is scheduled."""
 
 
 def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     """One row per train and station where it begins, stops or ends: arrival, departure, dwell.
 
+    Scheduled times count from the train's own departure at its origin, and are NaN where none are given.
     A train that brakes within a step arrives when it stands, not at the next instant.  What it has not
     done within the run is NaN, and so is what it did before, if it was on the line at the start.
     """
@@ -41,12 +50,45 @@ def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
         entry, train = entries[str(service)], dataset.isel(train=i)
         for call, station in enumerate(_stations_of(entry), -1):
             times = _times_at(call, station, places_km[station], entry, train)
-            rows.append(StopTimes(str(name), station, places_km[station], *times))
+            scheduled = _scheduled_at(call, entry, float(train.departure_time) / 60.0)
+            late_min = times[0] - scheduled[0]
+            if math.isnan(scheduled[0]):
+                late_min = times[1] - scheduled[1]
+            rows.append(
+                StopTimes(str(name), station, places_km[station], *times, *scheduled, late_min)
+            )
     return table_of(rows, StopTimes)
+
+
+def punctuality(stops: pd.DataFrame) -> list[str]:
+    """How the schedule was kept, in a line; none where no scheduled time has come."""
+    late_min = stops.late_min.to_numpy()
+    known, late = int(np.isfinite(late_min).sum()), int((late_min > LATE_MIN).sum())
+    if known == 0:
+        return []
+    text = f"Timetable: {late} of {known} scheduled times missed by more than {LATE_MIN:g} min"
+    if late:
+        worst = int(np.nanargmax(late_min))
+        train, station = stops.train.to_numpy()[worst], stops.station.to_numpy()[worst]
+        text += f", most by {train} at {station}, {late_min[worst]:.2f} min"
+    return [text]
 
 
 def _stations_of(entry: Traffic) -> list[str]:
     return [entry.origin, *(stop.station for stop in entry.stops), entry.destination]
+
+
+def _scheduled_at(call: int, entry: Traffic, departed_min: float) -> tuple[float, float]:
+    """Scheduled arrival and departure at a call of a train that departed then. [min]"""
+    arrive_min = depart_min = None
+    if 0 <= call < len(entry.stops):
+        stop = entry.stops[call]
+        arrive_min, depart_min = stop.arrive_after_min, stop.depart_after_min
+    elif call == len(entry.stops):
+        arrive_min = entry.arrive_after_min
+    arrival = math.nan if arrive_min is None else departed_min + arrive_min
+    departure = math.nan if depart_min is None else departed_min + depart_min
+    return arrival, departure
 
 
 def _times_at(

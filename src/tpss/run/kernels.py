@@ -108,7 +108,7 @@ def step_calls(model: Model) -> list[Call]:
         (shortest_stop, (1.0, 1.0, 1.0)),
         (replan, (train, kind, data)),
         (replan_within, (train, kind, data)),
-        (stand_at_stop, (step, train, model.stops)),
+        (stand_at_stop, (step, 1.0, train, model.stops)),
         (list_trains, (state.trains, state.flow)),
         (prepare_trains, (step, *on_line, data, model.points, state.scratch)),
         (record_trains, (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains)),

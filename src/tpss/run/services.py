@@ -69,6 +69,7 @@ class ScheduledTrain(NamedTuple):
     next_stop: int = 0
     dwell_steps_left: int = 0
     wait_s: float = 0.0
+    under_way_s: float = 0.0
     plan_step: int = 0
     plan_hold_steps: int = 0
     plan_first: float = 0.0
@@ -123,6 +124,7 @@ def placed_trains(service: Service) -> list[ScheduledTrain]:
             phase=Phase.DRIVING,
             position_m=position_m,
             speed_m_s=speed_m_s,
+            under_way_s=math.inf,
             next_stop=next(i for i, stop_m in enumerate(service.stops_m) if stop_m > position_m),
         )
         for number, (position_m, speed_m_s) in enumerate(service.initial, 1)

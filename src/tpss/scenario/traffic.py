@@ -1,5 +1,6 @@
 """The traffic: which trains run from where to where, and when."""
 
+from itertools import pairwise
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
@@ -27,7 +28,35 @@ class Stop(Part):
     """An intermediate stop."""
 
     station: Name = Field(description="Station of the line.")
-    dwell_min: Real = Field(ge=0, le=100_000, description="Duration of the stop.")
+    dwell_min: Real = Field(
+        ge=0,
+        le=100_000,
+        description="Duration of the stop; the least one, where a departure is scheduled.",
+    )
+    arrive_after_min: Real | None = Field(
+        default=None,
+        gt=0,
+        le=100_000,
+        description="Scheduled arrival, counted from the train's own departure at its origin; its "
+        "lateness is judged by it.",
+    )
+    depart_after_min: Real | None = Field(
+        default=None,
+        gt=0,
+        le=100_000,
+        description="Scheduled departure, counted likewise: a train does not leave before.",
+    )
+
+    @model_validator(mode="after")
+    def _departs_after_it_arrives(self) -> Self:
+        arrival, departure = self.arrive_after_min, self.depart_after_min
+        if arrival is not None and departure is not None and departure < arrival:
+            raise fault(
+                f"the scheduled departure, after {departure:g} min, lies before the arrival, after "
+                f"{arrival:g} min",
+                "give the times in the order of travel",
+            )
+        return self
 
 
 class InitialTrain(Part):
@@ -64,6 +93,38 @@ class Traffic(Part):
         default=(), description="Trains on the line at the start."
     )
     stops: tuple[Stop, ...] = Field(default=(), description="Intermediate stops, in order.")
+    arrive_after_min: Real | None = Field(
+        default=None,
+        gt=0,
+        le=100_000,
+        description="Scheduled arrival at the destination, counted from each train's own departure.",
+    )
+
+    @property
+    def is_scheduled(self) -> bool:
+        """Whether times are scheduled on the way or at the destination."""
+        times = [(stop.arrive_after_min, stop.depart_after_min) for stop in self.stops]
+        return any(time is not None for pair in times for time in pair) or (
+            self.arrive_after_min is not None
+        )
+
+    @model_validator(mode="after")
+    def _scheduled_times_grow(self) -> Self:
+        scheduled = [
+            (stop.station, minutes)
+            for stop in self.stops
+            for minutes in (stop.arrive_after_min, stop.depart_after_min)
+        ]
+        given = [(name, time) for name, time in scheduled if time is not None]
+        if self.arrive_after_min is not None:
+            given.append((self.destination, self.arrive_after_min))
+        for (before, early), (name, late) in pairwise(given):
+            if late < early:
+                raise fault(
+                    f"{name} is scheduled after {late:g} min, before {before}, after {early:g} min",
+                    "give the times in the order of travel, each from the departure at the origin",
+                )
+        return self
 
     @model_validator(mode="after")
     def _departures_are_given_once(self) -> Self:

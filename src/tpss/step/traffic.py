@@ -21,6 +21,7 @@ def depart(step: int, trains: Records[Train]) -> None:
         if train.motion.phase == Phase.PENDING and train.timetable.departure_step <= step:
             train.motion.phase = Phase.DRIVING
             train.motion.wait_s = train.timetable.departure_wait_s
+            train.motion.under_way_s = -train.timetable.departure_wait_s
 
 
 @kernel
@@ -69,10 +70,10 @@ def move_train(step: int, train: Train, data: DrivingData, clock: Clock) -> None
     """Bring a train to the next instant; note how far from its stop it came to stand."""
     if data.options.motion == MotionModel.CONTINUOUS:
         clock.stop_error_m = max(clock.stop_error_m, continuous.move(step, train, data))
-        return
-    if train.motion.phase == Phase.DWELLING:
+    elif train.motion.phase == Phase.DWELLING:
         train.motion.dwell_steps_left -= 1
         if train.motion.dwell_steps_left <= 0:
             train.motion.phase = Phase.DRIVING
-        return
-    clock.stop_error_m = max(clock.stop_error_m, move(step, train, data))
+    else:
+        clock.stop_error_m = max(clock.stop_error_m, move(step, train, data))
+    train.motion.under_way_s += data.options.step_s

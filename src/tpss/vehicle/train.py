@@ -76,6 +76,8 @@ class Motion(Record):
     """Steps until it leaves the stop at which it stands."""
     wait_s: float
     """Time until it departs, if it moves continuously. [s]"""
+    under_way_s: float
+    """Time since it departed at its origin, for its scheduled times; infinite: not known. [s]"""
 
 
 class Plan(Record):
@@ -232,6 +234,7 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.next_stop = source.next_stop
     target.dwell_steps_left = source.dwell_steps_left
     target.wait_s = source.wait_s
+    target.under_way_s = source.under_way_s
 
 
 @inlined
