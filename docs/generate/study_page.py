@@ -23,7 +23,7 @@ how. It needs `pip install "tpss[study]"`: Dask's `distributed`, SciPy and PyArr
 
 PATHS = """## Key paths
 
-Tables are named by their keys, list items by their number from 0 or all of them by `*`, as in
+Tables are named by their keys, list items by their names or numbers from 0, or all of them by `*`, as in
 `traffic.0.headway_min` or `supply.converter_stations.*.converters`. In TOML a `*` stands in quotes, of
 the whole path or of itself. The text `"none"` leaves a key out, as in `"supply.high_voltage_line" =
 "none"`.

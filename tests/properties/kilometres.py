@@ -5,7 +5,8 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
-from tpss.sweep.settings import PLACES, places_of
+from tpss.scenario.paths import places_of
+from tpss.sweep.settings import PLACES
 
 Document = dict[str, Any]
 

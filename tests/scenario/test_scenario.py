@@ -302,7 +302,8 @@ def test_scenarios_that_differ_are_not_equal(changes):
         ("supply.converter_stations.0.type=Q48/Q49", "supply.converter_stations.0.type", "Q48/Q49"),
         ("traffic.0.departures_min=[0, 7.5]", "traffic.0.departures_min", [0, 7.5]),
         ("description=v = s/t", "description", "v = s/t"),
-        ("description=", "description", ""),
+        ("description=", "description", None),
+        ('description=""', "description", ""),
         (" name = study ", "name", "study"),
         (
             "line.gradients=[{from_km = 0.0, permille = 3.0}]",

@@ -49,7 +49,7 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
         ),
         (
             {"vary": {"traffic.7.headway_min": [5.0]}},
-            ["traffic.7.headway_min = 5.0", "no such place in the scenario"],
+            ["traffic.7.headway_min = 5.0", "no such place in the base scenario", "name one of"],
         ),
         (
             {"vary": {"supply.catenary": ["BT", "ATT"]}},

@@ -22,7 +22,9 @@ Assignments = Annotated[
     option(
         "--set",
         metavar="KEY=VALUE",
-        help="Set one value of the scenario, such as traffic.0.headway_min=12; repeatable.",
+        help="Set one value of the scenario, such as traffic.0.headway_min=12; list items also by their "
+        "names (supply.converter_stations.West.converters=5), * is all of them, + one more; without a "
+        "value the key is removed; repeatable.",
     ),
 ]
 

@@ -2,10 +2,12 @@
 
 import tomllib
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError
+from tpss.scenario.paths import NoSuchPlaceError, places_of
 
 _LEAVES = frozenset((float, int, str, bool, type(None)))
 
@@ -25,7 +27,7 @@ def copy_of(value: Any) -> Any:
 def override(
     document: Mapping[str, Any], changes: Mapping[str, Any], source: Path
 ) -> dict[str, Any]:
-    """Copy of a document with values set by key path (``traffic.0.headway_min``); None removes.
+    """Copy of a document with values set by key path (``traffic.0.headway_min``, `paths`); None removes.
 
     Raises
     ------
@@ -42,40 +44,50 @@ def put_in(document: dict[str, Any], changes: Mapping[str, Any], source: Path) -
     findings = []
     for path, value in changes.items():
         try:
-            # A copy: a later path may lead into it, and the caller's own must stay as it is.
-            _set(document, path.split("."), copy_of(value))
-        except (KeyError, IndexError, ValueError, TypeError):
+            places, remedy = places_of(document, path), "name tables by their keys"
+        except NoSuchPlaceError as error:
+            places, remedy = [], str(error)
+        if not places:
             problem = "no such place in the scenario"
-            remedy = "name tables by their keys and list items by their number from 0"
             findings.append(Finding(str(source), path, repr(value), problem, remedy))
+        for place in reversed(places):  # what is removed from a list moves what is behind it
+            # A copy: a later path may lead into it, and the caller's own must stay as it is.
+            _set(document, place.split("."), copy_of(value))
     if findings:
         raise ScenarioError(findings)
 
 
 def _set(container: Any, keys: list[str], value: Any) -> None:
-    for key in keys[:-1]:
+    """Set a value at a place; what is missing on the way is made."""
+    for key, following in pairwise(keys):
+        inside: Any = [] if following == "0" and not _has(container, key) else {}
         if isinstance(container, dict):
-            container = container.setdefault(key, {})
+            container = container.setdefault(key, inside)
         else:
-            container = container[_index(key, container)]
+            if int(key) == len(container):
+                container.append(inside)
+            container = container[int(key)]
     last = keys[-1]
-    if isinstance(container, list):
-        container[_index(last, container)] = value
-    elif value is None:
+    if isinstance(container, dict) and value is None:
         container.pop(last, None)
-    else:
+    elif isinstance(container, dict):
         container[last] = value
+    elif value is None:
+        del container[int(last)]
+    elif int(last) == len(container):
+        container.append(value)
+    else:
+        container[int(last)] = value
 
 
-def _index(key: str, items: list[Any]) -> int:
-    index = int(key)
-    if not 0 <= index < len(items):
-        raise IndexError(key)
-    return index
+def _has(container: Any, key: str) -> bool:
+    return isinstance(container, dict) and key in container
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
     """Key path and value of ``path=value``; the value is read as TOML, else as plain text.
+
+    Without a value it is None, which removes what is at the path.
 
     Raises
     ------
@@ -86,6 +98,8 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     if not equals or not path.strip():
         remedy = "write --set simulation.time_step_min=0.1"
         raise ScenarioError([Finding("--set", text, "", "not of the form KEY=VALUE", remedy)])
+    if not raw.strip():
+        return path.strip(), None
     try:
         value = tomllib.loads(f"value = {raw}")["value"]
     except (ValueError, RecursionError):

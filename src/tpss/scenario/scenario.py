@@ -113,7 +113,8 @@ class Scenario(Part):
         ----------
         changes : mapping of str to value
             Key paths, such as ``"simulation.time_step_min"`` or ``"traffic.0.headway_min"``, and
-            their new values; None removes a key.
+            their new values; None removes a key.  List items are named by their numbers or their
+            names, ``*`` is all of them, ``+`` one more.
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """Values by key paths in a scenario's document, each in all the places that match its path."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +9,10 @@ from tpss.scenario import Scenario
 from tpss.scenario.fields import AlongLine, marked
 from tpss.scenario.line import end_of_line
 from tpss.scenario.override import copy_of, put_in
+from tpss.scenario.paths import NoSuchPlaceError, places_of
 
 Settings = dict[str, Any]
-"""Values by the key paths of a scenario, in which ``*`` is any item or key."""
+"""Values by the key paths of a scenario, see `tpss.scenario.paths`."""
 
 LEFT_OUT = "none"
 """Marks a key of the scenario as left out; TOML has no null."""
@@ -53,37 +54,22 @@ def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -
 
 def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
     """Put values of a document in all the places that match their paths."""
-    changes: dict[str, Any] = {}
+    # One after the other: a path may lead into what another one has put in.
     for path, value in settings.items():
-        places = list(places_of(document, path))
+        try:
+            places, remedy = places_of(document, path), "name tables by their keys"
+        except NoSuchPlaceError as error:
+            places, remedy = [], str(error)
         if not places:
             problem = "there is no such place in the base scenario"
-            remedy = (
-                "name tables by their keys, list items by their number from 0 or all of them by *"
-            )
             raise ScenarioError([Finding(str(source), path, repr(value), problem, remedy)])
+        changes: dict[str, Any] = {}
         for place in places:
             above, _, key = place.rpartition(".")
             if key in INSTEAD_OF and value is not None:
                 changes[f"{above}.{INSTEAD_OF[key]}"] = None
             changes[place] = value
-    put_in(document, changes, source)
-
-
-def places_of(document: Any, path: str) -> Iterator[str]:
-    """Key paths that match a path with ``*`` in a document."""
-    before, star, after = path.partition("*")
-    if not star:
-        yield path
-        return
-    container = document
-    for name in filter(None, before.split(".")):
-        container = _item(container, name)
-    keys: Iterable[Any] = (
-        container if isinstance(container, Mapping) else range(len(container or ()))
-    )
-    for key in keys:
-        yield from places_of(document, f"{before}{key}{after}")
+        put_in(document, changes, source)
 
 
 def _item(container: Any, key: str) -> Any:
