@@ -45,6 +45,9 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     model, _ = build_model(with_step(scenario))
     build_services(scenario, model)
     clock_of(scenario.simulation.load_flow, scenario.source)
+    for name in scenario.variants:
+        varied = with_step(scenario.variant(name))
+        build_services(varied, build_model(varied)[0])
     console = Console()
     title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
     console.print(title, highlight=False)
@@ -67,6 +70,8 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield "traffic", _service(entry)
     yield "standards", _standards(scenario.standards)
     yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
+    for name, variant in scenario.variants.items():
+        yield "variant", f"{name}: {variant.description or 'changes ' + ', '.join(variant.paths)}"
 
 
 def _line(line: Line) -> Iterator[tuple[str, str]]:

@@ -89,6 +89,14 @@ def run(
         bool, typer.Option("--report", help="Also write report.html into the result folder.")
     ] = False,
     no_step_check: NoStepCheck = False,
+    variant: Annotated[
+        list[str] | None,
+        option(
+            metavar="NAME",
+            help="Run a variant of the scenario in its place; repeatable; all: the scenario and all of "
+            "its variants. Several are compared, each in a folder of its own, in that of --out.",
+        ),
+    ] = None,
 ) -> None:
     """Simulate a scenario, print the key figures, and save the result.
 
@@ -101,7 +109,15 @@ def run(
     from tpss.cli.run import run_scenario
 
     code = run_scenario(
-        file, out, set_ or [], force, quiet, show, report, step_check=not no_step_check
+        file,
+        out,
+        set_ or [],
+        force,
+        quiet,
+        show,
+        report,
+        step_check=not no_step_check,
+        variants=variant or [],
     )
     raise typer.Exit(code)
 

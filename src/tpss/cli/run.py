@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 PROGRESS = "{task.percentage:3.0f} %  {task.fields[detail]}"
 
 DONE, BAD_INPUT, NO_SOLUTION, AUDIT_FAILED, INTERRUPTED = 0, 2, 3, 4, 130
+SEVERITY = (DONE, NO_SOLUTION, AUDIT_FAILED, BAD_INPUT, INTERRUPTED)
+"""Exit codes, the mildest first."""
 
 
 def run_scenario(
@@ -33,20 +35,48 @@ def run_scenario(
     show: str | None,
     report: bool,
     step_check: bool,
+    variants: list[str],
 ) -> int:
-    """Run a scenario file; return the exit code."""
+    """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
+    from tpss.cli.variants import chosen, folders, print_side_by_side
     from tpss.results import store
     from tpss.scenario import load_scenario
     from tpss.scenario.override import parse_assignment
 
     changes = dict(parse_assignment(text) for text in assignments)
-    scenario = load_scenario(file, changes)
-    store.check_target(scenario, out, force)
+    scenarios = chosen(load_scenario(file, changes), variants)
+    targets = folders(out, scenarios)
+    for name, scenario in scenarios.items():
+        store.check_target(scenario, targets[name], force)
+    results: dict[str, Result] = {}
+    codes = []
+    for name, scenario in scenarios.items():
+        code = _run_one(scenario, targets[name], force, quiet, show, report, step_check, results)
+        codes.append(code)
+        if code == INTERRUPTED:
+            return code
+    if len(results) > 1 and not quiet:
+        print_side_by_side(dict(zip(scenarios, results.values(), strict=True)), Console())
+    return max(codes, key=SEVERITY.index)
+
+
+def _run_one(
+    scenario: "Scenario",
+    out: Path | None,
+    force: bool,
+    quiet: bool,
+    show: str | None,
+    report: bool,
+    step_check: bool,
+    results: "dict[str, Result]",
+) -> int:
+    """Run, save and print one scenario; return its exit code.  Its result is added to the others."""
     try:
         ended = _simulate_and_save(scenario, out, force, quiet, step_check)
     except KeyboardInterrupt:
         print("Interrupted; nothing was saved.", file=sys.stderr)
         return INTERRUPTED
+    results[scenario.name] = ended.result
     try:
         return _report(ended, quiet, show, report)
     except KeyboardInterrupt:

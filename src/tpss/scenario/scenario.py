@@ -3,12 +3,14 @@
 import hashlib
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from tpss import library
+from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import Name, Part, Version, unique
 from tpss.scenario.line import Line
 from tpss.scenario.override import copy_of, override
@@ -19,6 +21,7 @@ from tpss.scenario.supply import Supply
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS
 from tpss.scenario.traffic import Traffic
 from tpss.scenario.validate import validate
+from tpss.scenario.variants import Variants, apply_variant
 
 
 class Scenario(Part):
@@ -46,6 +49,9 @@ class Scenario(Part):
     )
     standards: Standards = Field(
         default={}, validate_default=True, description="Criteria by which the result is judged."
+    )
+    variants: Variants = Field(
+        default={}, description="Variants by name: the scenario with some changes."
     )
 
     @model_validator(mode="before")
@@ -124,6 +130,28 @@ class Scenario(Part):
         document = override(self._document, changes, self._source)
         return type(self).from_own_document(document, self._source)
 
+    def variant(self, name: str) -> Self:
+        """A variant of the scenario: a scenario of its own, named after both.
+
+        Raises
+        ------
+        ScenarioError
+            There is no such variant, or it has faults.
+        """
+        if name not in self.variants:
+            remedy = "variants: " + (", ".join(self.variants) or "none; add [variants.NAME]")
+            problem = "the scenario has no such variant"
+            raise ScenarioError(
+                [Finding(str(self._source), "variants", repr(name), problem, remedy)]
+            )
+        document = apply_variant(self._document, name, self.variants[name], self._source)
+        try:
+            return type(self).from_own_document(document, self._source)
+        except ScenarioError as error:
+            place = f"{self._source} (variant {name})"
+            findings = [replace(finding, file=place) for finding in error.findings]
+            raise ScenarioError(findings) from error
+
     def trains_by_service(self) -> dict[str, Train]:
         """Type of train of each service, by its name."""
         return {entry.name: self.trains[entry.train] for entry in self.traffic}
@@ -138,10 +166,11 @@ class Scenario(Part):
     def digest(self) -> str:
         """Digest of all that the scenario says, wherever it was read from, its name left out."""
         text = self.model_dump_json(
-            by_alias=True, exclude_none=True, exclude={"name", "description"}
+            by_alias=True, exclude_none=True, exclude={"name", "description", "variants"}
         )
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def as_document(self) -> dict[str, Any]:
         """The scenario as run, with everything it took from files, library and defaults."""
-        return self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        unused = set() if self.variants else {"variants"}
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
