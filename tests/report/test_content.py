@@ -85,6 +85,19 @@ def test_a_comparison_has_a_column_a_run_and_tells_which_ended_early(compared):
     assert "collapsed: nothing to draw" in read.text
 
 
+def test_a_comparison_says_first_what_differs_and_by_how_much_figures_do(compared):
+    read = Page(compared)
+    assert read.text.index("What differs") < read.text.index("Key figures")
+    assert "traffic.eastbound.headway_min 10 5" in read.text
+    assert re.search(r"total energy \[MWh\] [\d.]+ [\d.]+ \(\+[\d.]+\)", read.text)
+    assert re.search(r"peak loading of West \[%\] [\d.]+", read.text)
+    assert re.search(r"place of lowest voltage \[km\] [\d.]+ [\d.]+ –", read.text)
+
+
+def test_runs_of_one_scenario_differ_in_nothing(short):
+    assert "say the same" in Page(comparison({"a": short, "b": short})).text
+
+
 def test_names_of_a_scenario_are_text_and_never_code():
     evil = "</script><b>x"
     result = run({"description": evil, "traffic.0.name": evil, "simulation.duration_min": 2.0})

@@ -46,8 +46,8 @@ def print_side_by_side(results: dict[str, "Result"], console: Console) -> None:
     """Print the key figures of several results, and what differs from the first one."""
     table = Table(title="Variants", title_justify="left", box=None, pad_edge=False)
     table.add_column("variant", no_wrap=True)
-    columns = ["ended", "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %"]
-    for column in columns:
+    table.add_column("ended", no_wrap=True)
+    for column in ("trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %"):
         table.add_column(column, justify="right")
     first: list[float | None] = []
     for name, result in results.items():

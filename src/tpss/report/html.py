@@ -140,6 +140,7 @@ def comparison(results: Mapping[str, Result]) -> str:
         data=data,
         tables=[],
         key_figures=tables.of_figures(trusted) if trusted else None,
+        differing=tables.of_differences(results),
         notes=[*left_out, *_about_samples(data, runs)],
     )
 
@@ -233,6 +234,7 @@ def _page(
     tables: Sequence[tables.Table],
     key_figures: tables.Table | None,
     notes: Sequence[str],
+    differing: tables.Table | None = None,
 ) -> str:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tpss.report", "template"),
@@ -255,6 +257,7 @@ def _page(
         data=data,
         tables=tables,
         key_figures=key_figures,
+        differing=differing,
         notes=notes,
         limits={label: _limits(result) for label, result in results.items()},
         judged=JUDGED,

@@ -9,12 +9,23 @@ import pandas as pd
 
 from tpss import units
 from tpss.results.result import Result
+from tpss.scenario.differences import differences
 
 MOST_ROWS = 1_000
 """Rows of a table; the saved result has them all."""
 
 DIGITS = {"MWh": 3, "Mvarh": 3, "km/h": 1, "km": 2, "min": 2, "kV": 3, "MW": 3}
 """Decimals that are shown, by unit; others have two."""
+
+
+MOST_DIFFERENCES = 60
+"""Rows of a table of what differs; a profile of gradients may have thousands."""
+
+MOST_LISTED = 4
+"""Items of a list that are shown."""
+
+PLACES_AND_TIMES = ("place of", "time of")
+"""Figures whose differences say nothing begin with one of these."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +93,7 @@ def of_standards(result: Result) -> list[Table]:
 
 
 def of_figures(results: Mapping[str, Result]) -> Table:
-    """Key figures of runs, one row per figure and one column per run."""
+    """Key figures of runs, one row per figure and one column per run, with differences to the first."""
     columns = [
         {(name, unit): value for name, unit, value in key_figures(r)} for r in results.values()
     ]
@@ -90,7 +101,10 @@ def of_figures(results: Mapping[str, Result]) -> Table:
     rows = [
         [
             _cell(f"{name} [{unit}]" if unit else name, ""),
-            *(_cell(column.get((name, unit)), unit) for column in columns),
+            *(
+                _compared(column.get((name, unit)), columns[0].get((name, unit)), name, unit)
+                for column in columns
+            ),
         ]
         for name, unit in names
     ]
@@ -124,7 +138,43 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ),
         *((f"energy of {name}", "MWh", mwh) for name, mwh in summary["station_energy_mwh"].items()),
         *((f"peak power of {name}", "MW", float(peak)) for name, peak in peaks),
+        *(
+            (f"peak loading of {name}", "%", 100.0 * float(loading))
+            for name, loading in zip(stations.station, stations.peak_loading, strict=True)
+        ),
     ]
+
+
+def of_differences(results: Mapping[str, Result]) -> Table:
+    """What the scenarios of runs differ in, one row per key path and one column per run."""
+    differing = differences([result.scenario for result in results.values()])
+    rows = [
+        [_cell(path, ""), *(_cell("–" if value is None else _short(value), "") for value in values)]
+        for path, values in list(differing.items())[:MOST_DIFFERENCES]
+    ]
+    caption = "What differs"
+    if len(differing) > MOST_DIFFERENCES:
+        caption += f" (the first {MOST_DIFFERENCES} of {len(differing)} keys)"
+    return Table("differences", caption, ["key", *results], rows)
+
+
+def _short(value: Any) -> Any:
+    """A value as one would write it; of a long list the beginning."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, list) and len(value) > MOST_LISTED:
+        return f"{str(value[:MOST_LISTED])[:-1]}, ... {len(value)} in all]"
+    return str(value)
+
+
+def _compared(value: Any, base: Any, name: str, unit: str) -> Cell:
+    """Cell of a figure, with its difference to that of the first run where that says something."""
+    cell = _cell(value, unit)
+    numbers = all(isinstance(each, int | float) and each == each for each in (value, base))
+    if not numbers or value == base or name.startswith(PLACES_AND_TIMES):
+        return cell
+    difference = f"{value - base:+.{DIGITS.get(unit, 2) if isinstance(value, float) else 0}f}"
+    return Cell(f"{cell.text} ({difference})", cell.value, is_number=True)
 
 
 def _cell(value: Any, unit_of_it: str) -> Cell:
