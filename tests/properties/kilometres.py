@@ -33,15 +33,15 @@ def mirrored(document: Document) -> Document:
     """The same line with kilometres from its other end, and its trains, which run down it then."""
     document = copy.deepcopy(document)
     length_km, line = document["line"]["length_km"], document["line"]
-    up, down = line["speed_limits"], line.get("speed_limits_down")
+    up, down = line["speed_limits"], line.get("speed_limits_down", [])
     line["gradients"] = [
         {"from_km": from_km, "permille": -item["permille"]}
         for from_km, item in _turned(line["gradients"], length_km)
     ]
-    if down is not None:
+    if down:
         line["speed_limits"] = [{**each, "from_km": km} for km, each in _turned(down, length_km)]
     line["speed_limits_down"] = [{**each, "from_km": km} for km, each in _turned(up, length_km)]
-    if down is None:
+    if not down:
         line["speed_limits"] = line.pop("speed_limits_down")
     for curve in line.get("curves", []):
         curve["from_km"], curve["to_km"] = length_km - curve["to_km"], length_km - curve["from_km"]

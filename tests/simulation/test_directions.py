@@ -10,6 +10,7 @@ import tpss
 from faults import faults_of, finding_at
 from tpss.many import key_figures
 from tpss.results.notes import notes
+from tpss.sweep.inputs import inputs_of
 
 from properties.kilometres import mirrored
 from properties.rules import keep_the_rules
@@ -107,3 +108,13 @@ def test_stops_and_trains_on_the_line_are_in_the_order_of_travel():
     assert [each.key for each in caught.value.findings] == [
         "traffic.0.initial_trains.1.position_km"
     ]
+
+
+def test_inputs_of_a_study_are_those_that_its_studied_train_meets():
+    """The train that runs down the mirrored line meets the same gradients, limits and distances."""
+    rising = copy.deepcopy(BUSY)
+    rising["line"]["speed_limits_down"] = [{"from_km": 0.0, "speed_kmh": 45.0}]
+    here, there = (inputs_of(scenario_of(each)) for each in (rising, mirrored(rising)))
+    for name, value in here._asdict().items():
+        expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, nan_ok=True)
+        assert getattr(there, name) == expected, name

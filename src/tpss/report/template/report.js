@@ -198,10 +198,16 @@
     return select && run.runs[0].trains[select.selectedIndex];
   }
 
+  // -1 of a train that runs towards falling kilometres, which meets gradients with the other sign.
+  function signOf(train) {
+    return train.km[train.km.length - 1] < train.km[0] ? -1 : 1;
+  }
+
   function timeAt(km) {
     const train = slider && chosenTrain();
     if (!train) return null;
-    const k = train.km.findIndex((there) => there >= km - 1e-3);
+    const sign = signOf(train);
+    const k = train.km.findIndex((there) => sign * there >= sign * km - 1e-3);
     return k < 0 ? null : train.step[k] * run.step_min;
   }
 
@@ -215,7 +221,7 @@
     const train = chosenTrain(), against = element("against").value;
     const x = against === "time" ? train.step.map((k) => k * run.step_min) : train.km;
     const div = element("journey");
-    const y = [train.kmh, train.kv, train.km.map(gradientAt)];
+    const y = [train.kmh, train.kv, train.km.map((km) => signOf(train) * gradientAt(km))];
     Plotly.restyle(div, { x: [x, x, x], y, name: train.name }, [0, 1, 2]);
     Plotly.relayout(div, {
       meta: against,
