@@ -67,7 +67,20 @@ def test_the_example_of_25_kv_is_judged_by_the_limits_of_25_kv():
     assert 25.0 < float(voltage_kv.min()) < float(voltage_kv.max()) < 27.5
 
 
+def test_the_example_of_both_ways_keeps_its_schedule_until_the_voltage_sags():
+    """Every 20 minutes each scheduled time is kept; every ten, the low voltage makes trains late."""
+    scenario = tpss.load_scenario(EXAMPLES / "both_ways.toml")
+    base = tpss.simulate(scenario)
+    dense, tied = (tpss.simulate(scenario.variant(name)) for name in ("dense", "AT"))
+    assert {each.status for each in (base, dense, tied)} == {"finished"}
+    assert base.stops.late_min.max() < 0.1 < dense.stops.late_min.max()
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (dense, base, tied)]
+    assert lowest == sorted(lowest)
+    assert len(scenario.variant("third-station").supply.stations) == 3
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
-    assert names == {*REFERENCE, "emu_25kv", "overloaded", "own_trains", "thesis_original"}
+    others = {"both_ways", "emu_25kv", "overloaded", "own_trains", "thesis_original"}
+    assert names == {*REFERENCE, *others}
