@@ -113,6 +113,7 @@ SUMMARY = {
     "audit": "figures of the audit, below",
     "step_choice": "how the time step was chosen, if the scenario gave none, below",
     "step_check": "what moves at half the time step, below",
+    "lost_time": "what trains that arrived lost to the voltage, below",
     "simulation_s": "computing time of the simulation",
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
@@ -141,7 +142,12 @@ whose lowest voltage and peak loading within 0.6 %. `step_choice` says which one
 gives its step.
 
 `step_check` compares the run with the same run at half its step. It is null if it was not asked for
-(`--no-step-check`; `tpss.simulate` makes it with `step_check=True`)."""
+(`--no-step-check`; `tpss.simulate` makes it with `step_check=True`).
+
+`lost_time` compares the run with the same run at the highest no-load voltage of its stations at all
+pantographs, whatever trains draw: `voltage_kv`, the `trains` that arrived in both, the minutes that they
+were later in all (`total_min`), and the one that lost most (`worst_train`, `worst_min`). Null where none
+arrived, or it was not asked for (`tpss run` asks; `tpss.simulate` with `lost_time=True`)."""
 
 STEP_CHECK = {
     "half_step_min": "half the time step",

@@ -19,7 +19,8 @@ from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
-from tpss.run.run import Clock, Progress, Start, advance_to_end, outcome_of, run_of
+from tpss.run.run import Clock, Progress, Run, Start, advance_to_end, outcome_of, run_of
+from tpss.run.stiff import LostTime, lost_to_voltage
 from tpss.scenario.open_step import LADDER_MIN, with_step
 from tpss.scenario.scenario import Scenario
 
@@ -29,6 +30,7 @@ def simulate(
     progress: Callable[[Progress], None] | None = None,
     *,
     step_check: bool = False,
+    lost_time: bool = False,
 ) -> Result:
     """Simulate trains and power supply together.
 
@@ -41,6 +43,9 @@ def simulate(
     step_check : bool
         Whether to make the run again with half its step, for its key figures only: what moves is then
         in the summary, as ``step_check``.
+    lost_time : bool
+        Whether to make the run again at the supply's voltage without load: what trains lost to the
+        voltage is then in the summary, as ``lost_time``.
 
     Returns
     -------
@@ -56,7 +61,7 @@ def simulate(
     """
     prepared = prepare(scenario)
     with interruptible() as interrupted:
-        return prepared.run(progress, interrupted, step_check=step_check)
+        return prepared.run(progress, interrupted, step_check=step_check, lost_time=lost_time)
 
 
 def prepare(scenario: Scenario) -> "Prepared":
@@ -93,6 +98,15 @@ def _clock_of(scenario: Scenario) -> Clock:
     return clock_of(scenario.simulation.load_flow, scenario.source)
 
 
+def _in_check(
+    progress: Callable[[Progress], None] | None,
+) -> Callable[[Progress], None] | None:
+    """What is told of a run that checks another one, where anybody listens."""
+    if progress is None:
+        return None
+    return lambda state: progress(replace(state, in_check=True))
+
+
 @dataclass(frozen=True)
 class Prepared:
     """A scenario that is ready to run, any number of times."""
@@ -116,6 +130,7 @@ class Prepared:
         interrupted: Sequence[int] | None = None,
         *,
         step_check: bool = False,
+        lost_time: bool = False,
     ) -> Result:
         """Result of the run.
 
@@ -125,7 +140,7 @@ class Prepared:
             Called several times a second with the `Progress` of the run, and of its check.
         interrupted : sequence of int, optional
             The run, or its check, ends early once it is filled.
-        step_check : bool
+        step_check, lost_time : bool
             As of `simulate`.
         """
         start, model = self.start, self.start.model
@@ -136,17 +151,35 @@ class Prepared:
         outcome = outcome_of(run, status, start.studied)
         key_figures = key_figures_of(run, status, start, self.frame)
         check = self.check_step(key_figures, interrupted, progress) if step_check else None
+        lost = self.find_lost_time(run, interrupted, progress) if lost_time else None
         figures = {
             FORMAT_KEY: FORMAT,
             **summarise(self.scenario, key_figures, outcome, model),
             "step_choice": self.choice and self.choice.as_dict(),
             "step_check": check and check.as_dict(),
+            "lost_time": lost and lost.as_dict(),
             "simulation_s": elapsed_s,
             "provenance": provenance(),
         }
         dataset = build_dataset(outcome, model, self.layout)
         dataset.attrs = attributes(figures, model.options.step_s, run.last_step_s)
         return Result(self.scenario, dataset, figures)
+
+    def find_lost_time(
+        self,
+        run: Run,
+        interrupted: Sequence[int] | None = None,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> LostTime | None:
+        """Make the run at the supply's voltage without load, and tell what trains lost.
+
+        Parameters are those of `check_step`.
+        """
+        if interrupted:
+            return None
+        stations = self.scenario.supply.stations
+        voltage_v = 1e3 * max(station.no_load_voltage_kv for station in stations)
+        return lost_to_voltage(run, self.start, voltage_v, _in_check(progress), interrupted)
 
     def check_step(
         self,
@@ -165,14 +198,9 @@ class Prepared:
         progress : callable, optional
             Called several times a second with the `Progress` of the check.
         """
-
-        def report(state: Progress) -> None:
-            if progress is not None:
-                progress(replace(state, in_check=True))
-
         trial = Trial(
             self.scenario, self.start.model, self.clock, self.frame, interrupted,
-            None if progress is None else report,
+            _in_check(progress),
         )  # fmt: skip
         step_min = self.start.model.options.step_s / 60.0
         half = None if self.choice is None else self.choice.half

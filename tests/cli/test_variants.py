@@ -65,3 +65,17 @@ def test_check_builds_every_variant(tpss_command, file):
     wrong = tpss_command("check", file, "--set", "variants.AT.set={supply.catenary = 'ATT'}")
     assert wrong.code == 2
     assert "(variant AT)" in wrong.err
+
+
+def test_a_run_says_what_trains_lost_to_the_voltage(tpss_command, file, tmp_path):
+    weak = [
+        "supply.catenary={r_ohm_per_km = 0.4, x_ohm_per_km = 0.4}",
+        "supply.converter_stations.East=",
+        "line.speed_limits.0.speed_kmh=100.0",
+        "line.gradients.0.permille=5.0",
+        "simulation.duration_min=40",
+    ]
+    assignments = [word for text in weak for word in ("--set", text)]
+    said = tpss_command("run", file, *assignments, "--out", tmp_path / "out")
+    assert "Lost to the voltage: " in said.out
+    assert "by 1 train that arrived (against 16.5 kV everywhere)" in said.out

@@ -3,6 +3,7 @@
 import os
 import sys
 import tempfile
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +36,7 @@ def run_scenario(
     show: str | None,
     report: bool,
     step_check: bool,
-    variants: list[str],
+    variants: Sequence[str] = (),
 ) -> int:
     """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
     from tpss.cli.variants import chosen, folders, print_side_by_side
@@ -118,7 +119,7 @@ def _simulate_and_save(
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:
         with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
-            result = prepared.run(progress, interrupted, step_check=step_check)
+            result = prepared.run(progress, interrupted, step_check=step_check, lost_time=True)
         folder, fault = _save(result, out, force)
     return _Ended(result, folder, fault, bool(interrupted))
 
@@ -133,7 +134,7 @@ def _notice() -> None:
 
 def _progress(state: "Progress") -> dict[str, Any]:
     detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
-    detail += ", step check" if state.in_check else ""
+    detail += ", check" if state.in_check else ""
     return {"completed": state.share, "total": 1.0, "detail": detail}
 
 

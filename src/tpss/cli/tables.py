@@ -133,6 +133,7 @@ def key_figures(result: Result) -> list[str]:
         lines.append(f"Trip time of {summary['studied_train']}: {summary['trip_time_min']:.2f} min")
     if any(entry.is_scheduled for entry in result.scenario.traffic):
         lines += punctuality(result.stops)
+    lines += _lost_time(summary.get("lost_time"))
     total, losses = summary["total_energy_mwh"], summary["losses_mwh"]
     share = f" ({100 * losses / total:.2f} %)" if total > 0 else ""
     duration = summary["duration_min"]
@@ -152,6 +153,20 @@ def key_figures(result: Result) -> list[str]:
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
     return lines
 
+
+def _lost_time(lost: Mapping[str, Any] | None) -> list[str]:
+    """What trains lost to the voltage, in a line; none where that is not known, or nothing."""
+    if lost is None or lost["total_min"] < LEAST_LOST_MIN:
+        return []
+    trains = "1 train" if lost["trains"] == 1 else f"{lost['trains']} trains"
+    text = f"Lost to the voltage: {lost['total_min']:.2f} min by {trains} that arrived"
+    if lost["trains"] > 1:
+        text += f", most by {lost['worst_train']}, {lost['worst_min']:.2f} min"
+    return [f"{text} (against {lost['voltage_kv']:g} kV everywhere)"]
+
+
+LEAST_LOST_MIN = 0.005
+"""Lost time below this is nothing. [min]"""
 
 _AUDITED = {
     "power mismatch": ("power_mismatch_va", " VA"),
