@@ -23,8 +23,8 @@ Assignments = Annotated[
         "--set",
         metavar="KEY=VALUE",
         help="Set one value of the scenario, such as traffic.0.headway_min=12; list items also by their "
-        "names (supply.converter_stations.West.converters=5), * is all of them, + one more; without a "
-        "value the key is removed; repeatable.",
+        "names (traffic.up.headway_min=12), * is all of them, + one more; without a value the key is "
+        "taken out; repeatable.",
     ),
 ]
 

@@ -66,7 +66,10 @@ def _options(
     pass
 
 
-@app.command(epilog="Example:  tpss run examples/thesis_160km.toml --set traffic.0.headway_min=12")
+@app.command(
+    epilog="Examples:  tpss run examples/thesis_160km.toml --set traffic.0.headway_min=12, or "
+    "tpss run examples/both_ways.toml --variant all"
+)
 def run(
     file: ScenarioFile,
     out: Annotated[
@@ -101,7 +104,8 @@ def run(
     """Simulate a scenario, print the key figures, and save the result.
 
     The run is made again with half its time step, to print what moves; beyond 1 %, or 2 % of a voltage
-    drop or a peak loading, a note names the step that would do.
+    drop or a peak loading, a note names the step that would do. It is made once more at the stations'
+    voltage without load, to print what trains lost to the voltage.
 
     Exit codes: 0 done, 2 bad input, 3 the line cannot carry its load or a train stalls (results up
     to then are saved), 4 the audit failed, 130 interrupted (results are saved).
