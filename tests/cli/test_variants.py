@@ -44,6 +44,14 @@ def test_all_are_run_saved_apart_and_compared(tpss_command, file, tmp_path):
     assert drop
 
 
+def test_variants_that_give_themselves_one_name_are_compared_all_the_same(tpss_command, file):
+    both = [word for name in VARIANTS
+            for word in ("--set", f"variants.{name}.set.name=same")]  # fmt: skip
+    said = tpss_command("run", file, *both, "--variant", "all")
+    assert said.code == 3
+    assert "AT" in said.out[said.out.rindex("Variants") :]
+
+
 def test_results_of_several_are_numbered_where_no_folder_is_given(tpss_command, file, tmp_path):
     tpss_command("run", file, "--variant", "AT", "--variant", "steep", "--quiet")
     saved = sorted(each.name for each in (tmp_path / "results").iterdir())

@@ -39,7 +39,7 @@ def run_scenario(
     variants: Sequence[str] = (),
 ) -> int:
     """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
-    from tpss.cli.variants import chosen, folders, print_side_by_side
+    from tpss.cli.variants import chosen, folders, print_side_by_side, row_of
     from tpss.results import store
     from tpss.scenario import load_scenario
     from tpss.scenario.override import parse_assignment
@@ -49,15 +49,15 @@ def run_scenario(
     targets = folders(out, scenarios)
     for name, scenario in scenarios.items():
         store.check_target(scenario, targets[name], force)
-    results: dict[str, Result] = {}
-    codes = []
+    codes, rows = [], {}
     for name, scenario in scenarios.items():
-        code = _run_one(scenario, targets[name], force, quiet, show, report, step_check, results)
+        code, result = _run_one(scenario, targets[name], force, quiet, show, report, step_check)
         codes.append(code)
-        if code == INTERRUPTED:
+        if result is None or code == INTERRUPTED:
             return code
-    if len(results) > 1 and not quiet:
-        print_side_by_side(dict(zip(scenarios, results.values(), strict=True)), Console())
+        rows[name] = row_of(result)
+    if len(rows) > 1 and not quiet:
+        print_side_by_side(rows, Console())
     return max(codes, key=SEVERITY.index)
 
 
@@ -69,21 +69,19 @@ def _run_one(
     show: str | None,
     report: bool,
     step_check: bool,
-    results: "dict[str, Result]",
-) -> int:
-    """Run, save and print one scenario; return its exit code.  Its result is added to the others."""
+) -> "tuple[int, Result | None]":
+    """Run, save and print one scenario; return its exit code, and its result, if it came to one."""
     try:
         ended = _simulate_and_save(scenario, out, force, quiet, step_check)
     except KeyboardInterrupt:
         print("Interrupted; nothing was saved.", file=sys.stderr)
-        return INTERRUPTED
-    results[scenario.name] = ended.result
+        return INTERRUPTED, None
     try:
-        return _report(ended, quiet, show, report)
+        return _report(ended, quiet, show, report), ended.result
     except KeyboardInterrupt:
         if not ended.fault:
             print(f"Interrupted.  The result is in {ended.folder}", file=sys.stderr)
-        return INTERRUPTED
+        return INTERRUPTED, ended.result
     finally:
         if ended.fault:
             print(ended.fault, file=sys.stderr)

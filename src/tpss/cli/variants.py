@@ -1,6 +1,7 @@
 """The scenario and its variants: which are run, and their figures side by side."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,28 +43,34 @@ def folders(out: Path | None, scenarios: dict[str, Scenario]) -> dict[str, Path 
     return {name: out / name for name in scenarios}
 
 
-def print_side_by_side(results: dict[str, "Result"], console: Console) -> None:
+@dataclass(frozen=True)
+class Row:
+    """How a run ended, and its key figures: what is kept of it for the comparison."""
+
+    ended: str
+    figures: list[float | None]
+
+
+def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
     """Print the key figures of several results, and what differs from the first one."""
     table = Table(title="Variants", title_justify="left", box=None, pad_edge=False)
     table.add_column("variant", no_wrap=True)
     table.add_column("ended", no_wrap=True)
     for column in ("trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %"):
         table.add_column(column, justify="right")
-    first: list[float | None] = []
-    for name, result in results.items():
-        figures = _figures(result)
-        first = first or figures
-        compared = [*first[:PLACE], None, *first[PLACE + 1 :]]
-        cells = [_cell(value, base) for value, base in zip(figures, compared, strict=True)]
-        table.add_row(name, result.status, *cells)
+    first = next(iter(rows.values())).figures
+    compared = [*first[:PLACE], None, *first[PLACE + 1 :]]
+    for name, row in rows.items():
+        cells = [_cell(value, base) for value, base in zip(row.figures, compared, strict=True)]
+        table.add_row(name, row.ended, *cells)
     console.print(table)
 
 
-def _figures(result: "Result") -> list[float | None]:
+def row_of(result: "Result") -> Row:
     """Trip time, energy, losses, lowest voltage and its place, highest loading of a station."""
     summary, lowest = result.summary, result.summary["lowest_voltage"] or {}
     loading = result.stations.peak_loading.max()
-    return [
+    figures = [
         summary["trip_time_min"],
         summary["total_energy_mwh"],
         summary["losses_mwh"],
@@ -71,6 +78,7 @@ def _figures(result: "Result") -> list[float | None]:
         lowest.get("position_km"),
         None if loading != loading else 100.0 * float(loading),
     ]
+    return Row(result.status, figures)
 
 
 def _cell(value: float | None, base: float | None) -> str:

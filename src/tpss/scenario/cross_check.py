@@ -14,7 +14,7 @@ from tpss import library
 from tpss.errors import Finding, closest
 from tpss.scenario.line import FARTHEST_KM, end_of_line
 from tpss.scenario.machine import CurrentLimitation
-from tpss.scenario.simulation import OF_STEPPED_MOTION
+from tpss.scenario.simulation import made_of_stepped_motion
 from tpss.scenario.supply.supply import STATIONS
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 from tpss.units import kilometres
@@ -249,9 +249,7 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[_Fault]:
 def _bands(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[_Fault]:
     """Retardations that depend on the speed, with stepped motion, whose plans know a single one."""
     choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
-    choices += [
-        f'{key} = "{value}"' for key, value in OF_STEPPED_MOTION if simulation.get(key) == value
-    ]
+    choices += made_of_stepped_motion(simulation.get)
     for name, train in _table(document, "trains").items():
         if choices and isinstance(train, Mapping) and _table(train, "max_retardation_m_s2"):
             problem = f"one for each band of speeds, which {choices[0]} does not know"

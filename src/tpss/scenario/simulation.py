@@ -1,5 +1,6 @@
 """How the simulation runs: its step, its end, and the choices of the models."""
 
+from collections.abc import Callable
 from typing import Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
@@ -13,6 +14,17 @@ OF_STEPPED_MOTION = (
     ("braking", "whole-steps"),
 )
 """Choices of a simulation that go with stepped motion only."""
+
+
+def made_of_stepped_motion(chosen: Callable[[str], object]) -> list[str]:
+    """Those that were made, each as it would be written.
+
+    Parameters
+    ----------
+    chosen : callable
+        Gives the choice of a key.
+    """
+    return [f'{key} = "{value}"' for key, value in OF_STEPPED_MOTION if chosen(key) == value]
 
 
 class Simulation(Part):
@@ -75,9 +87,7 @@ class Simulation(Part):
     @property
     def choices_of_stepped_motion(self) -> list[str]:
         """Choices made here that belong to stepped motion, each as it would be written."""
-        return [
-            f'{key} = "{value}"' for key, value in OF_STEPPED_MOTION if getattr(self, key) == value
-        ]
+        return made_of_stepped_motion(lambda key: getattr(self, key))
 
     @property
     def how_trains_move(self) -> Literal["continuous", "stepped"]:

@@ -237,16 +237,16 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.under_way_s = source.under_way_s
 
 
+@fused
+def along_route(place_m: float, train: Train) -> float:
+    """Position along a train's route of a place on the line; or the place of such a position. [m]"""
+    return -place_m if train.runs_down else place_m
+
+
 @inlined
 def place_on_line(train: Train) -> float:
     """Position of a train on the line, that of its kilometre post. [m]"""
-    return -train.motion.position_m if train.runs_down else train.motion.position_m
-
-
-@fused
-def along_route(place_m: float, train: Train) -> float:
-    """Position along a train's route of a place on the line. [m]"""
-    return -place_m if train.runs_down else place_m
+    return along_route(train.motion.position_m, train)
 
 
 @kernel
