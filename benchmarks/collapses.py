@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.model.directions import Running
+from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.powerflow.network import Ending
 from tpss.powerflow.solve import solve

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tpss.kernel import kernel
-from tpss.model.directions import Running
+from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail, adhesion_limit
@@ -25,6 +25,7 @@ from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.system import system
 from tpss.scenario.rolling_stock import Train
 from tpss.sources.kinds import Source, SourceKind
+from tpss.track.leg import along_one_line
 from tpss.vehicle import train as train_records
 from tpss.vehicle.demand import certify_free_band, update_cap_terms, update_speed_terms
 from tpss.vehicle.train_type import TrainType
@@ -94,7 +95,7 @@ def moved(rng: Random, line: Line) -> Line:
 def put_on_line(network: Network, loads: Loads) -> Line:
     count = loads.trains.size
     flow = new_flow(network, count)
-    locate_trains(count, loads.trains, network, flow)
+    locate_trains(count, loads.trains, along_one_line(network.sections.size), network, flow)
     measure_pieces(count, network, flow)
     return Line(network, loads, flow)
 

@@ -65,6 +65,7 @@ def made_up(
     if "train" in dataset.coords:
         each = position_km or {name: list(range(steps + 1)) for name in dataset.train.to_numpy()}
         dataset["position"] = (("time", "train"), 1e3 * np.array(list(each.values()), float).T)
+        dataset["route_position"] = dataset.position
     return dataset
 
 

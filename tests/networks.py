@@ -19,6 +19,7 @@ from tpss.powerflow.system import system
 from tpss.record import Records
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.kinds import Source, SourceKind
+from tpss.track.leg import along_one_line
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -108,7 +109,7 @@ def place(network: Network, loads: Loads) -> Case:
     """Put the trains of `loads` onto the line."""
     count = loads.trains.size
     flow = new_flow(network, count)
-    locate_trains(count, loads.trains, network, flow)
+    locate_trains(count, loads.trains, along_one_line(network.sections.size), network, flow)
     measure_pieces(count, network, flow)
     return Case(network, flow, loads)
 

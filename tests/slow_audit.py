@@ -68,7 +68,7 @@ def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:
     voltages = np.sqrt(phasor.real**2 + phasor.imag**2)
     voltages = voltages[np.isfinite(voltages)]
     figures: dict[str, float] = {
-        "power_mismatch_va": power_mismatch_va(outcome, model.network),
+        "power_mismatch_va": power_mismatch_va(outcome, model),
         "converter_residual": converter_residual(outcome, model.network),
         "network_balance": network_balance(outcome, model),
         "traction_balance": traction_balance(outcome, model),
@@ -96,19 +96,32 @@ def _kinds(outcome: Outcome, model: Model) -> Any:
     return model.types[np.array([train.train_type for train in outcome.trains], dtype=int)]
 
 
-def _along_routes(trains: Any, outcome: Outcome) -> Any:
-    """Recorded rows of the trains with positions that grow as they go."""
-    turned = trains.copy()
-    sign = np.where([train.runs_down for train in outcome.trains], -1.0, 1.0)
-    turned["position"] = sign * trains["position"]
-    return turned
+def legs_of(outcome: Outcome, model: Model) -> Any:
+    """Leg of every train at every instant, shape (instants, trains)."""
+    along_m = np.asarray(outcome.recording.trains["route_position"])
+    found = np.empty(along_m.shape, dtype=model.legs.dtype)
+    for i, train in enumerate(outcome.trains):
+        for leg in model.legs[train.route]:
+            found[:, i] = np.where(~(along_m[:, i] < leg.from_m), leg, found[:, i])
+    return found
+
+
+def sections_and_places(outcome: Outcome, model: Model) -> tuple[Any, Floats]:
+    """Section above every train at every instant, and its place on the line. [m]"""
+    legs, sections = legs_of(outcome, model), model.network.sections
+    place_m = legs["sign"] * outcome.recording.trains["route_position"] + legs["offset_m"]
+    section = legs["first_section"].copy()
+    for s in range(1, len(sections)):
+        above = (legs["first_section"] < s) & (s < legs["end_section"])
+        section = np.where(above & (place_m >= sections.start_m[s]), s, section)
+    return section, np.asarray(place_m)
 
 
 def _nan_is_largest(value: float) -> float:
     return np.inf if np.isnan(value) else value
 
 
-def power_mismatch_va(outcome: Outcome, network: Network) -> float:
+def power_mismatch_va(outcome: Outcome, model: Model) -> float:
     """Largest mismatch between recorded powers and those that the recorded voltages ask for. [VA]
 
     References
@@ -117,11 +130,12 @@ def power_mismatch_va(outcome: Outcome, network: Network) -> float:
     """
     if outcome.steps == 0:
         return 0.0
-    rows = slice(0, outcome.steps)
+    rows, network = slice(0, outcome.steps), model.network
     trains, nodes = outcome.recording.trains[rows], outcome.recording.nodes[rows]
     stations = outcome.recording.stations[rows]
     train_v, node_v = phasors(trains, "pantograph"), phasors(nodes, "node")
-    train_a, leaving_a = _contact_line_currents(trains["position"], train_v, node_v, network)
+    section, place_m = (each[rows] for each in sections_and_places(outcome, model))
+    train_a, leaving_a = _contact_line_currents(section, place_m, train_v, node_v, network)
     for branch in network.branches:
         current = node_v[:, branch.start_node] - node_v[:, branch.end_node]
         current = current / branch.impedance_ohm
@@ -142,43 +156,48 @@ def power_mismatch_va(outcome: Outcome, network: Network) -> float:
 
 
 def _contact_line_currents(
-    position_m: Floats, train_v: Complexes, node_v: Complexes, network: Network
+    section: Any, place_m: Floats, train_v: Complexes, node_v: Complexes, network: Network
 ) -> tuple[Complexes, Complexes]:
     """Current into each train, and current that leaves each node into the contact line. [A]
 
-    All points of the line (nodes and trains) are sorted by position at every instant; a node comes
-    before a train at the same place, but the line's last node comes after it.
+    The points of a section, its nodes and the trains under it, are sorted by place at every instant.
     """
-    sections = network.sections
-    line_nodes = np.append(sections.start_node, sections.end_node[-1])
-    node_m = np.append(sections.start_m, sections.end_m[-1])
-    steps, count = position_m.shape
-    node_keys = np.tile(node_m, (steps, 1))
-    train_keys = np.where(np.isfinite(train_v), position_m, np.inf)
-    keys = np.concatenate([node_keys[:, :-1], train_keys, node_keys[:, -1:]], axis=1)
-    volts = np.concatenate(
-        [node_v[:, line_nodes[:-1]], train_v, node_v[:, line_nodes[-1:]]], axis=1
-    )
-    order = np.argsort(keys, axis=1, kind="stable")
-    keys, volts = np.take_along_axis(keys, order, 1), np.take_along_axis(volts, order, 1)
-    is_node = (order < len(line_nodes) - 1) | (order == keys.shape[1] - 1)
-    section = np.clip(np.cumsum(is_node, axis=1)[:, :-1] - 1, 0, len(sections) - 1)
-    on_line = np.isfinite(keys[:, 1:])
-    ahead_m = np.where(on_line, keys[:, 1:], 0.0) - np.where(on_line, keys[:, :-1], 0.0)
-    length_m = np.maximum(SHORTEST_PIECE_M, ahead_m)
-    impedance = sections.impedance_ohm_per_m[section] * length_m
-    half_shunt = 0.5j * sections.susceptance_s_per_m[section] * length_m
-    current = np.where(on_line, (volts[:, :-1] - volts[:, 1:]) / impedance, 0.0)
-    shunt = np.where(on_line, half_shunt, 0.0)
-    leaving = np.zeros_like(volts)
-    leaving[:, :-1] += current + shunt * volts[:, :-1]
-    leaving[:, 1:] += shunt * volts[:, 1:] - current
-    unsorted = np.zeros_like(leaving)
-    np.put_along_axis(unsorted, order, leaving, 1)
-    leaving_nodes = np.zeros_like(node_v)
-    leaving_nodes[:, line_nodes[:-1]] = unsorted[:, : len(line_nodes) - 1]
-    leaving_nodes[:, line_nodes[-1]] = unsorted[:, -1]
-    return -unsorted[:, len(line_nodes) - 1 : len(line_nodes) - 1 + count], leaving_nodes
+    drawn_a, leaving_a = np.zeros_like(train_v), np.zeros_like(node_v)
+    for s, part in enumerate(network.sections):
+        under = np.isfinite(train_v) & (section == s)
+        ends_m = np.ones((len(place_m), 1))
+        # A train may stand before the first node of a line, or behind the last one, by rounding.
+        keys = np.concatenate([-np.inf * ends_m, np.where(under, place_m, np.inf)], axis=1)
+        order = np.argsort(keys, axis=1, kind="stable")
+        points_m = np.concatenate([part.start_m * ends_m, place_m], axis=1)
+        volts = np.concatenate([node_v[:, [part.start_node]], train_v], axis=1)
+        there = np.concatenate([ends_m > 0.0, under], axis=1)
+        points_m, volts, there = (
+            np.take_along_axis(each, order, 1) for each in (points_m, volts, there)
+        )
+        last = there.sum(axis=1) - 1
+        leaving = np.zeros_like(volts)
+        for k in range(volts.shape[1]):
+            at_end = k == last
+            if not at_end.any() and not there[:, k].any():
+                break
+            after = min(k + 1, volts.shape[1] - 1)
+            ahead_v = np.where(at_end, node_v[:, part.end_node], volts[:, after])
+            ahead_m = np.where(at_end, part.end_m, points_m[:, after])
+            length_m = np.maximum(SHORTEST_PIECE_M, ahead_m - points_m[:, k])
+            here = there[:, k]
+            drop = np.where(here, volts[:, k] - ahead_v, 0.0)
+            current = drop / (part.impedance_ohm_per_m * np.where(here, length_m, 1.0))
+            half_shunt = 0.5j * part.susceptance_s_per_m * length_m
+            leaving[:, k] += np.where(here, current + half_shunt * volts[:, k], 0.0)
+            arriving = np.where(here, half_shunt * ahead_v - current, 0.0)
+            leaving_a[:, part.end_node] += np.where(at_end, arriving, 0.0)
+            leaving[:, after] += np.where(at_end, 0.0, arriving)
+        unsorted = np.zeros_like(leaving)
+        np.put_along_axis(unsorted, order, leaving, 1)
+        leaving_a[:, part.start_node] += unsorted[:, 0]
+        drawn_a -= np.where(under, unsorted[:, 1:], 0.0)
+    return drawn_a, leaving_a
 
 
 def converter_residual(outcome: Outcome, network: Network) -> float:
@@ -351,7 +370,7 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     [Boullanger2009]_, eq. (2.11) and (F.19).
     """
     rows = slice(0, outcome.steps)
-    trains = _along_routes(outcome.recording.trains[rows], outcome)
+    trains = outcome.recording.trains[rows]
     state = outcome.recording.train_state[rows]
     kind = _kinds(outcome, model)
     rest = trains["tractive_force"] - trains["braking_force"]
@@ -359,7 +378,7 @@ def force_balance(outcome: Outcome, model: Model) -> float:
     inertia_kg = np.broadcast_to(kind.inertia_kg, state.shape)
     if model.options.driver == Driver.AGGRESSIVE:
         # At its limit and above a driver switches off; below, the machine may give nothing.
-        limit = np.minimum(_limits(trains["position"], kind, model), kind.highest_speed_m_s)
+        limit = np.minimum(_limits(trains["route_position"], kind, model), kind.highest_speed_m_s)
         coasts = (state == TrainState.COASTING) & (trains["speed"] >= limit)
         inertia_kg = np.where(coasts, kind.coasting_inertia_kg, inertia_kg)
     rest = rest - inertia_kg * trains["acceleration"]
@@ -380,7 +399,7 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
     ----------
     [Boullanger2009]_, implied by eq. (2.29) and (2.30).
     """
-    trains, step_s = _along_routes(outcome.recording.trains, outcome), model.options.step_s
+    trains, step_s = outcome.recording.trains, model.options.step_s
     before, after = trains[:-1], trains[1:]
     # Present at both instants; positions that are not numbers stay, and fail.
     both = (outcome.recording.train_state[:-1] >= 0) & (
@@ -388,7 +407,7 @@ def motion_error_m(outcome: Outcome, model: Model) -> float:
     )
     if model.options.motion == MotionModel.CONTINUOUS:
         return continuous_motion_error_m(outcome, model, both)
-    way = after["position"] - before["position"]
+    way = after["route_position"] - before["route_position"]
     way = way - step_s * (before["speed"] + after["speed"]) / 2.0
     if model.options.braking == Braking.WITHIN_STEP:
         way = braking_motion_error_m(before, after, _kinds(outcome, model), step_s)
@@ -401,11 +420,11 @@ def continuous_motion_error_m(outcome: Outcome, model: Model, both: npt.NDArray[
 
     A train that comes to an instant faster than its limit there, and no slower than it was, is over it.
     """
-    trains = _along_routes(outcome.recording.trains, outcome)
+    trains = outcome.recording.trains
     kind = _kinds(outcome, model)
     h = intervals_s(outcome, model)[:, np.newaxis]
     before, after = trains[:-1], trains[1:]
-    from_m, to_m = before["position"], after["position"]
+    from_m, to_m = before["route_position"], after["route_position"]
     fastest = np.maximum(
         before["speed"], np.minimum(_limits(from_m, kind, model), kind.highest_speed_m_s)
     )
@@ -457,7 +476,7 @@ def braking_motion_error_m(before: Any, after: Any, kind: Any, step_s: float) ->
     uniformly.  Parameters are those of `braking_work`.
     """
     v, w, hold_s = before["speed"], after["speed"], before["holding_time"]
-    way_m = after["position"] - before["position"]
+    way_m = after["route_position"] - before["route_position"]
     brake_s = (v - w) / kind.highest_retardation_m_s2
     over_s = hold_s + brake_s - step_s
     over_s = np.where(w > 0.0, np.abs(over_s), np.maximum(0.0, over_s))

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.model.directions import Running
+from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.curve import Points
 from tpss.numerics.series import SCRATCH_SHAPE

@@ -15,6 +15,8 @@ from tpss.powerflow.network import Flow, Loads, Network, loads_alone, new_flow
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.solve import predict, remember, start_flat
+from tpss.record import Records
+from tpss.track.leg import Leg, along_one_line
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -47,14 +49,14 @@ def remember_flat(flow: Flow) -> None:
 
 @kernel
 def solve_steps(
-    position_m: Floats, power_va: Complexes, network: Network, flow: Flow, loads: Loads,
-    voltage: Complexes,
+    position_m: Floats, power_va: Complexes, legs: Records[Leg], network: Network, flow: Flow,
+    loads: Loads, voltage: Complexes,
 ) -> int:  # fmt: skip
     """Solve all steps; return the number of passes over the network, or -1 after a failure."""
     total = 0
     for step in range(position_m.shape[0]):
         take_step(step, position_m, power_va, loads)
-        locate_trains(loads.trains.size, loads.trains, network, flow)
+        locate_trains(loads.trains.size, loads.trains, legs, network, flow)
         measure_pieces(loads.trains.size, network, flow)
         predict(flow)
         status, passes = newton(1.0, WARM, MOST_PASSES, network, flow, loads)
@@ -74,12 +76,13 @@ def constant_loads(trains: int) -> Loads:
     return loads_alone(rows, kind)
 
 
-def start(case: Case) -> tuple[Network, Flow, Loads]:
+def start(case: Case) -> tuple[Records[Leg], Network, Flow, Loads]:
     """The state without load, which the first run of a loop begins from."""
     flow, loads = new_flow(case.network, case.trains), constant_loads(case.trains)
     start_flat(case.network, flow)
     remember_flat(flow)
-    return case.network._replace(tolerance=TOLERANCE), flow, loads
+    legs = along_one_line(case.network.sections.size)
+    return legs, case.network._replace(tolerance=TOLERANCE), flow, loads
 
 
 def prepare_compiled(case: Case) -> Run:

@@ -36,7 +36,7 @@ _OPTIONS: dict[str, Any] = {
 }
 
 KERNEL_PACKAGES = (
-    "numerics", "physics", "vehicle", "sources", "powerflow", "driving", "step", "audit",
+    "numerics", "physics", "vehicle", "sources", "track", "powerflow", "driving", "step", "audit",
 )  # fmt: skip
 """Packages that hold kernels."""
 

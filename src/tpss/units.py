@@ -100,6 +100,11 @@ def kilometres(km: float) -> str:
     return f"{km:.{max(6, digits)}g}"
 
 
+def on_line(line: str, text: str) -> str:
+    """A place in words, after the name of its line if that is told."""
+    return f"{line} {text}" if line else text
+
+
 def si_list(source: object, name: str) -> list[float]:
     """Values of the field `name` of `source`, a list of numbers, in SI units."""
     factor = si_factor(name)

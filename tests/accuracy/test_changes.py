@@ -29,7 +29,7 @@ def figures():
             replace(west, energy_mwh=3.0, peak_loading=0.4),
             replace(east, energy_mwh=1.0, peak_loading=0.2),
         ),
-        lowest_voltage=LowestVoltage(14.5, "eastbound 1", 10.0, 0.5),
+        lowest_voltage=LowestVoltage(14.5, "eastbound 1", 10.0, 0.5, None),
     )
 
 

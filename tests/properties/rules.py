@@ -35,7 +35,7 @@ def judge_values(result: Result) -> None:
     for name in set(data.data_vars) - {"train_state", "load_flow_passes"}:
         values = data[name].to_numpy()[:steps]
         if data[name].dims == ("time", "train"):
-            expected = present if name in ("position", "speed") else driven
+            expected = present if name in ("position", "route_position", "speed") else driven
             if name == "motor_current":
                 expected = driven & knows_its_current(result)
             assert (np.isfinite(values) == expected).all(), f"{name} is not where the trains are"

@@ -84,7 +84,7 @@ def test_the_inclination_holds_from_its_position_to_the_next_one_s(hilly):
     """2 ‰ up to 5 km, -1 ‰ from there; beyond the profile its ends go on; nowhere, none."""
     places = np.array([-1.0, 0.0, 4_999.9, 5_000.0, 30_000.0, np.nan])
     expected = [0.002, 0.002, 0.002, -0.001, -0.001, np.nan]
-    np.testing.assert_array_equal(inclination(hilly, places), expected)
+    np.testing.assert_array_equal(inclination(hilly.scenario.only_line, places), expected)
 
 
 def test_the_voltage_is_drawn_over_the_way_and_feeding_points_are_marked(level):

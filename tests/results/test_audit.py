@@ -170,7 +170,7 @@ FORGERIES = [
     ("trains", "reactive_power", TRAIN, lambda q: q + 1.0, "power_mismatch_va"),
     ("trains", "pantograph_real", TRAIN, lambda v: v + 0.01, "power_mismatch_va"),
     ("trains", "pantograph_imag", TRAIN, lambda v: v + 0.01, "power_mismatch_va"),
-    ("trains", "position", TRAIN, lambda x: x + 1.0, "power_mismatch_va"),
+    ("trains", "route_position", TRAIN, lambda x: x + 1.0, "power_mismatch_va"),
     ("nodes", "node_real", NODE, lambda v: v + 0.01, "power_mismatch_va"),
     ("nodes", "node_imag", NODE, lambda v: v + 0.01, "power_mismatch_va"),
     ("stations", "station_active_power", STATION, lambda p: p + 1.0, "power_mismatch_va"),
@@ -189,7 +189,7 @@ FORGERIES = [
     ("trains", "gradient_force", TRAIN, lambda f: f + 1e3, "force_balance"),
     ("trains", "braking_force", TRAIN, lambda f: f + 1e3, "force_balance"),
     ("trains", "tractive_force", TRAIN, lambda f: f + 1e3, "force_balance"),
-    ("trains", "position", TRAIN, lambda x: x - 1e3, "motion_error_m"),
+    ("trains", "route_position", TRAIN, lambda x: x - 1e3, "motion_error_m"),
     ("trains", "speed", TRAIN, lambda v: v + 0.01, "motion_error_m"),
 ]
 
@@ -240,7 +240,7 @@ def test_a_sound_run_that_brakes_within_steps_passes(stops_within_steps):
     [
         ("holding_time", lambda time_s: time_s + 1e-3, "motion_error_m"),
         ("speed", lambda v: v + 1e-3, "motion_error_m"),
-        ("position", lambda x: x - 1e-3, "motion_error_m"),
+        ("route_position", lambda x: x - 1e-3, "motion_error_m"),
         ("braking_force", lambda f: f + 1e3, "traction_balance"),
         ("running_resistance", lambda f: 1.01 * f, "traction_balance"),
         ("gradient_force", lambda f: f + 1e3, "traction_balance"),

@@ -61,7 +61,7 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
     assert close(found.total_energy_mwh, summary["total_energy_mwh"], found.losses_mwh)
     assert close(found.losses_mwh, summary["losses_mwh"])
     lowest = found.lowest_voltage
-    assert (lowest and vars(lowest)) == summary["lowest_voltage"]
+    assert (lowest and lowest.as_dict()) == summary["lowest_voltage"]
     useful = summary["standards"]["mean_useful_voltage"]
     zones = [kv for kv in useful["zones_kv"].values() if kv is not None]
     assert close(found.mean_useful_voltage_kv, min(zones, default=None))

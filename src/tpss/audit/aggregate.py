@@ -20,6 +20,7 @@ from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import TrainState
+from tpss.track.leg import Leg, leg_at, place_on_line
 from tpss.vehicle.train import Train
 
 
@@ -33,7 +34,7 @@ class RunFigures(Record):
     lowest_voltage_v: float
     """Lowest voltage at a pantograph; infinite if there was none. [V]"""
     lowest_voltage_m: float
-    """Where that was. [m]"""
+    """Where that was, along the route of its train. [m]"""
     lowest_voltage_train: int
     lowest_voltage_step: int
     lowest_node_v: float
@@ -85,6 +86,8 @@ class StationFigures(Record):
 class Zone(Record):
     """A zone with its useful voltage."""
 
+    line: int
+    """Index of its line."""
     from_km: float
     to_km: float
     """Where it ends; infinite for a zone that ends with the line. [km]"""
@@ -105,14 +108,14 @@ class Figures(NamedTuple):
     audit: Scratch
 
 
-def new_figures(model: Model, trains: int, zones: list[tuple[float, float]]) -> Figures:
-    """Figures of so many trains before they are gathered, with the zones' ends. [km]"""
+def new_figures(model: Model, trains: int, zones: list[tuple[int, float, float]]) -> Figures:
+    """Figures of so many trains before they are gathered, with the zones' lines and ends. [km]"""
     nodes, stations = model.network.source_of_node.size, model.network.sources.size
     return Figures(
         run=RunFigures.blank(1),
         trains=TrainFigures.blank(trains),
         stations=StationFigures.blank(stations),
-        zones=Zone.array((begin, end, 0, 0.0) for begin, end in zones),
+        zones=Zone.array((*zone, 0, 0.0) for zone in zones),
         audit=new_scratch(nodes, trains),
     )
 
@@ -161,10 +164,10 @@ def gather(
     for step in range(steps):
         in_window = peak_from <= step and step < peak_to
         duration = h if step + 1 < steps else last_step_s
-        _gather_trains(step, in_window, duration, recording, figures)
+        _gather_trains(step, in_window, duration, trains, model.legs, recording, figures)
         _gather_network(step, duration, at_line_level, recording, figures)
     for i in range(figures.trains.size):
-        _note_place(recording.trains[steps, i].position, figures.trains[i])
+        _note_place(recording.trains[steps, i].route_position, figures.trains[i])
     for s in range(figures.stations.size):  # at last, as the tables of a dataset do
         station, last = figures.stations[s], recording.stations[max(steps, 1) - 1, s]
         station.energy_j *= h
@@ -185,8 +188,9 @@ def _note_place(position_m: float, train: TrainFigures) -> None:
 
 @inlined
 def _gather_trains(
-    step: int, in_window: bool, h: float, recording: Recording, figures: Figures
-) -> None:
+    step: int, in_window: bool, h: float, trains: Records[Train], legs: Records[Leg],
+    recording: Recording, figures: Figures,
+) -> None:  # fmt: skip
     """Add a step of every train on the line."""
     run = figures.run[0]
     for i in range(figures.trains.size):
@@ -194,7 +198,7 @@ def _gather_trains(
             continue
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
-        _note_place(row.position, train)
+        _note_place(row.route_position, train)
         if math.isnan(voltage):
             continue
         train.energy_j += row.active_power * h
@@ -204,16 +208,18 @@ def _gather_trains(
         run.highest_voltage_v = max(run.highest_voltage_v, voltage)
         if voltage < run.lowest_voltage_v:
             run.lowest_voltage_v = voltage
-            run.lowest_voltage_m = row.position
+            run.lowest_voltage_m = row.route_position
             run.lowest_voltage_train = i
             run.lowest_voltage_step = step
         if in_window:
-            _note_useful_voltage(voltage, row, train, figures.zones)
+            route = trains[i].route
+            leg = legs[route, leg_at(row.route_position, 0, route, legs)]
+            _note_useful_voltage(voltage, row, leg, train, figures.zones)
 
 
 @inlined
 def _note_useful_voltage(
-    voltage_v: float, row: TrainRow, train: TrainFigures, zones: Records[Zone]
+    voltage_v: float, row: TrainRow, leg: Leg, train: TrainFigures, zones: Records[Zone]
 ) -> None:
     """Add a train's voltage to its own useful voltage, and to that of the zone in which it is.
 
@@ -225,9 +231,10 @@ def _note_useful_voltage(
     if row.tractive_force > 0.0:
         train.pulling_steps += 1
         train.pulling_voltage_v += voltage_v
-    position_km = row.position / 1e3
+    place_km = place_on_line(row.route_position, leg) / 1e3
     for z in range(zones.size):
-        if zones[z].from_km <= position_km and position_km < zones[z].to_km:
+        zone = zones[z]
+        if zone.line == leg.line and zone.from_km <= place_km and place_km < zone.to_km:
             zones[z].steps += 1
             zones[z].voltage_v += voltage_v
 
@@ -289,7 +296,7 @@ def _audit(
     figures, h = scratch.balances[0], model.options.step_s
     for step in range(steps):
         duration = h if step + 1 < steps else last_step_s
-        audit_network(step, model, recording, scratch)
+        audit_network(step, trains, model, recording, scratch)
         audit_sources(step, duration, model, recording, scratch)
         figures.lost_j += recording.network_losses[step] * duration
         for i in range(scratch.order.size):

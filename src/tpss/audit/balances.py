@@ -61,6 +61,8 @@ class Scratch(NamedTuple):
     """Trains on the line by section and position."""
     section: npt.NDArray[np.int64]
     """Section under which each train stands."""
+    place_m: npt.NDArray[np.float64]
+    """Its place on the line. [m]"""
 
 
 def new_scratch(nodes: int, trains: int) -> Scratch:
@@ -71,6 +73,7 @@ def new_scratch(nodes: int, trains: int) -> Scratch:
         node_v=np.zeros(nodes, dtype=complex),
         order=np.arange(trains),
         section=np.zeros(trains, dtype=np.int64),
+        place_m=np.zeros(trains),
     )
 
 

@@ -10,7 +10,7 @@ from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import TrainState
-from tpss.vehicle.train import Train, along_route
+from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
 
@@ -25,8 +25,8 @@ def audit_train(
     if model.options.motion == MotionModel.CONTINUOUS:
         _audit_continuous(step, i, step_s, train, kind, model, recording, figures)
     else:
-        _audit_stepped(step, i, train, kind, model, recording, figures)
-    _audit_forces(step, i, step_s, train, kind, model, recording, figures)
+        _audit_stepped(step, i, kind, model, recording, figures)
+    _audit_forces(step, i, step_s, kind, model, recording, figures)
 
 
 @inlined
@@ -59,7 +59,7 @@ def _audit_continuous(
     figures.fallen_j -= min(before.gradient_power, 0.0) * h
     figures.slowed_j -= min(kinetic, 0.0)
     limits, row = model.limits, at(kind.profile)
-    begin_m, end_m = along_route(before.position, train), along_route(after.position, train)
+    begin_m, end_m = before.route_position, after.route_position
     fastest, j = before.speed, index_at(begin_m, limits.from_m[row])
     while j < limits.from_m[row].size and limits.from_m[row][j] <= end_m:
         fastest = max(fastest, min(limits.value[row][j], kind.highest_speed_m_s))
@@ -74,9 +74,8 @@ def _audit_continuous(
 
 @inlined
 def _audit_stepped(
-    step: int, i: int, train: Train, kind: TrainType, model: Model, recording: Recording,
-    figures: Balances,
-) -> None:  # fmt: skip
+    step: int, i: int, kind: TrainType, model: Model, recording: Recording, figures: Balances
+) -> None:
     """Work of a train that moves in steps.
 
     References
@@ -87,7 +86,7 @@ def _audit_stepped(
     h = model.options.step_s
     # Not the difference of positions, which would round a short distance far along the line.
     way_m = h * (before.speed + after.speed) / 2.0
-    moved_m = along_route(after.position, train) - along_route(before.position, train)
+    moved_m = after.route_position - before.route_position
     efficiency = curve_at(before.speed, kind.efficiency.first, kind.efficiency.points, model.points)
     power_w = (before.active_power - kind.auxiliary_power_w) * efficiency
     figures.work_j += power_w * h / kind.slip_factor
@@ -152,7 +151,7 @@ def _braking_motion_error(
 
 
 @inlined
-def _driver_coasts(before: TrainRow, train: Train, kind: TrainType, model: Model) -> bool:
+def _driver_coasts(before: TrainRow, kind: TrainType, model: Model) -> bool:
     """Whether a train without force and brakes is one whose driver has switched off.
 
     The original driver does so at the speed limit and above.  Below it he asks for all that the machine
@@ -165,14 +164,14 @@ def _driver_coasts(before: TrainRow, train: Train, kind: TrainType, model: Model
     if model.options.driver != Driver.AGGRESSIVE:
         return False
     limits, row = model.limits, at(kind.profile)
-    here = index_at(along_route(before.position, train), limits.from_m[row])
+    here = index_at(before.route_position, limits.from_m[row])
     limit = limits.value[row][here]
     return before.speed >= min(limit, kind.highest_speed_m_s)
 
 
 @inlined
 def _audit_forces(
-    step: int, i: int, step_s: float, train: Train, kind: TrainType, model: Model,
+    step: int, i: int, step_s: float, kind: TrainType, model: Model,
     recording: Recording, figures: Balances,
 ) -> None:  # fmt: skip
     """Note how far the mean forces on a train are off its change of speed."""
@@ -182,7 +181,7 @@ def _audit_forces(
     state = recording.train_state[step, i]
     if state in (TrainState.MOTORING, TrainState.COASTING, TrainState.BRAKING):
         inertia_kg = kind.inertia_kg
-        if state == TrainState.COASTING and _driver_coasts(before, train, kind, model):
+        if state == TrainState.COASTING and _driver_coasts(before, kind, model):
             inertia_kg = kind.coasting_inertia_kg
         rest = before.tractive_force - before.braking_force - before.running_resistance
         rest -= before.gradient_force + inertia_kg * before.acceleration

@@ -11,10 +11,14 @@ from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.powerflow.placing import section_at
+from tpss.record import Records
 from tpss.sources.kinds import residual
 from tpss.step.model import Model
+from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import TrainState
+from tpss.track.leg import leg_at, place_on_line
+from tpss.vehicle.train import Train
 
 
 @inlined
@@ -24,7 +28,9 @@ def draws_power(state: int) -> bool:
 
 
 @inlined
-def audit_network(step: int, model: Model, recording: Recording, scratch: Scratch) -> None:
+def audit_network(
+    step: int, trains: Records[Train], model: Model, recording: Recording, scratch: Scratch
+) -> None:
     """Power mismatch of every node and train in a step.
 
     References
@@ -42,7 +48,7 @@ def audit_network(step: int, model: Model, recording: Recording, scratch: Scratc
         current = drop / branch.impedance_ohm
         scratch.leaving_a[branch.start_node] += current
         scratch.leaving_a[branch.end_node] -= current
-    count = _sort_trains(step, model, recording, scratch)
+    count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
         k = _audit_section(step, s, k, count, model, recording, scratch)
@@ -56,10 +62,12 @@ def audit_network(step: int, model: Model, recording: Recording, scratch: Scratc
 
 
 @inlined
-def _sort_trains(step: int, model: Model, recording: Recording, scratch: Scratch) -> int:
+def _sort_trains(
+    step: int, trains: Records[Train], model: Model, recording: Recording, scratch: Scratch
+) -> int:
     """Bring the trains on the line to the front of ``scratch.order``; return their number.
 
-    They stand by section and position, and at the same place by number.
+    They stand by section and place, and at the same place by number.
     """
     order, count, near = scratch.order, 0, 0
     for k in range(order.size):
@@ -67,11 +75,10 @@ def _sort_trains(step: int, model: Model, recording: Recording, scratch: Scratch
         if draws_power(recording.train_state[step, i]):
             order[k], order[count] = order[count], i
             count += 1
-            near = section_at(recording.trains[step, i].position, near, model.network.sections)
-            scratch.section[i] = near
+            near = _locate(i, near, recording.trains[step, i], trains[i], model, scratch)
     for k in range(1, count):
         i, place = order[k], k
-        while place > 0 and not _stands_behind(step, i, order[place - 1], recording, scratch):
+        while place > 0 and not _stands_behind(i, order[place - 1], scratch):
             order[place] = order[place - 1]
             place -= 1
         order[place] = i
@@ -79,12 +86,21 @@ def _sort_trains(step: int, model: Model, recording: Recording, scratch: Scratch
 
 
 @inlined
-def _stands_behind(step: int, i: int, j: int, recording: Recording, scratch: Scratch) -> bool:
+def _locate(i: int, near: int, row: TrainRow, train: Train, model: Model, scratch: Scratch) -> int:
+    """Note section and place of train `i`, and return the section."""
+    leg = model.legs[train.route, leg_at(row.route_position, 0, train.route, model.legs)]
+    scratch.place_m[i] = place_on_line(row.route_position, leg)
+    scratch.section[i] = section_at(scratch.place_m[i], near, leg, model.network.sections)
+    return scratch.section[i]
+
+
+@inlined
+def _stands_behind(i: int, j: int, scratch: Scratch) -> bool:
     """Whether train `i` stands behind train `j`."""
     if scratch.section[i] != scratch.section[j]:
         return scratch.section[i] > scratch.section[j]
-    position, other = recording.trains[step, i].position, recording.trains[step, j].position
-    return position > other or (position == other and i > j)
+    place_m, other_m = scratch.place_m[i], scratch.place_m[j]
+    return place_m > other_m or (place_m == other_m and i > j)
 
 
 @inlined
@@ -103,7 +119,7 @@ def _audit_section(
         if more:
             row = recording.trains[step, scratch.order[k]]
             ahead = complex(row.pantograph_real, row.pantograph_imag)
-            ahead_m = row.position
+            ahead_m = scratch.place_m[scratch.order[k]]
         else:
             ahead, ahead_m = scratch.node_v[section.end_node], section.end_m
         length_m = max(SHORTEST_PIECE_M, ahead_m - place_m)

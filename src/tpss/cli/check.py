@@ -27,7 +27,7 @@ from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import HighVoltageLine, Supply
 from tpss.scenario.traffic import Stop, Traffic
-from tpss.units import kilometres
+from tpss.units import kilometres, on_line
 
 MOST_LISTED = 8
 """Longer lists are shown by their first and last item and their length."""
@@ -62,7 +62,9 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
 
 def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
     """Headings and texts that describe a scenario."""
-    yield from _line(scenario.line)
+    several = len(scenario.lines_by_name) > 1
+    for name, line in scenario.lines_by_name.items():
+        yield from _line(line, f"{name}: " if several else "")
     yield from _supply(scenario.supply)
     for name, train in scenario.trains.items():
         yield "train", f"{name}: {_train(train)}"
@@ -74,8 +76,8 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield "variant", f"{name}: {variant.description or 'changes ' + ', '.join(variant.paths)}"
 
 
-def _line(line: Line) -> Iterator[tuple[str, str]]:
-    yield "line", line.in_words
+def _line(line: Line, name: str) -> Iterator[tuple[str, str]]:
+    yield "line", f"{name}{line.in_words}"
     yield "stations", _listed([f"{s.name} {kilometres(s.position_km)} km" for s in line.stations])
     pieces = line.gradients_between(line.begins_at_km, line.end_km)
     lowest, highest = min(p for _, _, p in pieces), max(p for _, _, p in pieces)
@@ -107,7 +109,8 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.stations:
-        yield "feeding", f"{station.name} {kilometres(station.position_km)} km: {station.in_words}"
+        place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
+        yield "feeding", f"{station.name} {place}: {station.in_words}"
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:
@@ -167,6 +170,8 @@ def _plain(value: Any) -> str:
 
 def _service(entry: Traffic) -> str:
     texts = [f"{entry.name}: {entry.train} from {entry.origin} to {entry.destination}"]
+    if entry.via:
+        texts.append(f"over {_listed(list(entry.via))}")
     if entry.departures_min is not None:
         texts.append(f"at {_listed([f'{minute:g} min' for minute in entry.departures_min])}")
     else:

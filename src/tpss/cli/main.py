@@ -177,6 +177,14 @@ def plot(
     against: Annotated[
         Against, typer.Option(metavar="AXIS", help="time or distance, of the journey.")
     ] = Against.DISTANCE,
+    corridor: Annotated[
+        str | None,
+        option(
+            metavar="STATIONS",
+            help="Stations of a network over which lines are drawn as one, such as West,Fork,Mine; by "
+            "default those of the first service's way.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         option(
@@ -193,7 +201,8 @@ def plot(
     """
     from tpss.cli.plot import plot_result
 
-    plot_result(result, figure, train, against.value, out, force)
+    stations = [name.strip() for name in corridor.split(",")] if corridor else []
+    plot_result(result, figure, train, against.value, stations, out, force)
 
 
 @app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")

@@ -8,16 +8,17 @@ import numpy as np
 from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
-from tpss.model.directions import runs_down
 from tpss.model.effort_curve import adhesion
+from tpss.model.routes import Route, routes_of
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
+from tpss.scenario.fields import LINE
 from tpss.scenario.line import DECIMALS, Line
 from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import system_named
 from tpss.scenario.traffic import Traffic
-from tpss.units import kilometres, si
+from tpss.units import kilometres, on_line, si
 
 WHOLE = 1e-6
 """A time this close to a whole number of steps, in steps, is one."""
@@ -31,34 +32,49 @@ noted: it was hardly meant. [km], [1]"""
 def notes(scenario: Scenario) -> list[str]:
     """Remarks in the order of the file."""
     return [
-        *_profile(scenario.line),
-        *_dead_stretches(scenario.line),
+        *(
+            note
+            for each in _lines(scenario)
+            for note in (*_profile(*each), *_dead_stretches(*each))
+        ),
         *_supply(scenario),
         *_voltage_limits(scenario),
         *_trains(scenario),
         *(note for i, entry in enumerate(scenario.traffic) for note in _times(scenario, i, entry)),
-        *(note for i, entry in enumerate(scenario.traffic) for note in _climb(scenario, i, entry)),
+        *(
+            note
+            for i, (entry, route) in enumerate(
+                zip(scenario.traffic, routes_of(scenario), strict=True)
+            )
+            for note in _climb(scenario, i, entry, route)
+        ),
     ]
 
 
-def _profile(line: Line) -> Iterator[str]:
+def _lines(scenario: Scenario) -> list[tuple[str, Line]]:
+    """Key paths of the lines, and the lines."""
+    named = [(f"lines.{name}", line) for name, line in scenario.lines.items()]
+    return named if scenario.line is None else [(LINE, scenario.line), *named]
+
+
+def _profile(at: str, line: Line) -> Iterator[str]:
     begin, end = kilometres(line.begins_at_km), kilometres(line.end_km)
     first, last = line.gradients[0].from_km, line.gradients[-1].from_km
     if first > line.begins_at_km:
         yield (
-            f"line.gradients begins at {kilometres(first)} km; its first gradient applies from "
+            f"{at}.gradients begins at {kilometres(first)} km; its first gradient applies from "
             f"{begin} km on"
         )
     if first < line.begins_at_km and len(line.gradients) > 1:
         yield (
-            f"line.gradients begins at {kilometres(first)} km, but the line at {begin} km; what lies "
+            f"{at}.gradients begins at {kilometres(first)} km, but the line at {begin} km; what lies "
             "before it is left out"
         )
     if last > line.end_km:
-        yield f"line.gradients continues to {kilometres(last)} km, but the line ends at {end} km"
+        yield f"{at}.gradients continues to {kilometres(last)} km, but the line ends at {end} km"
     limits = (("speed_limits", line.speed_limits), ("speed_limits_down", line.speed_limits_down))
     beyond = (
-        (f"line.{key}.{i}", limit.from_km)
+        (f"{at}.{key}.{i}", limit.from_km)
         for key, profile in limits
         for i, limit in enumerate(profile)
         if limit.from_km >= line.end_km
@@ -67,7 +83,7 @@ def _profile(line: Line) -> Iterator[str]:
         yield f"{key} begins at {kilometres(from_km)} km, where the line has ended ({end} km)"
 
 
-def _dead_stretches(line: Line) -> Iterator[str]:
+def _dead_stretches(at: str, line: Line) -> Iterator[str]:
     """Much line beyond the outermost stations: a contact line without trains draws charging current."""
     begin_km, end_km = line.begins_at_km, line.end_km
     places_km = [station.position_km for station in line.stations]
@@ -82,7 +98,7 @@ def _dead_stretches(line: Line) -> Iterator[str]:
     ):
         if stop_km - start_km > least_km:
             yield (
-                f"line: {kilometres(stop_km - start_km)} km of contact line {end} station, from "
+                f"{at}: {kilometres(stop_km - start_km)} km of contact line {end} station, from "
                 f"{kilometres(start_km)} to {kilometres(stop_km)} km, have no train; if there is no "
                 f"such line, give {remedy}"
             )
@@ -122,7 +138,8 @@ def _voltage_limits(scenario: Scenario) -> Iterator[str]:
 
 def _trains(scenario: Scenario) -> Iterator[str]:
     used = {entry.train for entry in scenario.traffic}
-    slowest = min(scenario.line.speeds_kmh)
+    lines = scenario.lines_by_name.values()
+    slowest = min(speed for line in lines for speed in line.speeds_kmh)
     for name, train in scenario.trains.items():
         if name not in used:
             yield f"trains.{name} is used by no traffic entry"
@@ -133,16 +150,17 @@ def _trains(scenario: Scenario) -> Iterator[str]:
             )
         yield from _idle_current(name, train)
         yield from implausible(name, train)
-        yield from _early_end(name, train, scenario.line)
+        fastest = max(speed for line in lines for speed in line.speeds_kmh)
+        yield from _early_end(name, train, fastest)
 
 
-def _early_end(name: str, train: Train, line: Line) -> Iterator[str]:
+def _early_end(name: str, train: Train, line_kmh: float) -> Iterator[str]:
     """A table of tractive effort that ends below the speeds at which its train runs."""
     effort = train.tractive_effort
     if not isinstance(effort, EffortTable):
         return
     last_kmh = effort.speed_kmh[-1]
-    fastest_kmh = min(train.max_speed_kmh, max(line.speeds_kmh))
+    fastest_kmh = min(train.max_speed_kmh, line_kmh)
     force_kn = max(row[-1] for row in rows_of(effort))
     if fastest_kmh > last_kmh and force_kn > 0.0:
         yield (
@@ -198,20 +216,24 @@ def _is_whole(steps: float) -> bool:
     return abs(steps - round(steps)) < WHOLE
 
 
-def _climb(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
+def _climb(scenario: Scenario, i: int, entry: Traffic, route: Route) -> Iterator[str]:
     """The steepest place of a service's route, if its train could not start there."""
-    position_km = {station.name: station.position_km for station in scenario.line.stations}
-    ends_km = sorted((position_km[entry.origin], position_km[entry.destination]))
-    sign = -1.0 if runs_down(entry, scenario.line) else 1.0
-    route = scenario.line.gradients_between(*ends_km)
-    start_km, end_km, permille = max(route, key=lambda piece: sign * piece[2])
-    permille *= sign
+    lines = scenario.lines_by_name
+    pieces = [
+        (hop.sign * permille, hop.line, start_km, end_km)
+        for hop in route.way.stretches
+        for start_km, end_km, permille in lines[hop.line].gradients_between(
+            *sorted((hop.begin_km, hop.end_km))
+        )
+    ]
+    permille, line, start_km, end_km = max(pieces, key=lambda piece: piece[0])
+    place = f"{kilometres(start_km)} and {kilometres(end_km)} km"
     train = scenario.trains[entry.train]
     needed_kn = _starting_force_n(train, permille) / 1e3
     available_kn = float(adhesion(train, np.zeros(1), scenario.simulation)[0]) / 1e3
     if needed_kn > available_kn:
         yield (
-            f"traffic.{i} ({entry.name}): between {kilometres(start_km)} and {kilometres(end_km)} km "
+            f"traffic.{i} ({entry.name}): between {on_line(line if len(lines) > 1 else '', place)} "
             f"the gradient is {permille:g} ‰, on which {entry.train} needs {needed_kn:.0f} kN to start; "
             f"{_rails(train, scenario)} allow {available_kn:.0f} kN"
         )

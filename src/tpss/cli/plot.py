@@ -24,6 +24,7 @@ def plot_result(
     figure: str,
     train: str | None,
     against: Literal["time", "distance"],
+    corridor: Sequence[str],
     out: Path | None,
     force: bool,
 ) -> None:
@@ -32,8 +33,8 @@ def plot_result(
     Raises
     ------
     ResultError
-        The folder holds no result, there is no such figure or train, or nothing to draw, or the file
-        cannot be written.
+        The folder holds no result, there is no such figure, train or corridor, or nothing to draw, or
+        the file cannot be written.
     """
     from tpss.files.several import check_files, save_files
     from tpss.report.figures import catalogue
@@ -50,7 +51,7 @@ def plot_result(
     left_out: list[tuple[str, str]] = []
     for name, file in names.items():
         try:
-            drawn = catalogue.draw(name, result, train, against)
+            drawn = catalogue.draw(name, result, train, against, corridor)
         except NothingToDrawError as error:
             left_out.append((name, str(error)))
             continue

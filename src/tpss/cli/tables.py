@@ -1,7 +1,7 @@
 """What ``tpss run`` prints: tables that a traction engineer reads at a glance."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,7 @@ from tpss.results.step_words import step_lines
 from tpss.results.stops import punctuality
 from tpss.results.tables import train_steps
 from tpss.step.recorded import RECORDED
+from tpss.units import on_line
 
 MOST_TRAINS = 30
 MOST_VIOLATIONS = 5
@@ -69,10 +70,12 @@ _TRAIN_COLUMNS = (
     _Column("mean_speed_kmh", "mean v", "km/h", 1),
     _Column("energy_mwh", "energy", "MWh", 3),
     _Column("lowest_voltage_kv", "low U", "kV", 2),
+    _Column("lowest_voltage_line", "on", "", 0),
     _Column("lowest_voltage_km", "at", "km", 1),
 )
 
 _STATION_COLUMNS = (
+    _Column("line", "on", "", 0),
     _Column("position_km", "at", "km", 1),
     _Column("energy_mwh", "energy", "MWh", 3),
     _Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
@@ -93,18 +96,28 @@ def _table(
     title: str,
     first: str,
     columns: Sequence[_Column],
-    rows: Iterable[tuple[str, Mapping[str, Any]]],
+    rows: Sequence[tuple[str, Mapping[str, Any]]],
 ) -> Table:
-    """Table with a name in the first column and numbers, with their units, in the others."""
+    """Table with a name in the first column and numbers, with their units, in the others.
+
+    Columns with the names of lines are there where the rows have any.
+    """
+    columns = [column for column in columns if all(column.key in values for _, values in rows)]
     table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left", padding=0)
     table.add_column(first, no_wrap=True)
     for column in columns:
         heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
         table.add_column(heading, justify="right", no_wrap=True)
     for name, values in rows:
-        cells = [_number(values[column.key] * column.scale, column.digits) for column in columns]
+        cells = [_cell(values[column.key], column) for column in columns]
         table.add_row(escape(name), *cells)
     return table
+
+
+def _cell(value: Any, column: _Column) -> str:
+    if isinstance(value, str):
+        return escape(value)
+    return _number(value * column.scale, column.digits)
 
 
 def _named_rows(frame: pd.DataFrame, name: str) -> list[tuple[str, dict[str, Any]]]:
@@ -142,9 +155,10 @@ def key_figures(result: Result) -> list[str]:
     )
     lowest = summary["lowest_voltage"]
     if lowest is not None:
+        place = f"{lowest['position_km']:.2f} km"
         lines.append(
             f"Lowest voltage: {lowest['voltage_kv']:.3f} kV, {lowest['train']} at "
-            f"{lowest['position_km']:.2f} km, {lowest['time_min']:.2f} min"
+            f"{on_line(lowest.get('line', ''), place)}, {lowest['time_min']:.2f} min"
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")

@@ -1,5 +1,6 @@
 """Assemble the model of a scenario from its parts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,14 +8,16 @@ import numpy as np
 
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
-from tpss.model.directions import running_trains, runs_down
+from tpss.model.legs import build_legs
 from tpss.model.profiles import build_profiles, rows_seen
-from tpss.model.supply import SupplyPlan, build_supply
+from tpss.model.routes import Route, routes_of, running_trains
+from tpss.model.supply import SupplyPlan, build_supply, layouts_of
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
 from tpss.record import Records
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model, RunControl
+from tpss.track.leg import Leg
 from tpss.units import si
 
 STEP_ROUNDING = 1e-9
@@ -28,35 +31,49 @@ class Layout:
     supply: SupplyPlan
     stations: tuple[str, ...]
     station_m: tuple[float, ...]
+    station_line: tuple[int, ...]
+    """Index of the line of each."""
+    lines: tuple[str, ...]
+    routes: tuple[Route, ...]
+    legs: Records[Leg]
 
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
-    network, plan = build_supply(scenario.supply, scenario.line.begins_at_km, scenario.line.end_km)
-    running = running_trains(scenario)
+    lines = scenario.lines_by_name
+    network, plan = build_supply(scenario.supply, layouts_of(lines))
+    routes = routes_of(scenario)
+    running = running_trains(scenario, routes)
     types, points = build_train_types(running)
-    gradients, limits = build_profiles(scenario.line, rows_seen(running))
+    gradients, limits = build_profiles(lines, rows_seen(running))
     model = Model(
         options=_options(scenario),
         control=RunControl(),
         gradients=gradients,
         limits=limits,
-        stops=_stops(scenario, si(scenario.simulation, "time_step_min")),
+        stops=_stops(scenario, routes, si(scenario.simulation, "time_step_min")),
         types=types,
         points=points,
         network=network,
+        legs=build_legs(routes, list(lines), plan),
     )
     return model, Layout(
         supply=plan,
         stations=tuple(station.name for station in scenario.supply.stations),
         station_m=tuple(si(s, "position_km") for s in scenario.supply.stations),
+        station_line=tuple(
+            list(lines).index(scenario.line_of(s)) for s in scenario.supply.stations
+        ),
+        lines=tuple(lines),
+        routes=tuple(routes),
+        legs=model.legs,
     )
 
 
 def at_step(model: Model, scenario: Scenario, step_s: float) -> Model:
     """The model of a scenario with another time step, on which nothing else in it depends."""
     options = model.options._replace(step_s=step_s)
-    return model._replace(options=options, stops=_stops(scenario, step_s))
+    return model._replace(options=options, stops=_stops(scenario, routes_of(scenario), step_s))
 
 
 def steps_of(duration_s: float, step_s: float) -> int:
@@ -83,18 +100,15 @@ def _member(choice: str) -> str:
     return choice.upper().replace("-", "_")
 
 
-def _stops(scenario: Scenario, step_s: float) -> Records[Stop]:
+def _stops(scenario: Scenario, routes: Sequence[Route], step_s: float) -> Records[Stop]:
     """Stops, one row a traffic entry, the destination last."""
-    line = scenario.line
     most = max(len(entry.stops) for entry in scenario.traffic) + 1
     rows: Any = Stop.blank(len(scenario.traffic), most)
-    for route, entry in enumerate(scenario.traffic):
-        seen = line.mirrored() if runs_down(entry, line) else line
-        position_m = {station.name: si(station, "position_km") for station in seen.stations}
-        for k, stop in enumerate(entry.stops):
-            dwell_s, steps = si(stop, "dwell_min"), steps_of(si(stop, "dwell_min"), step_s)
+    for i, (entry, route) in enumerate(zip(scenario.traffic, routes, strict=True)):
+        for k, (stop, position_m) in enumerate(zip(entry.stops, route.stops_m, strict=False)):
+            dwell_s = 60.0 * max(stop.dwell_min, stop.turn_min or 0.0)
             leaves_s = 60.0 * (stop.depart_after_min or 0.0)
-            rows[route, k] = (position_m[stop.station], steps, dwell_s, leaves_s, False)
-        rows[route, len(entry.stops) :] = (position_m[entry.destination], 0, 0.0, 0.0, True)
+            rows[i, k] = (position_m, steps_of(dwell_s, step_s), dwell_s, leaves_s, False)
+        rows[i, len(entry.stops) :] = (route.stops_m[-1], 0, 0.0, 0.0, True)
     stops: Records[Stop] = rows
     return stops

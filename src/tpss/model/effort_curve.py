@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import plain
-from tpss.model.directions import Running
+from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.curve import curve_at
 from tpss.numerics.series import SCRATCH_SHAPE

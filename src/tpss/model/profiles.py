@@ -1,6 +1,7 @@
-r"""Gradients and speed limits of a line as trains of a length see them, over their heads' positions.
+r"""Gradients and speed limits of routes as trains of a length see them, over their heads' positions.
 
-Trains that run towards falling kilometres see the mirrored line, see `model.directions`.
+Positions are along the routes, see `model.routes`: trains that run towards falling kilometres see the
+mirrored line, and where a route leads to another line, what is ahead is that line's.
 
 A limit rises for a train once its tail has passed: it has to keep the lowest limit under it.  The
 gradient acts on all of its mass, taken as spread evenly over its length L,
@@ -13,7 +14,7 @@ a ramp becomes `PIECES` stairs, each with the mean over it, so that the climb ov
 Curves oppose trains, which go towards higher positions, as gradients do, and are added to them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ import numpy.typing as npt
 
 from tpss.driving.data import Profile, Profiles
 from tpss.kernel import plain
-from tpss.model.directions import Running
+from tpss.model.routes import Course, Running
 from tpss.physics.running_resistance import by_radius, curve_resistance
 from tpss.scenario.line import CurveResistance, Line, TrackCurve
 from tpss.units import si, si_of_each
@@ -37,8 +38,8 @@ class Seen(NamedTuple):
 
     length_m: float
     """Length of trains. [m]"""
-    runs_down: bool
-    """Whether they run towards falling kilometres; positions are minus these then."""
+    courses: tuple[Course, ...]
+    """Courses of their route."""
 
 
 def rows_seen(running: Sequence[Running]) -> list[Seen]:
@@ -47,19 +48,44 @@ def rows_seen(running: Sequence[Running]) -> list[Seen]:
 
 
 def row_seen(running: Running) -> Seen:
-    """Row of the profiles of a train in a direction."""
-    return Seen(si(running.train, "length_m"), running.runs_down)
+    """Row of the profiles of a train on a route."""
+    return Seen(si(running.train, "length_m"), running.courses)
 
 
-def build_profiles(line: Line, rows: Sequence[Seen]) -> tuple[Profiles, Profiles]:
-    """Gradients [1] and speed limits [m/s] of a line, a row for each length of train and direction."""
-    lines = {
-        down: _profiles_of(line.mirrored() if down else line) for _, down in dict.fromkeys(rows)
+def build_profiles(lines: Mapping[str, Line], rows: Sequence[Seen]) -> tuple[Profiles, Profiles]:
+    """Gradients [1] and speed limits [m/s] of lines, a row for each length of train and route."""
+    seen = {
+        key: _profiles_of(lines[key[0]] if key[1] > 0.0 else lines[key[0]].mirrored())
+        for row in rows
+        for key in ((course.line, course.sign) for course in row.courses)
+    }
+    routes = {
+        courses: [
+            _joined(courses, [seen[course.line, course.sign][which] for course in courses])
+            for which in (0, 1)
+        ]
+        for courses in dict.fromkeys(row.courses for row in rows)
     }
     return (
-        _rows([lines[row.runs_down][0] for row in rows], mean_under_train, rows),
-        _rows([lines[row.runs_down][1] for row in rows], lowest_under_train, rows),
+        _rows([routes[row.courses][0] for row in rows], mean_under_train, rows),
+        _rows([routes[row.courses][1] for row in rows], lowest_under_train, rows),
     )
+
+
+def _joined(courses: Sequence[Course], profiles: Sequence[Profile]) -> Profile:
+    """The profile of a route from those of its courses, each over plus or minus the places there."""
+    if len(courses) == 1:
+        return profiles[0]
+    from_m, value = [], []
+    ends_m = [*(course.from_m for course in courses[1:]), np.inf]
+    for course, end_m, profile in zip(courses, ends_m, profiles, strict=True):
+        along_m = profile.from_m - course.sign * course.offset_m
+        first = max(int(np.searchsorted(along_m, course.from_m, side="right")) - 1, 0)
+        begin_m = max(course.from_m, min(along_m[0], end_m - 1.0))
+        last = int(np.searchsorted(along_m, end_m))
+        from_m.append(np.append(begin_m, along_m[first + 1 : last]))
+        value.append(np.append(profile.value[first], profile.value[first + 1 : last]))
+    return Profile(np.concatenate(from_m), np.concatenate(value))
 
 
 def _profiles_of(line: Line) -> tuple[Profile, Profile]:

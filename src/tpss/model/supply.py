@@ -2,19 +2,24 @@
 
 Every feeding station and every transformer stands at a feeding point.  A feeding point has a node
 on the contact line, and on an AT system, if a station stands there, one more behind the connection
-impedance; with a high-voltage line it has a node on that line too.  The line's ends are nodes.
+impedance; with a high-voltage line it has a node on that line too.  The ends of a line are nodes; where
+lines meet, there is one node for all of them.
 """
 
 import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from tpss.model.sources import build_sources
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
-from tpss.scenario.supply import Catenary, HighVoltageLine, Supply
+from tpss.scenario.line import Line
+from tpss.scenario.supply import Catenary, HighVoltageLine, Station, Supply
 from tpss.scenario.supply.system import system_named
 from tpss.units import kilometres, si
 
@@ -23,6 +28,19 @@ HIGH_VOLTAGE_LINE = "high-voltage line"
 TRANSFORMER = "transformer"
 CONNECTION = "connection"
 FEEDER = "AT feeder"
+
+
+class LineLayout(NamedTuple):
+    """What the supply has to know of a line."""
+
+    name: str
+    number: int
+    begin_km: float
+    end_km: float
+    junctions: tuple[tuple[float, str], ...]
+    """Positions and names of the stations where it meets others."""
+    prefix: str
+    """What stands before positions on it: its name, if there are several."""
 
 
 @dataclass
@@ -41,10 +59,17 @@ class SupplyPlan:
     section_names: list[str] = field(default_factory=list)
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
+    sections_of_line: list[tuple[int, int]] = field(default_factory=list)
+    """Bounds of the sections of each line."""
+    node_line: list[int] = field(default_factory=list)
+    """Index of the line of each node."""
 
-    def add_node(self, kind: str, position_km: float, level: float = 1.0) -> int:
+    def add_node(
+        self, kind: str, line: "LineLayout", position_km: float, level: float = 1.0
+    ) -> int:
         """Add a node and return its index; its name begins with its kind."""
-        self.nodes.append(f"{kind} at {kilometres(position_km)} km")
+        self.nodes.append(f"{kind} at {line.prefix}{kilometres(position_km)} km")
+        self.node_line.append(line.number)
         self.node_kinds.append(kind)
         self.node_km.append(position_km)
         self.node_level.append(level)
@@ -85,12 +110,12 @@ class SupplyPlan:
 
 
 @lru_cache(maxsize=64)
-def build_supply(supply: Supply, begin_km: float, end_km: float) -> tuple[Network, SupplyPlan]:
-    """Network along a line between its ends [km], with the names of its parts.
+def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network, SupplyPlan]:
+    """Network along lines, with the names of its parts.
 
     Cases of a study have few supplies; those of the same one share what this gives, and only read it.
     """
-    plan = plan_supply(supply, begin_km, end_km)
+    plan = plan_supply(supply, lines)
     sources = build_sources(plan.sources, supply.stations)
     network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
     return network, plan
@@ -109,40 +134,103 @@ def system_of(supply: Supply) -> System:
     )
 
 
-def plan_supply(supply: Supply, begin_km: float, end_km: float) -> SupplyPlan:
-    """Lay out nodes, sections and branches along the line between its ends. [km]
+def layouts_of(lines: Mapping[str, Line]) -> tuple[LineLayout, ...]:
+    """What the supply has to know of lines."""
+    stands_on = Counter(station.name for line in lines.values() for station in line.stations)
+    return tuple(
+        LineLayout(
+            name=name,
+            number=number,
+            begin_km=line.begins_at_km,
+            end_km=line.end_km,
+            junctions=tuple(
+                (station.position_km, station.name)
+                for station in line.stations
+                if stands_on[station.name] > 1
+            ),
+            prefix=f"{name} " if len(lines) > 1 else "",
+        )
+        for number, (name, line) in enumerate(lines.items())
+    )
+
+
+def plan_supply(supply: Supply, lines: Sequence[LineLayout]) -> SupplyPlan:
+    """Lay out nodes, sections and branches along lines, which are tied where they meet.
 
     References
     ----------
     [Boullanger2009]_, figure 2-4 and appendix A.2.
     """
     plan = SupplyPlan()
-    transformers = transformer_positions_km(supply)
-    stations = {station.position_km: station for station in supply.stations}
-    points = sorted({begin_km, end_km, *stations, *transformers})
-    line_node = {km: plan.add_node(CONTACT_LINE, km) for km in points}
-    _lay_contact_line(plan, points, line_node, supply)
-    feeding = dict(line_node)
+    meeting: dict[str, int] = {}
+    fed = [_OnLine.of(supply, line, lines) for line in lines]
+    feeding = [
+        _lay_line(plan, line, meeting, here, supply) for line, here in zip(lines, fed, strict=True)
+    ]
     connection = _connection_impedance(supply.catenary)
-    if connection:
-        for km, station in sorted(stations.items()):
-            feeding[km] = plan.add_node(FEEDER, km)
-            plan.add_branch(CONNECTION, station.name, feeding[km], line_node[km], connection)
-    if supply.high_voltage_line is not None:
-        stands = sorted({*stations, *transformers})
-        _lay_high_voltage_line(plan, stands, set(stations), feeding, supply)
-    plan.sources = [feeding[station.position_km] for station in supply.stations]
+    node_of: dict[str, int] = {}
+    for line, here, node in zip(lines, fed, feeding, strict=True):
+        if connection:
+            for km, station in sorted(here.stations.items()):
+                contact_line, node[km] = node[km], plan.add_node(FEEDER, line, km)
+                plan.add_branch(CONNECTION, station.name, node[km], contact_line, connection)
+        if here.has_high_voltage:
+            _lay_high_voltage_line(plan, line, here, node, supply)
+        node_of |= {station.name: node[km] for km, station in here.stations.items()}
+    plan.sources = [node_of[station.name] for station in supply.stations]
     return plan
 
 
+class _OnLine(NamedTuple):
+    """What feeds a line."""
+
+    stations: dict[float, Station]
+    transformers_km: list[float]
+    has_high_voltage: bool
+
+    @classmethod
+    def of(cls, supply: Supply, line: LineLayout, lines: Sequence[LineLayout]) -> "_OnLine":
+        """What feeds one of several lines."""
+        alone = len(lines) == 1
+        stations = {s.position_km: s for s in supply.stations if alone or s.line == line.name}
+        high_voltage = supply.high_voltage_line
+        beside = high_voltage is not None and (alone or high_voltage.line == line.name)
+        transformers = transformer_positions_km(supply) if beside else []
+        return cls(stations, transformers, beside)
+
+
+def _lay_line(
+    plan: SupplyPlan, line: LineLayout, meeting: dict[str, int], here: _OnLine, supply: Supply
+) -> dict[float, int]:
+    """The contact line of a line; return its nodes by their positions. [km]"""
+    junctions = dict(line.junctions)
+    points = sorted({line.begin_km, line.end_km, *here.stations, *here.transformers_km, *junctions})
+    node: dict[float, int] = {}
+    for km in points:
+        name = junctions.get(km)
+        if name is None or name not in meeting:
+            node[km] = plan.add_node(CONTACT_LINE, line, km)
+        else:
+            node[km] = meeting[name]
+        if name is not None:
+            meeting[name] = node[km]
+    first = len(plan.sections)
+    _lay_contact_line(plan, line, points, node, supply)
+    plan.sections_of_line.append((first, len(plan.sections)))
+    return node
+
+
 def transformer_positions_km(supply: Supply) -> list[float]:
-    """Positions of the transformers between stations, given or equally spaced."""
+    """Positions of the transformers between stations, given or equally spaced. [km]"""
     high_voltage = supply.high_voltage_line
     if high_voltage is None:
         return []
     if high_voltage.transformers_km is not None:
         return list(high_voltage.transformers_km)
-    stations = sorted(station.position_km for station in supply.stations)
+    line = high_voltage.line
+    stations = sorted(
+        s.position_km for s in supply.stations if None in (line, s.line) or s.line == line
+    )
     count = high_voltage.transformers or 0
     return [
         start + (end - start) * (i + 1) / (count + 1)
@@ -156,7 +244,7 @@ def _connection_impedance(catenary: Catenary) -> complex:
 
 
 def _lay_contact_line(
-    plan: SupplyPlan, points: list[float], node: dict[float, int], supply: Supply
+    plan: SupplyPlan, line: LineLayout, points: list[float], node: dict[float, int], supply: Supply
 ) -> None:
     catenary = supply.catenary
     impedance = complex(si(catenary, "r_ohm_per_km"), si(catenary, "x_ohm_per_km"))
@@ -165,13 +253,13 @@ def _lay_contact_line(
         plan.sections.append(
             SectionPart(node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
         )
-        plan.section_names.append(f"{CONTACT_LINE} {kilometres(start)}-{kilometres(end)} km")
+        place = f"{line.prefix}{kilometres(start)}-{kilometres(end)} km"
+        plan.section_names.append(f"{CONTACT_LINE} {place}")
 
 
 def _lay_high_voltage_line(
-    plan: SupplyPlan, stands: list[float], stations: set[float], feeding: dict[float, int],
-    supply: Supply,
-) -> None:  # fmt: skip
+    plan: SupplyPlan, line: LineLayout, here: _OnLine, feeding: dict[float, int], supply: Supply
+) -> None:
     """High-voltage nodes, the line between them, and a transformer at each.
 
     A transformer between stations on an AT system stands behind a connection impedance of its own,
@@ -181,14 +269,17 @@ def _lay_high_voltage_line(
     level = si(high_voltage, "base_kv") / system_of(supply).base_voltage_v
     kind = high_voltage.type
     per_m = complex(si(kind, "r_ohm_per_km"), si(kind, "x_ohm_per_km")) / level**2
-    node = {km: plan.add_node(HIGH_VOLTAGE_LINE, km, level) for km in stands}
+    stands = sorted({*here.stations, *here.transformers_km})
+    node = {km: plan.add_node(HIGH_VOLTAGE_LINE, line, km, level) for km in stands}
     for km in stands:
-        unit = high_voltage.station_transformer if km in stations else high_voltage.line_transformer
+        at_station = km in here.stations
+        unit = high_voltage.station_transformer if at_station else high_voltage.line_transformer
         impedance = complex(si(unit, "r_ohm"), si(unit, "x_ohm"))
-        if km not in stations:
+        if not at_station:
             impedance += _connection_impedance(supply.catenary)
-        plan.add_branch(TRANSFORMER, f"{kilometres(km)} km", feeding[km], node[km], impedance)
+        name = f"{line.prefix}{kilometres(km)} km"
+        plan.add_branch(TRANSFORMER, name, feeding[km], node[km], impedance)
     for start, end in zip(stands, stands[1:], strict=False):
         impedance = per_m * (end - start) * 1e3
-        name = f"{kilometres(start)}-{kilometres(end)} km"
+        name = f"{line.prefix}{kilometres(start)}-{kilometres(end)} km"
         plan.add_branch(HIGH_VOLTAGE_LINE, name, node[start], node[end], impedance, level)

@@ -7,7 +7,7 @@ from tpss.driving.manners import stopping_distance
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
-from tpss.model.directions import index_of, running_trains, runs_down
+from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.numerics.staircase import index_at
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
@@ -26,32 +26,29 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
     ScenarioError
         A train placed on the line is faster than its limit, or cannot stop or slow down in time.
     """
-    running, services = running_trains(scenario), []
-    for route, entry in enumerate(scenario.traffic):
-        down = runs_down(entry, scenario.line)
-        line, sign = (scenario.line.mirrored(), -1.0) if down else (scenario.line, 1.0)
-        position = {station.name: si(station, "position_km") for station in line.stations}
-        stops = (*(position[stop.station] for stop in entry.stops), position[entry.destination])
+    routes, services = routes_of(scenario), []
+    running = running_trains(scenario, routes)
+    for number, (entry, route) in enumerate(zip(scenario.traffic, routes, strict=True)):
         services.append(
             Service(
                 name=entry.name,
-                train_type=index_of(entry, scenario.line, running),
-                route=route,
-                start_m=position[entry.origin],
-                stops_m=stops,
+                train_type=index_of(entry, route, running),
+                route=number,
+                start_m=route.start_m,
+                stops_m=route.stops_m,
                 initial=tuple(
-                    (sign * si(t, "position_km"), si(t, "speed_kmh")) for t in entry.initial_trains
+                    (route.position_m(scenario.line_of(t), t.position_km), si(t, "speed_kmh"))
+                    for t in entry.initial_trains
                 ),
-                runs_down=down,
                 already_running=entry.already_running,
                 **_departures(entry),
             )
         )
     findings = [
         finding
-        for service in services
+        for service, route in zip(services, routes, strict=True)
         for i in range(len(service.initial))
-        for finding in _check_placed(service, i, model, str(scenario.source))
+        for finding in _check_placed(service, route, i, model, str(scenario.source))
     ]
     if findings:
         raise ScenarioError(findings)
@@ -64,7 +61,7 @@ def _departures(entry: Traffic) -> dict[str, Any]:
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 
-def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Finding]:
+def _check_placed(service: Service, route: Route, i: int, model: Model, file: str) -> list[Finding]:
     """Faults of the `i`-th train that a service places on the line."""
     position_m, speed = service.initial[i]
     key = f"traffic.{service.route}.initial_trains.{i}.speed_kmh"
@@ -77,23 +74,24 @@ def _check_placed(service: Service, i: int, model: Model, file: str) -> list[Fin
     if speed > limit and model.options.driver != Driver.AGGRESSIVE:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif _stopping_distance(speed, kind, model.options) > stop_m - position_m:
-        problem = f"too fast to stop at {_post(stop_m, service)} km"
+        problem = f"too fast to stop at {_post(stop_m, route)} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
         for j in range(here + 1, limits.from_m.size):
             lower = limits.value[j] < limits.value[j - 1]
             distance_m = limits.from_m[j] - position_m
             if lower and not _meets(speed, distance_m, limits.value[j], kind, model.options):
-                problem = f"too fast to meet the limit at {_post(limits.from_m[j], service)} km"
+                problem = f"too fast to meet the limit at {_post(limits.from_m[j], route)} km"
     if not problem:
         return []
     remedy = "lower the speed, or place the train earlier"
     return [Finding(file, key, f"{speed * 3.6:g}", problem, remedy)]
 
 
-def _post(position_m: float, service: Service) -> str:
-    """Kilometre of a place on a service's route."""
-    return kilometres((-position_m if service.runs_down else position_m) / 1e3)
+def _post(position_m: float, route: Route) -> str:
+    """Kilometre of a position on a route, on the line to which that belongs."""
+    course = next(c for c in reversed(route.courses) if c.from_m <= position_m)
+    return kilometres((course.sign * position_m + course.offset_m) / 1e3)
 
 
 def _stopping_distance(speed_m_s: float, kind: TrainType, options: Options) -> float:

@@ -9,8 +9,8 @@ import numpy as np
 from tpss import library
 from tpss.kernel import plain
 from tpss.model.curves import CurveBook, interpolate
-from tpss.model.directions import Running
 from tpss.model.profiles import row_seen, rows_seen
+from tpss.model.routes import Running
 from tpss.numerics.curve import Curve as CurvePlace
 from tpss.numerics.curve import Points
 from tpss.numerics.neural_network import FeedForwardNetwork, build_network

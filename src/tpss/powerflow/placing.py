@@ -3,26 +3,30 @@
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Network, Section, Standing
 from tpss.record import Records
-from tpss.vehicle.train import Train, place_on_line
+from tpss.track.leg import Leg, leg_at, place_on_line
+from tpss.vehicle.train import Train
 
 
 @inlined
-def section_at(position_m: float, near: int, sections: Records[Section]) -> int:
-    """Section under a position; one at the end of a section is under the next, if there is one.
+def section_at(place_m: float, near: int, leg: Leg, sections: Records[Section]) -> int:
+    """Section above a place on a leg; one at the end of a section is under the next, if there is one.
 
-    The sections are those of one line, in ascending order without gaps, the outer ones without end:
-    nothing else assumes that.
+    The sections above a leg are in ascending order without gaps, the outer ones without end.
 
     Parameters
     ----------
-    position_m : float
-        Position on the line. [m]
+    place_m : float
+        Place on the line. [m]
     near : int
         Section from which to search.
+    leg : Leg
+    sections : records of Section
+        All of the network.
     """
-    while near > 0 and position_m < sections[at(near - 1)].end_m:
+    near = min(max(near, leg.first_section), leg.end_section - 1)
+    while near > leg.first_section and place_m < sections[at(near - 1)].end_m:
         near -= 1
-    while near + 1 < sections.size and position_m >= sections[at(near)].end_m:
+    while near + 1 < leg.end_section and place_m >= sections[at(near)].end_m:
         near += 1
     return near
 
@@ -36,7 +40,9 @@ def stands_behind(section: int, place_m: float, train: int, other: Standing) -> 
 
 
 @inlined
-def locate_trains(count: int, trains: Records[Train], network: Network, flow: Flow) -> None:
+def locate_trains(
+    count: int, trains: Records[Train], legs: Records[Leg], network: Network, flow: Flow
+) -> None:
     """Find section and place of the first `count` trains of `flow.standing`, and sort them by these.
 
     The order is that of the step before, and trains hardly ever pass each other: of an insertion sort
@@ -45,12 +51,15 @@ def locate_trains(count: int, trains: Records[Train], network: Network, flow: Fl
     section = 0
     for k in range(count):
         standing = flow.standing[at(k)]
-        train = standing.train
-        place_m = place_on_line(trains[at(train)])
-        section = section_at(place_m, section, network.sections)
+        i = standing.train
+        train = trains[at(i)]
+        train.leg = leg_at(train.motion.position_m, train.leg, train.route, legs)
+        leg = legs[at(train.route), at(train.leg)]
+        place_m = place_on_line(train.motion.position_m, leg)
+        section = section_at(place_m, section, leg, network.sections)
         standing.section = section
         standing.place_m = place_m
-        if k > 0 and not stands_behind(section, place_m, train, flow.standing[at(k - 1)]):
+        if k > 0 and not stands_behind(section, place_m, i, flow.standing[at(k - 1)]):
             _move_forward(k, flow.standing)
 
 

@@ -22,6 +22,7 @@ from tpss.files.whole import write_file
 from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.report.corridor import along, gradients_along
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
 from tpss.report.drawings.parts import Drawing
@@ -97,9 +98,9 @@ def report(result: Result) -> str:
 
     A result whose audit failed is shown without its figures: they cannot be trusted.
     """
-    trusted = bool(result.audit["passed"])
-    voltage = line_voltage(result.dataset) if trusted else None
-    figures, data = _figures(result, voltage) if voltage else ({}, {})
+    trusted, seen = bool(result.audit["passed"]), along(result)
+    voltage = line_voltage(seen.dataset) if trusted else None
+    figures, data = _figures(seen, voltage) if voltage else ({}, {})
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stops", "Times at stops", result.stops),
@@ -120,8 +121,9 @@ def report(result: Result) -> str:
 def comparison(results: Mapping[str, Result]) -> str:
     """Page that compares results side by side; curves of results whose audit failed are left out."""
     trusted = {label: result for label, result in results.items() if result.audit["passed"]}
-    voltages = {label: line_voltage(result.dataset) for label, result in trusted.items()}
-    drawn = {label: (trusted[label], line) for label, line in voltages.items() if line is not None}
+    seen = {label: along(result) for label, result in trusted.items()}
+    voltages = {label: line_voltage(result.dataset) for label, result in seen.items()}
+    drawn = {label: (seen[label], line) for label, line in voltages.items() if line is not None}
     runs = {label: result for label, (result, _) in drawn.items()}
     figures, data = {}, {}
     if drawn:
@@ -169,7 +171,7 @@ def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
     for label, result in runs.items():
         samples = sampling.sample_trains(result.dataset, most)
         thinned = thinned or samples.thinned
-        limits, gradients = result.scenario.standards.voltage_limits, result.scenario.line.gradients
+        limits = result.scenario.standards.voltage_limits
         moving.append(
             {
                 "label": label,
@@ -178,7 +180,7 @@ def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
                 "trains": samples.trains,
                 "low_kv": limits.umin1_kv,
                 "high_kv": limits.umax1_kv,
-                "gradients": [[each.from_km, each.permille] for each in gradients],
+                "gradients": [list(each) for each in gradients_along(result)],
             }
         )
     finest = min(run["step_min"] for run in moving)

@@ -1,6 +1,7 @@
 """The recording as an xarray dataset with names, units and coordinates."""
 
 import json
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -12,6 +13,7 @@ from xarray.indexes import PandasIndex
 from tpss.model.build import Layout
 from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.run.run import Outcome
+from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
 from tpss.step.recorded import RECORDED, Recorded
 from tpss.step.state import Floats, TrainState
@@ -30,10 +32,21 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
     """
     arrays = _arrays(outcome, layout)
     variables = {
-        each.name: xr.Variable(each.dimensions, arrays[each.name], _described(each))
+        each.name: xr.Variable(each.dimensions, arrays[each.name], described(each))
         for each in RECORDED
     }
+    if len(layout.lines) > 1:
+        variables |= _lines(outcome, layout)
     return xr.Dataset(variables, coords=_indexed(_coordinates(outcome, model, layout)))
+
+
+def _lines(outcome: Outcome, layout: Layout) -> dict[str, xr.Variable]:
+    """On which lines trains are; -1: they are not there."""
+    along_m = np.asarray(outcome.recording.trains)["route_position"]
+    leg = legs_at(along_m, outcome.trains, layout)
+    line = np.where(np.isfinite(along_m), leg["line"], -1).astype(np.int16)
+    described = {"units": "1", "long_name": "index of the line of the train; -1: not there"}
+    return {"train_line": xr.Variable(("time", "train"), line, described)}
 
 
 def _indexed(coordinates: dict[str, Any]) -> xr.Coordinates:
@@ -59,7 +72,7 @@ def _new_index(dimension: str, values: xr.Variable) -> PandasIndex:
     return PandasIndex.from_variables({dimension: values}, options={})
 
 
-def _described(each: Recorded) -> dict[str, Any]:
+def described(each: Recorded) -> dict[str, Any]:
     """Attributes of a variable."""
     described: dict[str, Any] = {"units": each.unit, "long_name": each.words}
     if each.flags:
@@ -87,11 +100,30 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
             arrays[each.name] = getattr(recording, each.array)
         elif each.phasor:
             arrays[each.name] = polar[each.phasor][each.unit == "rad"]
-        else:
+        elif not each.derived:
             arrays[each.name] = rows[each.of][each.name]
+    leg = legs_at(arrays["route_position"], outcome.trains, layout)
+    arrays["position"] = _places(arrays["route_position"], leg)
     arrays["node_voltage"] *= np.array(plan.node_level)
     arrays["branch_current"] = arrays["branch_current"] / np.array(plan.branch_levels())
     return arrays
+
+
+def _places(along_m: Floats, leg: Any) -> Floats:
+    """Places of the trains on their lines, those of the kilometre posts. [m]"""
+    return np.asarray(leg["sign"] * along_m + leg["offset_m"])
+
+
+def legs_at(along_m: Floats, trains: Sequence[ScheduledTrain], layout: Layout) -> Any:
+    """Legs of trains at positions along their routes, shape (..., trains) or (trains,). [m]"""
+    routes = np.array([train.route for train in trains], dtype=int)
+    legs = np.asarray(layout.legs)
+    if legs.shape[1] == 1:
+        return legs[routes, 0]
+    with np.errstate(invalid="ignore"):  # where there is no train
+        passed = along_m[..., None] >= legs["from_m"][routes]
+    number = np.maximum(passed.sum(axis=-1) - 1, 0)
+    return legs[np.broadcast_to(routes, along_m.shape), number]
 
 
 def _polar(rows: Any, place: str, there: Any) -> tuple[Floats, Floats]:
@@ -134,7 +166,13 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         return {"units": unit, "long_name": long_name}
 
     node_m = np.array(plan.node_km) * 1e3
+    lines = {
+        "line": ("line", list(layout.lines), of("", "line")),
+        "node_line": ("node", np.array(plan.node_line), of("1", "index of its line")),
+        "station_line": ("station", np.array(layout.station_line), of("1", "index of its line")),
+    }
     return {
+        **(lines if len(layout.lines) > 1 else {}),
         "time": ("time", outcome.instants_s, of("s", "time from the start")),
         "train": ("train", [train.name for train in trains], of("", "train")),
         "service": ("train", [train.service for train in trains], of("", "service of the train")),

@@ -10,12 +10,14 @@ import numpy as np
 from tpss.kernel import plain
 from tpss.powerflow.network import Ending
 from tpss.results.advice import STRENGTHEN, forces_on, stall_advice, what_binds
-from tpss.run.run import INTERRUPTED, Outcome, Run, on_line
+from tpss.run.run import INTERRUPTED, Outcome, Run, are_on_line
 from tpss.scenario.scenario import Scenario
 from tpss.sources.kinds import SourceKind, unloaded
 from tpss.step.model import Model, RunControl
 from tpss.step.state import Status
-from tpss.vehicle.train import place_on_line
+from tpss.track.leg import leg_of, place_on_line
+from tpss.units import on_line
+from tpss.vehicle.train import Train
 
 ALMOST = 0.99
 """Share of the highest plausible voltage above which the voltages count as too high."""
@@ -61,7 +63,7 @@ def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str
         if outcome.state.flow.search[0].without_load:
             unloaded = _collapse_without_load(model, time_min)
             return unloaded or _no_state_without_load(outcome, model, time_min, stations)
-        return _collapse(outcome, model, time_min, stations)
+        return _collapse(outcome, model, time_min, stations, list(scenario.lines_by_name))
     if outcome.status == "stalled":
         return _stall(outcome, model, scenario, time_min)
     if outcome.status == INTERRUPTED:
@@ -71,11 +73,11 @@ def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str
 
 
 def _collapse(
-    outcome: Outcome, model: Model, time_min: float, stations: Sequence[str]
+    outcome: Outcome, model: Model, time_min: float, stations: Sequence[str], lines: Sequence[str]
 ) -> dict[str, str]:
     flow, state = outcome.state.flow, outcome.state
     share, ending = float(state.clock[0].carried_share), flow.search[0].ending
-    places = flow.standing[: on_line(state).sum()]
+    places = flow.standing[: are_on_line(state).sum()]
     drawing = state.trains["demand"][places["train"]]
     active_mw = drawing["active_power_w"].sum() / 1e6
     reactive_mvar = drawing["reactive_power_var"].sum() / 1e6
@@ -108,13 +110,21 @@ def _collapse(
         too_high = voltage_kv.max() > ALMOST * highest_kv
         k = int(np.argmax(voltage_kv) if too_high else np.argmin(voltage_kv))
         train, which = int(places[k].train), "highest" if too_high else "lowest"
-        place_km = plain(place_on_line)(state.trains[train]) / 1e3
+        line, place_km = _place(state.trains[train], model, lines)
         name = outcome.trains[train].name
-        problem += f" There, {name} at {place_km:.2f} km has {voltage_kv[k]:.2f} kV, the {which}."
-        advice = (
-            _FEED_LESS if too_high else f"{advice} The weakest place is near {place_km:.0f} km."
-        )
+        here = on_line(line, f"{place_km:.2f} km")
+        problem += f" There, {name} at {here} has {voltage_kv[k]:.2f} kV, the {which}."
+        weakest = on_line(line, f"{place_km:.0f} km")
+        advice = _FEED_LESS if too_high else f"{advice} The weakest place is near {weakest}."
     return {"problem": problem, "advice": advice}
+
+
+def _place(train: Train, model: Model, lines: Sequence[str]) -> tuple[str, float]:
+    """Line, where there are several, and place of a train. [km]"""
+    position_m = float(train.motion.position_m)
+    leg = leg_of(position_m, int(train.route), model.legs)
+    line = lines[leg.line] if len(lines) > 1 else ""
+    return line, plain(place_on_line)(position_m, leg) / 1e3
 
 
 def _collapse_without_load(model: Model, time_min: float) -> dict[str, str] | None:
@@ -204,10 +214,10 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
     train = outcome.state.trains[clock.stalled_train]
     scheduled = outcome.trains[clock.stalled_train]
     motion, demand, kind = train.motion, train.demand, model.types[train.train_type]
-    place_km = plain(place_on_line)(train) / 1e3
+    line, place_km = _place(train, model, list(scenario.lines_by_name))
     doing = "cannot start" if motion.speed_m_s <= 0.0 else "slows down and would roll back"
     problem = (
-        f"At {time_min:.2f} min {scheduled.name} {doing} at {place_km:.2f} km: "
+        f"At {time_min:.2f} min {scheduled.name} {doing} at {on_line(line, f'{place_km:.2f} km')}: "
         f"resistance and gradient demand {clock.force_needed_n / 1e3:.1f} kN, its machine and adhesion "
         f"give {clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
         f"{motion.speed_m_s * 3.6:.1f} km/h."
@@ -221,7 +231,7 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
         )
     else:
         problem += what_binds(forces)
-    voltages_v = outcome.state.trains["demand"]["voltage_v"][on_line(outcome.state)]
+    voltages_v = outcome.state.trains["demand"]["voltage_v"][are_on_line(outcome.state)]
     problem += f" The lowest voltage on the line is {voltages_v.min() / 1e3:.2f} kV."
     described = scenario.trains_by_service()[scheduled.service]
     return {"problem": problem, "advice": stall_advice(forces, demand, kind, described, model)}

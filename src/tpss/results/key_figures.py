@@ -12,6 +12,7 @@ import numpy.typing as npt
 from tpss.audit.aggregate import Figures, RunFigures, gather, new_figures
 from tpss.audit.balances import Balances
 from tpss.audit.verdict import JUDGED, Audit, judge, limits_of
+from tpss.kernel import plain
 from tpss.model.build import Layout
 from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
@@ -22,6 +23,7 @@ from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.step.recording import Memory
 from tpss.step.state import Counter
+from tpss.track.leg import leg_of, place_on_line
 from tpss.vehicle.train import Phase
 
 LIMITED = tuple(counter.name.lower() for counter in Counter)
@@ -59,6 +61,12 @@ class LowestVoltage:
     train: str
     position_km: float
     time_min: float
+    line: str | None
+    """Where there are several."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """For a summary."""
+        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -128,8 +136,9 @@ class Frame:
     name: str
     peak_from_min: float
     peak_to_min: float | None
-    zones_km: list[tuple[float, float]]
-    """Ends of the zones of useful voltage; that of the last one is infinite."""
+    zones: list[tuple[int, float, float]]
+    """Lines and ends [km] of the zones of useful voltage; that of a line's last one is infinite."""
+    lines: tuple[str, ...]
     stations: tuple[str, ...]
     at_line_level: npt.NDArray[np.bool_]
     """Whether a node is at the contact line's level."""
@@ -144,7 +153,8 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         name=scenario.name,
         peak_from_min=scenario.standards.peak_from_min,
         peak_to_min=scenario.standards.peak_to_min,
-        zones_km=_zones_km(scenario, layout),
+        zones=_zones(scenario, layout),
+        lines=layout.lines,
         stations=layout.stations,
         at_line_level=np.array(layout.supply.node_level) == 1.0,
         limits=limits_of(model),
@@ -203,7 +213,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         services=_services(run, start),
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
-        lowest_voltage=_lowest_voltage(run, whole),
+        lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),
         mean_passes=whole["passes"] / max(run.step, 1),
@@ -217,7 +227,7 @@ def _gather(run: Run, frame: Frame) -> Figures:
     h, model = run.model.options.step_s, run.model
     window = window_steps(run.step, h, frame.peak_from_min, frame.peak_to_min)
     begin, end = (0, 0) if window is None else (window.start, window.stop)
-    figures = new_figures(model, run.departed, frame.zones_km)
+    figures = new_figures(model, run.departed, frame.zones)
     trains = run.state.trains
     gather(
         run.step, run.last_step_s, begin, end, frame.at_line_level,
@@ -226,14 +236,21 @@ def _gather(run: Run, frame: Frame) -> Figures:
     return figures
 
 
-def _zones_km(scenario: Scenario, layout: Layout) -> list[tuple[float, float]]:
-    """Ends of the zones of useful voltage; the line's end belongs to the last zone before it."""
-    begin_km, end_km = scenario.line.begins_at_km, scenario.line.end_km
-    zones = [(zone.from_km, zone.to_km) for zone in scenario.standards.zones]
+def _zones(scenario: Scenario, layout: Layout) -> list[tuple[int, float, float]]:
+    """Lines and ends of the zones of useful voltage; a line's end belongs to the last zone before it."""
+    lines = scenario.lines_by_name
+    zones = [
+        (layout.lines.index(scenario.line_of(zone)), zone.from_km, zone.to_km)
+        for zone in scenario.standards.zones
+    ]
     if not zones:
-        points = sorted({begin_km, end_km, *(m / 1e3 for m in layout.station_m)})
-        zones = list(zip(points, points[1:], strict=False))
-    return [(begin, math.inf if end >= end_km else end) for begin, end in zones]
+        for index, line in enumerate(lines.values()):
+            stations = zip(layout.station_line, layout.station_m, strict=True)
+            own_km = (m / 1e3 for owner, m in stations if owner == index)
+            points = sorted({line.begins_at_km, line.end_km, *own_km})
+            zones += [(index, *ends) for ends in zip(points, points[1:], strict=False)]
+    end_km = [line.end_km for line in lines.values()]
+    return [(line, begin, math.inf if end >= end_km[line] else end) for line, begin, end in zones]
 
 
 def _services(run: Run, start: Start) -> tuple[ServiceFigures, ...]:
@@ -292,13 +309,16 @@ def _number(value: float) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-def _lowest_voltage(run: Run, whole: dict[str, Any]) -> LowestVoltage | None:
+def _lowest_voltage(run: Run, whole: dict[str, Any], frame: Frame) -> LowestVoltage | None:
     if not math.isfinite(whole["lowest_voltage_v"]):
         return None
+    train = run.trains[whole["lowest_voltage_train"]]
+    leg = leg_of(whole["lowest_voltage_m"], train.route, run.model.legs)
     return LowestVoltage(
         voltage_kv=whole["lowest_voltage_v"] / 1e3,
-        train=run.trains[whole["lowest_voltage_train"]].name,
-        position_km=whole["lowest_voltage_m"] / 1e3,
+        train=train.name,
+        position_km=plain(place_on_line)(whole["lowest_voltage_m"], leg) / 1e3,
+        line=frame.lines[leg.line] if len(frame.lines) > 1 else None,
         time_min=whole["lowest_voltage_step"] * run.model.options.step_s / 60.0,
     )
 

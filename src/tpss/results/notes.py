@@ -3,14 +3,17 @@
 from collections.abc import Iterator
 
 import numpy as np
+import xarray as xr
 
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
+from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
 from tpss.results.tables import J_PER_MWH, step_s
+from tpss.units import on_line
 
 MOST_CIRCULATING = 0.1
 """Energy that stations may receive from others without a note, as a share of what trains and losses
@@ -18,6 +21,9 @@ take. [1]"""
 
 CLOSE_M = SHORTEST_PIECE_M
 """Distance below which the load flow sets a train apart. [m]"""
+
+APART_M = 1e8
+"""What lies between the places on one line and those on the next; no line is so long. [m]"""
 
 FEW = 3
 """Train-steps that closeness may take without a note, as of a train that passes."""
@@ -83,7 +89,7 @@ def _closeness(result: Result) -> Iterator[str]:
         return
     data, names = result.dataset, result.dataset.train.to_numpy()
     there = np.isfinite(step_values(data, "pantograph_voltage"))
-    place_m = np.where(there, step_values(data, "position"), np.inf)
+    place_m = np.where(there, step_values(data, "position") + _apart_m(data)[:-1], np.inf)
     order = np.argsort(place_m, axis=1)
     with np.errstate(invalid="ignore"):  # between trains that are not there
         step, pair = np.nonzero(
@@ -96,12 +102,12 @@ def _closeness(result: Result) -> Iterator[str]:
             f"in {len(step)} train-steps, first {first} and {second} at "
             f"{step[0] * step_s(data) / 60.0:.2f} min"
         )
-    for node_m in _nodes_between_stations(result):
+    for place, node_m in _nodes_between_stations(result):
         step, train = np.nonzero(np.abs(place_m - node_m) < CLOSE_M)
         if len(step) > FEW:
             yield (
                 f"a train stood closer than {CLOSE_M:g} m to the feeding point at "
-                f"{node_m / 1e3:.2f} km and counted as {CLOSE_M:g} m away, in {len(step)} "
+                f"{place} and counted as {CLOSE_M:g} m away, in {len(step)} "
                 f"train-steps, first {names[train[0]]} at {step[0] * step_s(data) / 60.0:.2f} min"
             )
 
@@ -109,7 +115,7 @@ def _closeness(result: Result) -> Iterator[str]:
 def _passing(result: Result) -> Iterator[str]:
     """Trains that passed through each other: the line has one track, and nothing keeps them apart."""
     data, names = result.dataset, result.dataset.train.to_numpy()
-    place_m = data.position.to_numpy()
+    place_m = data.position.to_numpy() + _apart_m(data)
     count, first = 0, ""
     for step in _steps_of_another_order(place_m):
         there = np.flatnonzero(np.isfinite(place_m[step]) & np.isfinite(place_m[step + 1]))
@@ -118,9 +124,10 @@ def _passing(result: Result) -> Iterator[str]:
         passed = np.argwhere(np.triu(after_m[:, None] > after_m))
         if len(passed) and not count:
             one, other = ordered[passed[0]]
-            km = (place_m[step + 1, one] + place_m[step + 1, other]) / 2e3
+            km = data.position.to_numpy()[step + 1, [one, other]].mean() / 1e3
+            line = line_names(data)[train_lines(data)[step + 1, one]]
             first = (
-                f"{names[one]} and {names[other]} near {km:.1f} km at "
+                f"{names[one]} and {names[other]} near {on_line(line, f'{km:.1f} km')} at "
                 f"{float(data.time[step]) / 60.0:.1f} min"
             )
         count += len(passed)
@@ -143,12 +150,20 @@ def _steps_of_another_order(place_m: Floats) -> Floats:
     return np.asarray(np.flatnonzero(turned | left))
 
 
-def _nodes_between_stations(result: Result) -> Floats:
-    """Positions of nodes where no train is to stop. [m]"""
-    nodes_m = np.unique(result.dataset.node_position.to_numpy())
-    stations_m = np.array([1e3 * each.position_km for each in result.scenario.line.stations])
-    apart = np.abs(nodes_m[:, None] - stations_m) >= CLOSE_M
-    return np.asarray(nodes_m[apart.all(axis=1)])
+def _apart_m(data: xr.Dataset) -> Floats:
+    """What puts places on different lines apart, shape (time, train). [m]"""
+    return np.asarray(APART_M * train_lines(data))
+
+
+def _nodes_between_stations(result: Result) -> Iterator[tuple[str, float]]:
+    """Nodes where no train is to stop: in words, and their places, put apart by lines. [m]"""
+    data, names = result.dataset, line_names(result.dataset)
+    owners, nodes_m = lines_of(data, "node"), data.node_position.to_numpy()
+    for index, line in enumerate(result.scenario.lines_by_name.values()):
+        stations_m = np.array([1e3 * each.position_km for each in line.stations])
+        for node_m in np.unique(nodes_m[owners == index]):
+            if (np.abs(node_m - stations_m) >= CLOSE_M).all():
+                yield on_line(names[index], f"{node_m / 1e3:.2f} km"), APART_M * index + node_m
 
 
 def _station_powers_mw(result: Result) -> tuple[Floats, Floats]:

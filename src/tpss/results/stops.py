@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tpss.model.routes import Route, routes_of
 from tpss.results.standards.windows import Floats, table_of
 from tpss.results.tables import step_s
 from tpss.scenario.scenario import Scenario
@@ -25,6 +26,7 @@ class StopTimes(NamedTuple):
 
     train: str
     station: str
+    line: str
     position_km: float
     arrival_min: float
     departure_min: float
@@ -43,19 +45,30 @@ def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     done within the run is NaN, and so is what it did before, if it was on the line at the start.
     """
     entries = {entry.name: entry for entry in scenario.traffic}
-    places_km = {station.name: station.position_km for station in scenario.line.stations}
+    calls = {
+        entry.name: _calls(route, len(scenario.lines_by_name) > 1)
+        for entry, route in zip(scenario.traffic, routes_of(scenario), strict=True)
+    }
     names, services = dataset.train.to_numpy(), dataset.service.to_numpy()
     rows = []
     for i, (name, service) in enumerate(zip(names, services, strict=True)):
         entry, train = entries[str(service)], dataset.isel(train=i)
-        for call, station in enumerate(_stations_of(entry), -1):
-            times = _times_at(call, station, places_km[station], entry, train)
+        for call, place in enumerate(calls[str(service)], -1):
+            times = _times_at(call, place.position_m, entry, train)
             scheduled = _scheduled_at(call, entry, float(train.departure_time) / 60.0)
             late_min = times[0] - scheduled[0]
             if math.isnan(scheduled[0]):
                 late_min = times[1] - scheduled[1]
             rows.append(
-                StopTimes(str(name), station, places_km[station], *times, *scheduled, late_min)
+                StopTimes(
+                    str(name),
+                    place.station,
+                    place.line,
+                    place.place_km,
+                    *times,
+                    *scheduled,
+                    late_min,
+                )
             )
     return table_of(rows, StopTimes)
 
@@ -74,8 +87,27 @@ def punctuality(stops: pd.DataFrame) -> list[str]:
     return [text]
 
 
-def _stations_of(entry: Traffic) -> list[str]:
-    return [entry.origin, *(stop.station for stop in entry.stops), entry.destination]
+class _Place(NamedTuple):
+    """Where trains of a service begin, stop or end."""
+
+    station: str
+    line: str
+    place_km: float
+    position_m: float
+    """Along their route. [m]"""
+
+
+def _calls(route: Route, several: bool) -> list[_Place]:
+    """Places where trains of a service begin, stop and end; with lines, if there are several."""
+    hops = route.way.hops
+    ends = [hops[i] for i in (*route.way.stops, -1)]
+    return [
+        _Place(hops[0].begin, hops[0].line if several else "", hops[0].begin_km, route.start_m),
+        *(
+            _Place(hop.end, hop.line if several else "", hop.end_km, position_m)
+            for hop, position_m in zip(ends, route.stops_m, strict=True)
+        ),
+    ]
 
 
 def _scheduled_at(call: int, entry: Traffic, departed_min: float) -> tuple[float, float]:
@@ -92,18 +124,18 @@ def _scheduled_at(call: int, entry: Traffic, departed_min: float) -> tuple[float
 
 
 def _times_at(
-    call: int, station: str, position_km: float, entry: Traffic, train: xr.Dataset
+    call: int, place_m: float, entry: Traffic, train: xr.Dataset
 ) -> tuple[float, float, float]:
-    """Arrival, departure and dwell of a train at a station, its stop of this number. [min]"""
-    if station == entry.origin:
+    """Arrival, departure and dwell of a train at its stop of this number. [min]"""
+    if call < 0:
         return np.nan, float(train.departure_time) / 60.0, np.nan
-    if station == entry.destination:
+    if call == len(entry.stops):
         return float(train.arrival_time) / 60.0, np.nan, np.nan
     if (arrival_s := float(train.call_arrival_time[call])) == arrival_s:
         departure_s = float(train.call_departure_time[call])
         return arrival_s / 60.0, departure_s / 60.0, (departure_s - arrival_s) / 60.0
-    position_m, speed_m_s = train.position.to_numpy(), train.speed.to_numpy()
-    stands = (np.abs(position_m - 1e3 * position_km) <= AT_STOP_M) & (speed_m_s == 0.0)
+    position_m, speed_m_s = train.route_position.to_numpy(), train.speed.to_numpy()
+    stands = (np.abs(position_m - place_m) <= AT_STOP_M) & (speed_m_s == 0.0)
     if not stands.any():
         return np.nan, np.nan, np.nan
     first, h = int(stands.argmax()), step_s(train)

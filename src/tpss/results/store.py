@@ -15,9 +15,10 @@ from tpss.errors import ResultError, ScenarioError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
-from tpss.results.dataset import NODE_KIND
+from tpss.results.dataset import NODE_KIND, described
 from tpss.scenario.load import load_scenario
 from tpss.scenario.scenario import Scenario
+from tpss.step.recorded import RECORDED
 
 FIRST_BYTES = 2**16
 """Initial size of a dataset in memory; it grows."""
@@ -141,7 +142,7 @@ def _as_netcdf(dataset: xr.Dataset) -> memoryview:
 
 def _read_netcdf(path: Path) -> xr.Dataset:
     with ONE_AT_A_TIME, xr.open_dataset(path, engine="netcdf4") as stored:
-        return _with_node_kinds(stored.load())
+        return _with_route_positions(_with_node_kinds(stored.load()))
 
 
 def _with_node_kinds(dataset: xr.Dataset) -> xr.Dataset:
@@ -150,6 +151,17 @@ def _with_node_kinds(dataset: xr.Dataset) -> xr.Dataset:
         return dataset
     kinds = [name.rpartition(" at ")[0] for name in dataset.node.to_numpy().tolist()]
     return dataset.assign_coords(node_kind=("node", kinds, NODE_KIND))
+
+
+def _with_route_positions(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset with positions along routes: in earlier files trains ran along one line, either way."""
+    if "position" not in dataset or "route_position" in dataset:
+        return dataset
+    moved_m = np.diff(dataset.position.to_numpy(), axis=0)
+    falls = np.nansum(moved_m, axis=0) < 0.0
+    recorded = next(each for each in RECORDED if each.name == "route_position")
+    along_m = np.where(falls, -1.0, 1.0) * dataset.position.to_numpy()
+    return dataset.assign(route_position=(dataset.position.dims, along_m, described(recorded)))
 
 
 def _demand_this_format(folder: Path, summary: Any) -> None:

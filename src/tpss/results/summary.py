@@ -31,7 +31,7 @@ def summarise(
         "station_energy_mwh": {station.name: station.energy_mwh for station in figures.stations},
         "total_energy_mwh": figures.total_energy_mwh,
         "losses_mwh": figures.losses_mwh,
-        "lowest_voltage": None if lowest is None else dict(vars(lowest)),
+        "lowest_voltage": None if lowest is None else lowest.as_dict(),
         "load_flow_passes": {"mean": figures.mean_passes, "most": figures.most_passes},
         "limited": figures.limited,
         "audit": figures.audit.as_dict(),

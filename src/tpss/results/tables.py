@@ -5,6 +5,7 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
+from tpss.results.places import line_names, lines_of, train_lines, where_told
 from tpss.step.recorded import RECORDED
 from tpss.units import si_factor
 
@@ -21,6 +22,8 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
     voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
     lowest = np.argmin(np.where(np.isfinite(voltage_kv), voltage_kv, np.inf), axis=0)
     each = np.arange(dataset.sizes["train"])
+    names = line_names(dataset)
+    line = np.array(names, dtype=object)
     drawn = np.isfinite(voltage_kv).any(axis=0)
     departure_min = dataset.departure_time.to_numpy() / 60.0
     arrival_min = dataset.arrival_time.to_numpy() / 60.0
@@ -42,6 +45,7 @@ def trips(dataset: xr.Dataset) -> pd.DataFrame:
             "mean_speed_kmh": travelled_km / np.where(moving_min > 0, moving_min, np.nan) * 60.0,
             "energy_mwh": over_time(dataset.active_power.to_numpy(), dataset) / J_PER_MWH,
             "lowest_voltage_kv": np.where(drawn, voltage_kv[lowest, each], np.nan),
+            **where_told({"lowest_voltage_line": line[train_lines(dataset)[lowest, each]]}, names),
             "lowest_voltage_km": np.where(drawn, position_km[lowest, each], np.nan),
             "lowest_voltage_min": np.where(drawn, time_min[lowest], np.nan),
         }
@@ -54,7 +58,7 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
     reactive = dataset.station_reactive_power.to_numpy()
     loading = dataset.converter_loading.to_numpy()
     converters = dataset.active_converters.to_numpy()
-    steps = max(dataset.sizes["time"] - 1, 1)
+    steps, names = max(dataset.sizes["time"] - 1, 1), line_names(dataset)
 
     def peak(values: np.ndarray) -> np.ndarray:
         return np.asarray(np.max(np.where(np.isfinite(values), values, -np.inf), axis=0))
@@ -62,6 +66,9 @@ def stations(dataset: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "station": dataset.station.to_numpy(),
+            **where_told(
+                {"line": np.array(names, dtype=object)[lines_of(dataset, "station")]}, names
+            ),
             "position_km": dataset.station_position.to_numpy() / 1e3,
             "energy_mwh": over_time(active, dataset) / J_PER_MWH,
             "reactive_energy_mvarh": over_time(reactive, dataset) / J_PER_MWH,
@@ -84,6 +91,8 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
     """
     there = np.isfinite(dataset.position.to_numpy().T)
     train, instant = np.nonzero(there)
+    names = line_names(dataset)
+    line = np.array(names, dtype=object)
     states = dataset.train_state.attrs["flag_meanings"].split()
     state = dataset.train_state.to_numpy().T[there]
     return pd.DataFrame(
@@ -91,6 +100,7 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
             "train": dataset.train.to_numpy()[train],
             "service": dataset.service.to_numpy()[train],
             "time_min": dataset.time.to_numpy()[instant] / 60.0,
+            **where_told({"line": line[train_lines(dataset).T[there]]}, names),
             "state": np.array([*states, ""], dtype=object)[state],
             **{
                 column: dataset[name].to_numpy().T[there] / si_factor(column)
@@ -102,7 +112,7 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
 
 def distance_km(dataset: xr.Dataset) -> npt.NDArray[np.float64]:
     """Distance that each train covers within the run. [km]"""
-    position_m = dataset.position.to_numpy()
+    position_m = dataset.route_position.to_numpy()
     distance_m = np.nanmax(position_m, axis=0) - np.nanmin(position_m, axis=0)
     return np.asarray(np.nan_to_num(distance_m) / 1e3)
 

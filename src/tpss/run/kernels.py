@@ -126,7 +126,7 @@ def figures_calls(model: Model) -> list[Call]:
 
 def _start(model: Model) -> State:
     """State of a run with one train."""
-    trains = [ScheduledTrain("", "", train_type=0, route=0, runs_down=False, departure_step=0)]
+    trains = [ScheduledTrain("", "", train_type=0, route=0, departure_step=0)]
     return new_state(model, train_records(trains, 0.0))
 
 

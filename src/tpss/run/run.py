@@ -359,7 +359,7 @@ def arrivals_s(run: Run) -> npt.NDArray[np.float64]:
     return np.asarray(np.where(instant >= 0, arrived_s, np.nan), dtype=float)
 
 
-def on_line(state: State) -> npt.NDArray[np.bool_]:
+def are_on_line(state: State) -> npt.NDArray[np.bool_]:
     """Whether each train is on the line, shape (trains,)."""
     phases = (Phase.DRIVING, Phase.PLANNED, Phase.DWELLING)
     return np.isin(state.trains["motion"]["phase"], phases)
@@ -372,7 +372,7 @@ def _progress(run: Run, steps: int | None) -> Progress:
         train = run.state.trains[studied]
         begin_m, end_m = run.ends_m(train.route)
         share = (train.motion.position_m - begin_m) / (end_m - begin_m)
-    trains = int(on_line(run.state).sum())
+    trains = int(are_on_line(run.state).sum())
     time_s = run.step * run.model.options.step_s
     return Progress(time_s=time_s, trains=trains, share=min(1.0, float(share)))
 

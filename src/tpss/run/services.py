@@ -15,7 +15,7 @@ DEPARTURE_ROUNDING_S = 1e-6
 
 @dataclass(frozen=True)
 class Service:
-    """Trains of one kind on one route; positions are along it, see `model.directions`.
+    """Trains of one kind on one route; positions are along it, see `model.routes`.
 
     Departures repeat every `headway_s` from `first_s` on, or are those of `departures_s`.
     """
@@ -31,8 +31,6 @@ class Service:
     already_running: bool = False
     initial: tuple[tuple[float, float], ...] = ()
     """Position [m] and speed [m/s] of each train on the line at the start."""
-    runs_down: bool = False
-    """Whether towards falling kilometres."""
 
     def departure_times_s(self, until_s: float) -> Iterator[float]:
         """Times of departure before `until_s`, ascending. [s]"""
@@ -58,7 +56,6 @@ class ScheduledTrain(NamedTuple):
     service: str
     train_type: int
     route: int
-    runs_down: bool
     departure_step: int
     departure_wait_s: float = 0.0
     """Time in that step until it departs. [s]"""
@@ -102,7 +99,6 @@ def departing_trains(
                         service=service.name,
                         train_type=service.train_type,
                         route=service.route,
-                        runs_down=service.runs_down,
                         departure_step=step,
                         departure_wait_s=wait_s,
                         position_m=service.start_m,
@@ -119,7 +115,6 @@ def placed_trains(service: Service) -> list[ScheduledTrain]:
             service=service.name,
             train_type=service.train_type,
             route=service.route,
-            runs_down=service.runs_down,
             departure_step=0,
             phase=Phase.DRIVING,
             position_m=position_m,
@@ -135,7 +130,7 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     """Records of the trains, in their order, with a first guess of their voltage. [V]"""
     records = Train.blank(len(trains))
     parts = {"motion": Motion, "plan": Plan}
-    fields: list[tuple[str, ...]] = [("train_type",), ("route",), ("runs_down",)]
+    fields: list[tuple[str, ...]] = [("train_type",), ("route",)]
     fields += [("timetable", "departure_step"), ("timetable", "departure_wait_s")]
     fields += [(name, field) for name, part in parts.items() for field in part.dtype.names or ()]
     for (*part, field), column in zip(fields, list(zip(*trains, strict=True))[2:], strict=False):
@@ -151,5 +146,5 @@ def train_at(journey: Any, train: ScheduledTrain, number: int) -> ScheduledTrain
     """A train where it once was, a row of `Journey`, ready to enter another run at its start."""
     name, (motion, plan) = f"{train.service} initial {number}", journey.tolist()
     return ScheduledTrain(
-        name, train.service, train.train_type, train.route, train.runs_down, 0, 0.0, *motion, *plan
+        name, train.service, train.train_type, train.route, 0, 0.0, *motion, *plan
     )

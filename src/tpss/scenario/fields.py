@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache, partial
 from itertools import pairwise
 from operator import lt
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -78,6 +78,10 @@ class AlongLine:
 Position = Annotated[Real, AlongLine()]
 
 
+LINE = "line"
+"""Name of the line that the key of this name describes."""
+
+
 def _is_one_line(name: str) -> str:
     if not name.isprintable() and any(ord(c) < 32 or ord(c) == 127 for c in name):
         raise PydanticCustomError("control_character", "a control character in a name")
@@ -85,6 +89,30 @@ def _is_one_line(name: str) -> str:
 
 
 Name = Annotated[str, Field(min_length=1), AfterValidator(_is_one_line)]
+
+
+def name_of_line() -> Any:
+    """Field with the name of the line on which something stands."""
+    return Field(
+        default=None, description="Name of the line on which it is; needed where there are several."
+    )
+
+
+def station_at() -> Any:
+    """Field with the name of the station at which something stands."""
+    return Field(
+        default=None,
+        description="Station where it stands, in place of `position_km` and of `line`.",
+    )
+
+
+class OnLine(Protocol):
+    """A part of a scenario on one of its lines."""
+
+    @property
+    def line(self) -> str | None:
+        """Name of the line; None where there is only one."""
+
 
 OWN_FILE = {
     "type": "string",
@@ -185,23 +213,23 @@ def ascending(field: str) -> AfterValidator:
     return AfterValidator(check)
 
 
-def unique(field: str) -> AfterValidator:
-    """Demand that no two items share the same `field`."""
+def unique(field: str, of: str = "") -> AfterValidator:
+    """Demand that no two items share the same `field`, or none of those with the same `of`."""
 
     def check(items: Sequence[_Item]) -> Sequence[_Item]:
-        demand_unique(items, field)
+        demand_unique(items, field, of)
         return items
 
     return AfterValidator(check)
 
 
-def demand_unique(items: Sequence[Any], field: str) -> None:
-    """Raise a fault if two items share the same `field`."""
+def demand_unique(items: Sequence[Any], field: str, of: str = "") -> None:
+    """Raise a fault if two items share the same `field`, and `of`."""
     seen: set[Any] = set()
     for item in items:
-        value = getattr(item, field)
-        if value in seen:
+        value, whole = getattr(item, field), getattr(item, of) if of else None
+        if (whole, value) in seen:
             raise PydanticCustomError(
                 "not_unique", "{field} {value} occurs twice", {"field": field, "value": value}
             )
-        seen.add(value)
+        seen.add((whole, value))

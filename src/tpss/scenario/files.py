@@ -77,7 +77,7 @@ def shown_line(text: str, number: int) -> tuple[str, str]:
     return f"line {number}", shortened(line)
 
 
-def read_gradients(path: Path) -> Profile:
+def read_gradients(path: Path, named_by: str = "line.gradients_file") -> Profile:
     """Rows of a gradient profile: CSV with a header; lines that begin with # are comments.
 
     Raises
@@ -87,7 +87,7 @@ def read_gradients(path: Path) -> Profile:
     """
     lines = [
         (number, text)
-        for number, text in enumerate(read_text(path, "line.gradients_file").splitlines(), 1)
+        for number, text in enumerate(read_text(path, named_by).splitlines(), 1)
         if text.strip() and not text.lstrip().startswith("#")
     ]
     rows = [(number, [cell.strip() for cell in text.split(",")]) for number, text in lines]

@@ -6,7 +6,7 @@ profile in CSV.  A scenario then holds everything that it says, and its faults a
 files that contain them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ SUFFIX = ".toml"
 
 PLACES: tuple[tuple[str, ...], ...] = (
     ("line",),
+    ("lines", "*"),
     ("supply", "catenary"),
     ("supply", "high_voltage_line", "type"),
     ("supply", "high_voltage_line", "line_transformer"),
@@ -46,14 +47,15 @@ class Inlined:
     """Keys of such a table that the scenario itself gives."""
     unread: set[Location] = field(default_factory=set)
     """Tables whose file could not be read."""
-    profile: Profile | None = None
-    """The line's gradients, if they came from a CSV file."""
+    profiles: dict[Location, Profile] = field(default_factory=dict)
+    """Gradients that came from CSV files, by their lines."""
 
     def origin(self, location: Location) -> tuple[Path, Location]:
         """File that holds a value, and the value's place in it."""
-        if self.profile is not None and location[:2] == ("line", "gradients") and location[3:]:
-            row, key = location[2:4]
-            return self.profile.path, (self.profile.place(int(row), str(key)),)
+        for line, profile in self.profiles.items():
+            if location[: len(line) + 1] == (*line, "gradients") and len(location) > len(line) + 2:
+                row, key = location[len(line) + 1 : len(line) + 3]
+                return profile.path, (profile.place(int(row), str(key)),)
         for table, file in self.files.items():
             below = location[len(table) :]
             if below and location[: len(table)] == table and below[0] not in self.own[table]:
@@ -77,13 +79,13 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
                 _merge_model(container, location[:-1], inlined)
             else:
                 _insert_table(container, key, location, inlined)
-    _insert_profile(inlined)
+    for line in lines_of(document):
+        _insert_profile(line, inlined)
     return inlined
 
 
 def _names_files(document: dict[str, Any]) -> bool:
-    line = document.get("line")
-    return (isinstance(line, dict) and "gradients_file" in line) or any(
+    return any("gradients_file" in line for line in lines_of(document).values()) or any(
         True for place in PLACES for _ in _named_files(document, place, ())
     )
 
@@ -150,12 +152,21 @@ def _merge_model(train: dict[str, Any], location: Location, inlined: Inlined) ->
     train.update(completed(train, table))
 
 
-def _insert_profile(inlined: Inlined) -> None:
+def lines_of(document: Mapping[str, Any]) -> dict[Location, dict[str, Any]]:
+    """The tables of all lines of a document, by their places."""
+    lines = document.get("lines")
+    tables: dict[Location, Any] = {("line",): document.get("line")}
+    if isinstance(lines, dict):
+        tables |= {("lines", name): line for name, line in lines.items()}
+    return {place: line for place, line in tables.items() if isinstance(line, dict)}
+
+
+def _insert_profile(place: Location, inlined: Inlined) -> None:
     """Read the gradients that a line names as a file into it."""
-    line = inlined.document.get("line")
-    if not isinstance(line, dict) or not isinstance(line.get("gradients_file"), str):
+    line = lines_of(inlined.document)[place]
+    if not isinstance(line.get("gradients_file"), str):
         return
-    file, location = inlined.origin(("line", "gradients_file"))
+    file, location = inlined.origin((*place, "gradients_file"))
     key, name = ".".join(str(part) for part in location), line["gradients_file"]
     if "gradients" in line:
         problem = "gradients are given twice, as a file and as a list"
@@ -164,8 +175,9 @@ def _insert_profile(inlined: Inlined) -> None:
         return
     del line["gradients_file"]
     try:
-        inlined.profile = read_gradients(file.parent / name)
-        line["gradients"] = inlined.profile.rows
+        profile = read_gradients(file.parent / name, ".".join((*map(str, place), "gradients_file")))
+        inlined.profiles[place] = profile
+        line["gradients"] = profile.rows
     except ScenarioError as error:
         # A level line allows the rest of the document to be checked.
         line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]

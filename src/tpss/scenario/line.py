@@ -14,6 +14,9 @@ from tpss.units import kilometres
 FARTHEST_KM = 10_000.0
 """No line begins farther from kilometre 0: nanometres would be lost in rounding. [km]"""
 
+CLOSEST_KM = 0.001 - 1e-9
+"""Least distance between feeding points, or a network's stations, less a margin for rounding. [km]"""
+
 DECIMALS = 9
 """Of the position of a line's end: a micrometre."""
 

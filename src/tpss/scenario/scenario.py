@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.fields import Name, Part, Version, unique
+from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
@@ -39,7 +39,13 @@ class Scenario(Part):
     simulation: Simulation = Field(
         default={}, validate_default=True, description="How the simulation runs."
     )
-    line: Line = Field(description="The railway line.")
+    lines: dict[Name, Line] = Field(
+        default={},
+        description="Railway lines by name, which meet at stations of the same name.",
+    )
+    line: Line | None = Field(
+        default=None, validate_default=True, description="The railway line, if there is one only."
+    )
     supply: Supply = Field(description="Everything that feeds the trains.")
     trains: Annotated[dict[Name, Train], Field(min_length=1)] = Field(
         description="Types of train by name, at least one."
@@ -53,6 +59,15 @@ class Scenario(Part):
     variants: Variants = Field(
         default={}, description="Variants by name: the scenario with some changes."
     )
+
+    @field_validator("line")
+    @classmethod
+    def _there_is_a_line(cls, line: Line | None, info: ValidationInfo) -> Line | None:
+        if line is None and info.data.get("lines") == {}:
+            raise fault("it is missing", "add it, or lines by their names")
+        if line is not None and LINE in info.data.get("lines", {}):
+            raise fault(f"lines.{LINE} has its name", "give that line another name")
+        return line
 
     @model_validator(mode="before")
     @classmethod
@@ -151,6 +166,30 @@ class Scenario(Part):
             place = f"{self._source} (variant {name})"
             findings = [replace(finding, file=place) for finding in error.findings]
             raise ScenarioError(findings) from error
+
+    @property
+    def lines_by_name(self) -> dict[str, Line]:
+        """All lines, that of the key ``line`` called so."""
+        return self.lines if self.line is None else {LINE: self.line, **self.lines}
+
+    @property
+    def only_line(self) -> Line:
+        """The line of a scenario with one.
+
+        Raises
+        ------
+        ScenarioError
+            There are several.
+        """
+        lines = list(self.lines_by_name.values())
+        if len(lines) > 1:
+            problem, remedy = "several lines, where this works with one", "keep one of them"
+            raise ScenarioError([Finding(str(self._source), "lines", "", problem, remedy)])
+        return lines[0]
+
+    def line_of(self, part: OnLine) -> str:
+        """Name of the line on which something stands."""
+        return part.line or next(iter(self.lines_by_name))
 
     def trains_by_service(self) -> dict[str, Train]:
         """Type of train of each service, by its name."""

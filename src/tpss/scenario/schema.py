@@ -43,6 +43,11 @@ def scenario_schema() -> dict[str, Any]:
     _start_from_a_system(parts["VoltageLimits"])
     line = schema["properties"]["line"]
     schema["properties"]["line"] = {"description": "The line.", "anyOf": [OWN_FILE, line]}
+    lines = schema["properties"]["lines"]
+    lines["additionalProperties"] = {"anyOf": [OWN_FILE, lines["additionalProperties"]]}
+    schema["anyOf"] = [{"required": ["line"]}, {"required": ["lines"]}]
+    for station in ("ConverterStation", "TransformerStation"):
+        _stand_at_a_station(parts[station])
     schema["description"] = "A line, its power supply, its trains and its traffic."
     return {"$schema": _OfToml.schema_dialect, "title": TITLE, **schema}
 
@@ -51,6 +56,12 @@ def _add_unit(key: str, field: dict[str, Any]) -> None:
     unit = units.label(key)
     if unit:
         field["description"] = f"{field.get('description', '')} [{unit}]".strip()
+
+
+def _stand_at_a_station(station: dict[str, Any]) -> None:
+    """A station of the line gives the position of what stands at it."""
+    station["required"].remove("position_km")
+    station["anyOf"] = [{"required": ["position_km"]}, {"required": ["at"]}]
 
 
 def _start_from_a_model(train: dict[str, Any]) -> None:

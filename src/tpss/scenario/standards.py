@@ -5,7 +5,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, unique
+from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, name_of_line, unique
 
 KIND = "voltage_limits"
 
@@ -68,6 +68,7 @@ class Zone(Part):
     """A section of line whose mean useful voltage is evaluated."""
 
     name: Name = Field(description="Name, shown in the results.")
+    line: Name | None = name_of_line()
     from_km: Position = Field(description="Where it begins.")
     to_km: Position = Field(description="Where it ends.")
 

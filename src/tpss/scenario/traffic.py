@@ -14,6 +14,7 @@ from tpss.scenario.fields import (
     ascending,
     either_or,
     fault,
+    name_of_line,
     one_of,
 )
 
@@ -27,11 +28,18 @@ Times = Annotated[
 class Stop(Part):
     """An intermediate stop."""
 
-    station: Name = Field(description="Station of the line.")
+    station: Name = Field(description="Station where it is.")
     dwell_min: Real = Field(
         ge=0,
         le=100_000,
         description="Duration of the stop; the least one, where a departure is scheduled.",
+    )
+    turn_min: Real | None = Field(
+        default=None,
+        ge=0,
+        le=100_000,
+        description="Time to turn round, where the train goes back on the line on which it came; it "
+        "stands there as long at least.",
     )
     arrive_after_min: Real | None = Field(
         default=None,
@@ -60,9 +68,10 @@ class Stop(Part):
 
 
 class InitialTrain(Part):
-    """A train that is on the line when the simulation begins, heading for its next stop."""
+    """A train that is on its way when the simulation begins, heading for its next stop."""
 
-    position_km: Position = Field(description="Position on the line.")
+    line: Name | None = name_of_line()
+    position_km: Position = Field(description="Position on its line.")
     speed_kmh: Real = Field(ge=0, le=500, description="Speed.")
 
 
@@ -75,6 +84,10 @@ class Traffic(Part):
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
+    via: tuple[Name, ...] = Field(
+        default=(),
+        description="Stations that they pass, in order; needed where the shortest way is not meant.",
+    )
     headway_min: Real | None = Field(
         default=None, ge=0.01, le=100_000, description="Time between departures."
     )

@@ -9,9 +9,11 @@ from pydantic import BaseModel, Tag, ValidationError
 from tpss import units
 from tpss.errors import Finding, ScenarioError, closest, shortened, suggest
 from tpss.scenario.absences import absence_of
-from tpss.scenario.cross_check import cross_check, kilometres_fall
+from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
-from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files
+from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files, lines_of
+from tpss.scenario.positions import kilometres_fall
+from tpss.scenario.standing import stand_at_stations
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -64,6 +66,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
         The document has faults; the error lists all of them.
     """
     inlined = inline_files(document, source)
+    inlined.document = stand_at_stations(inlined.document)
     findings = inlined.findings
     scenario = None
     try:
@@ -77,7 +80,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
             if not _follows_from_another(detail, locations, inlined)
             and not (_is_of_positions(detail) and kilometres_fall(inlined.document))
         ]
-    if not inlined.is_unread(("line",)):
+    if not any(place[0] in ("line", "lines") for place in inlined.unread):
         findings += [
             _traced(finding, inlined) for finding in cross_check(inlined.document, str(source))
         ]
@@ -98,8 +101,8 @@ def _follows_from_another(
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.
         return (*location[:2], "model") in locations
-    if location == ("line", "gradients"):
-        return "gradients_file" in inlined.document.get("line", {}) and detail["type"] == "missing"
+    if location[-1:] == ("gradients",) and location[:-1] in (lines := lines_of(inlined.document)):
+        return "gradients_file" in lines[location[:-1]] and detail["type"] == "missing"
     return False
 
 

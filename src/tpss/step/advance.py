@@ -66,7 +66,7 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
 def place_trains(model: Model, state: State) -> int:
     """Find where the trains on the line stand; return their number."""
     count = list_trains(state.trains, state.flow)
-    locate_trains(count, state.trains, model.network, state.flow)
+    locate_trains(count, state.trains, model.legs, model.network, state.flow)
     state.clock[0].short_pieces = measure_pieces(count, model.network, state.flow)
     return count
 

@@ -7,6 +7,7 @@ from tpss.kernel import inlined
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Network
 from tpss.record import Records
+from tpss.track.leg import Leg
 from tpss.vehicle.train_type import TrainType
 
 
@@ -34,6 +35,8 @@ class Model(NamedTuple):
     points: Points
     """Of all curves of the trains."""
     network: Network
+    legs: Records[Leg]
+    """Shape (routes, most legs); what is left of a row begins nowhere."""
 
 
 @inlined
@@ -58,6 +61,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.types,
         model.points,
         model.network,
+        model.legs,
     )
 
 

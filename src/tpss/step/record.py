@@ -27,7 +27,6 @@ from tpss.vehicle.train import (
     Train,
     copy_motion,
     is_on_line,
-    place_on_line,
 )
 from tpss.vehicle.train_type import TrainType
 
@@ -51,7 +50,7 @@ def record_instant(step: int, trains: Records[Train], recording: Recording) -> N
         train = trains[at(i)]
         motion, arrived = train.motion, train.motion.phase == Phase.ARRIVED
         if is_on_line(motion.phase) or arrived:
-            recording.trains[at(step), at(i)].position = place_on_line(train)
+            recording.trains[at(step), at(i)].route_position = motion.position_m
             recording.trains[at(step), at(i)].speed = motion.speed_m_s
             if arrived:
                 recording.train_state[at(step), at(i)] = TrainState.ARRIVED

@@ -40,6 +40,8 @@ class Recorded(NamedTuple):
     at_instant : bool
         Whether it holds at the instant; otherwise over the interval that follows, as a mean where forces
         change within it.
+    derived : bool
+        Whether it follows from others when a dataset is made, and no record holds it.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Recorded(NamedTuple):
     array: str = ""
     flags: tuple[str, ...] = ()
     at_instant: bool = False
+    derived: bool = False
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -64,14 +67,16 @@ class Recorded(NamedTuple):
     @property
     def fields(self) -> tuple[str, ...]:
         """Fields of a record that hold it."""
-        if self.array:
+        if self.array or self.derived:
             return ()
         return (f"{self.phasor}_real", f"{self.phasor}_imag") if self.phasor else (self.name,)
 
 
 RECORDED = (
-    Recorded("position", "train", "m", "position on the line", "x",
-             column="position_km", heading="position", digits=3, at_instant=True),
+    Recorded("route_position", "train", "m", "position along the route of the train", "x",
+             "grows as it goes", at_instant=True),
+    Recorded("position", "train", "m", "position on its line, in kilometre posts",
+             column="position_km", heading="position", digits=3, at_instant=True, derived=True),
     Recorded("speed", "train", "m/s", "speed", "v",
              column="speed_kmh", heading="speed", digits=2, at_instant=True),
     Recorded("acceleration", "train", "m/s2", "acceleration", "a",

@@ -36,7 +36,7 @@ def withhold(step: int, step_s: float, trains: Records[Train], recording: Record
         waits = train.timetable.departure_wait_s >= step_s
         if train.timetable.departure_step == step and waits and train.motion.phase == Phase.DRIVING:
             train.motion.phase = Phase.PENDING
-            recording.trains[at(step), at(i)].position = math.nan
+            recording.trains[at(step), at(i)].route_position = math.nan
             recording.trains[at(step), at(i)].speed = math.nan
             found = True
     return found

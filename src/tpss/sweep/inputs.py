@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tpss.model.directions import runs_down
 from tpss.model.supply import transformer_positions_km
 from tpss.scenario.fields import library_name
 from tpss.scenario.scenario import Scenario
@@ -67,8 +66,10 @@ class Inputs(NamedTuple):
 def inputs_of(scenario: Scenario) -> Inputs:
     """Inputs of a scenario."""
     supply, first = scenario.supply, scenario.traffic[0]
-    down = runs_down(first, scenario.line)
-    line, sign = (scenario.line.mirrored(), -1.0) if down else (scenario.line, 1.0)
+    only = scenario.only_line
+    places_km = {station.name: station.position_km for station in only.stations}
+    down = places_km[first.destination] < places_km[first.origin]
+    line, sign = (only.mirrored(), -1.0) if down else (only, 1.0)
     train, catenary = scenario.trains[first.train], supply.catenary
     place_km = {station.name: station.position_km for station in line.stations}
     begin_km, end_km = place_km[first.origin], place_km[first.destination]

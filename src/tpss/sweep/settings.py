@@ -19,7 +19,7 @@ LEFT_OUT = "none"
 
 LENGTH = "line.length_km"
 
-PLACES = tuple(marked(Scenario, AlongLine))
+PLACES = tuple(place for place in marked(Scenario, AlongLine) if not place.startswith("lines."))
 """Positions whose distances from its beginning scale with the length of the line; gradients do not."""
 
 INSTEAD_OF = {

@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import fused, inlined, kernel
+from tpss.kernel import inlined, kernel
 from tpss.record import Record
 from tpss.vehicle.terms import Demand
 
@@ -65,7 +65,7 @@ class Motion(Record):
 
     phase: Phase
     position_m: float
-    """Position on the line. [m]"""
+    """Position along its route, which grows. [m]"""
     speed_m_s: float
     """Speed. [m/s]"""
     gradient: int
@@ -199,10 +199,10 @@ class Train(Record):
 
     train_type: int
     """Index of its type."""
-    runs_down: bool
-    """Whether it runs towards falling kilometres: its position is minus that on the line."""
     route: int
     """Index of its route."""
+    leg: int
+    """Leg of the route on which it is."""
     timetable: Timetable
     motion: Motion
     plan: Plan
@@ -235,18 +235,6 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.dwell_steps_left = source.dwell_steps_left
     target.wait_s = source.wait_s
     target.under_way_s = source.under_way_s
-
-
-@fused
-def along_route(place_m: float, train: Train) -> float:
-    """Position along a train's route of a place on the line; or the place of such a position. [m]"""
-    return -place_m if train.runs_down else place_m
-
-
-@inlined
-def place_on_line(train: Train) -> float:
-    """Position of a train on the line, that of its kilometre post. [m]"""
-    return along_route(train.motion.position_m, train)
 
 
 @kernel

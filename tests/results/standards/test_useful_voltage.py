@@ -42,12 +42,13 @@ DATASET = made_up(
         "c": [nan, 9.0, 10.0, 10.0, nan],
     },
 )
-ZONES = [Section("first", 0.0, 5.0), Section("second", 5.0, 10.0)]
+ZONES = [Section("first", "", 0.0, 5.0), Section("second", "", 5.0, 10.0)]
+ENDS = {"": (0.0, 10.0)}
 WHOLE = steps_in_window(DATASET, 0.0, None)
 
 
 def test_that_of_a_zone_counts_all_trains_in_it_whatever_they_do():
-    zones = zone_table(DATASET, ZONES, WHOLE, 13.5).set_index("zone")
+    zones = zone_table(DATASET, ZONES, ENDS, WHOLE, 13.5).set_index("zone")
     assert zones.mean_useful_kv.to_dict() == pytest.approx({"first": 13.0, "second": 14.45})
     assert zones.trains.to_dict() == {"first": 2, "second": 2}
     assert zones.verdict.to_dict() == {"first": "below the minimum", "second": "reached"}
@@ -82,7 +83,7 @@ def test_a_train_that_does_not_count_has_no_verdict_either():
 
 
 def test_only_the_peak_window_counts():
-    zones = zone_table(DATASET, ZONES, steps_in_window(DATASET, 0.0, 1.0), 13.5)
+    zones = zone_table(DATASET, ZONES, ENDS, steps_in_window(DATASET, 0.0, 1.0), 13.5)
     assert zones.mean_useful_kv.tolist() == pytest.approx([13.5, 13.2])
 
 
@@ -90,13 +91,13 @@ def test_only_the_peak_window_counts():
 def test_a_peak_window_that_the_run_does_not_cover_gives_no_figures(window):
     steps = steps_in_window(DATASET, *window)
     assert steps is None
-    assert zone_table(DATASET, ZONES, steps, 13.5).mean_useful_kv.isna().all()
+    assert zone_table(DATASET, ZONES, ENDS, steps, 13.5).mean_useful_kv.isna().all()
     assert train_table(DATASET, steps, 13.5).mean_useful_kv.isna().all()
     assert (train_table(DATASET, steps, 13.5).verdict == "").all()
 
 
 def test_without_a_minimum_nothing_is_judged():
-    assert (zone_table(DATASET, ZONES, WHOLE, None).verdict == "").all()
+    assert (zone_table(DATASET, ZONES, ENDS, WHOLE, None).verdict == "").all()
 
 
 @pytest.mark.parametrize(
@@ -109,4 +110,5 @@ def test_without_a_minimum_nothing_is_judged():
 )
 def test_feeding_sections_lie_between_stations_and_the_line_s_ends(stations_km, sections):
     dataset = made_up(station_mw={"A": [1.0], "B": [1.0]}, stations_km=stations_km)
-    assert feeding_sections(dataset) == sections
+    expected = [(name, "", begin, end) for name, begin, end in sections]
+    assert feeding_sections(dataset, ENDS) == expected

@@ -22,7 +22,7 @@ def violations(voltages, limits=LIMITS, least_kv=None):
     window = steps_in_window(dataset, 0.0, None)
     return find_violations(
         find_excursions(dataset, limits),
-        zone_table(dataset, [Section("all", 0.0, 10.0)], window, least_kv),
+        zone_table(dataset, [Section("all", "", 0.0, 10.0)], {"": (0.0, 10.0)}, window, least_kv),
         train_table(dataset, window, least_kv),
         limits,
     )

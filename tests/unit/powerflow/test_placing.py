@@ -10,11 +10,13 @@ import pytest
 
 from tpss.powerflow.network import SHORTEST_PIECE_M, Standing
 from tpss.powerflow.placing import section_at, stands_behind
+from tpss.track.leg import along_one_line
 
 from networks import BT, STIFF, constant_loads, network_of, place, sources
 
 SECTIONS = [(0, 1, 0.0, 10e3, BT, 0.0), (1, 2, 10e3, 30e3, BT, 0.0), (2, 3, 30e3, 40e3, BT, 0.0)]
 NETWORK = network_of(4, SECTIONS, [], sources((0, STIFF)))
+(LEG,) = along_one_line(len(SECTIONS))[0]
 NEAREST = np.nextafter
 
 
@@ -36,12 +38,13 @@ NEAREST = np.nextafter
 def test_a_train_at_a_border_stands_under_the_next_section_wherever_one_searches_from(
     as_run, near, position_m, section
 ):
-    assert as_run(section_at)(position_m, near, NETWORK.sections) == section
+    assert as_run(section_at)(position_m, near, LEG, NETWORK.sections) == section
 
 
 def test_a_line_of_one_section_has_no_border(as_run):
+    (leg,) = along_one_line(1)[0]
     for position_m in (-1.0, 0.0, 10e3, 99e3):
-        assert as_run(section_at)(position_m, 0, NETWORK.sections[:1]) == 0
+        assert as_run(section_at)(position_m, 0, leg, NETWORK.sections[:1]) == 0
 
 
 @pytest.mark.parametrize(

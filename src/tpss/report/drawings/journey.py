@@ -6,11 +6,12 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from tpss.model.directions import runs_down
+from tpss.model.routes import routes_of
 from tpss.report.drawings.parts import POSITION, TIME, Curve, Drawing, Panel
 from tpss.report.gradients import inclination
 from tpss.report.sampling import Floats
 from tpss.report.trains import chosen_train
+from tpss.results.places import LINE
 from tpss.results.result import Result
 
 PRINTED = {
@@ -50,7 +51,7 @@ def journey(
     curves: dict[str, list[Curve]] = {label: [] for label in shown}
     for k, (name, result) in enumerate(runs.items()):
         data = result.dataset.sel(train=chosen_train(result, train))
-        x = (data.time / 60.0 if against == "time" else data.position / 1e3).to_numpy()
+        x = _time_or_place(result, data, against)
         values = _values(result, data)
         for label, drawn in curves.items():
             held = label != "speed [km/h]"  # the only one that changes linearly in a step
@@ -59,11 +60,27 @@ def journey(
     return Drawing(TIME if against == "time" else POSITION, panels)
 
 
+def _time_or_place(result: Result, data: xr.Dataset, against: str) -> Floats:
+    """Times [min], or places [km]: on a route over several lines the way since it began."""
+    if against == "time":
+        return np.asarray(data.time.to_numpy() / 60.0)
+    if LINE in result.dataset.coords:
+        along_m = data.route_position.to_numpy()
+        return np.asarray((along_m - np.nanmin(along_m)) / 1e3)
+    return np.asarray(data.position.to_numpy() / 1e3)
+
+
 def _rise_ahead(result: Result, data: xr.Dataset) -> Floats:
     """Gradient of the line where a train is, as it runs. [1]"""
-    entry = next(each for each in result.scenario.traffic if each.name == str(data.service.values))
-    sign = -1.0 if runs_down(entry, result.scenario.line) else 1.0
-    return sign * inclination(result, data.position.to_numpy())
+    scenario, along_m = result.scenario, data.route_position.to_numpy()
+    services = [entry.name for entry in scenario.traffic]
+    route = routes_of(scenario)[services.index(str(data.service.values))]
+    rise = np.full(along_m.shape, np.nan)
+    for course in route.courses:  # each as far as the next one begins
+        here = along_m >= course.from_m
+        line_m = course.sign * along_m[here] + course.offset_m
+        rise[here] = course.sign * inclination(scenario.lines_by_name[course.line], line_m)
+    return rise
 
 
 def _values(result: Result, data: xr.Dataset) -> dict[str, Floats]:

@@ -1,8 +1,10 @@
 """The time-distance graph, coloured by the voltage."""
 
 import numpy as np
+import numpy.typing as npt
 
 from tpss.report.contact_line import LineVoltage
+from tpss.report.corridor import is_corridor, landmarks, span_km
 from tpss.report.drawings import parts
 from tpss.report.palette import BLACK
 from tpss.report.sampling import Floats
@@ -23,19 +25,20 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
     voltage : LineVoltage, optional
         Of this run: it is shown in colours below paths in black, without the stations.
     """
-    data, line = result.dataset, result.scenario.line
+    data = result.dataset
     minutes, km = data.time.to_numpy() / 60.0, data.position.to_numpy() / 1e3
     kv, trains = data.pantograph_voltage.to_numpy() / 1e3, data.train.to_numpy().astype(str)
     span = float(minutes[0]), float(minutes[-1])
-    # One train after another, each over its time on the line, with a gap after it.
+    # One train after another, each over its time on the line, with a gap after it, and in between where
+    # it is off a corridor.
     below = ((0, 1), (0, 0))
-    train, step = np.nonzero(np.pad(np.isfinite(km), below, constant_values=True).T)
+    train, step = np.nonzero(np.pad(_shown(km, is_corridor(result)), below, constant_values=True).T)
     km, kv = (np.pad(all_, below, constant_values=np.nan)[step, train] for all_ in (km, kv))
     minutes, names = np.append(minutes, np.nan)[step], trains[train].tolist()
     items: list[parts.Item]
     if voltage is None:
         colours = parts.Colours(kv, "voltage at the pantograph [kV]", *colour_range(kv))
-        items = [parts.Mark(station.position_km, station.name) for station in line.stations]
+        items = [parts.Mark(km, name) for name, km in landmarks(result).items()]
         items.append(parts.Curve(minutes, km, width=1.3, words=names, colours=colours))
     else:
         middle_min = voltage.time_min + voltage.steps_a_column * data.attrs["time_step_s"] / 120.0
@@ -43,8 +46,20 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
         colours = parts.Colours(kv, label, *colour_range(kv))
         items = [parts.Map(middle_min, voltage.position_km, colours)]
         items.append(parts.Curve(minutes, km, colour=BLACK, width=0.6, words=names))
-    panel = parts.Panel(parts.POSITION, items, span=(line.begins_at_km, line.end_km))
+    panel = parts.Panel(parts.POSITION, items, span=span_km(result))
     return parts.Drawing(parts.TIME, [panel], span, panel_inch=4.6)
+
+
+def _shown(km: Floats, with_gaps: bool) -> npt.NDArray[np.bool_]:
+    """Where trains have a position, and, of a corridor, where a gap of it begins that ends again."""
+    there = np.isfinite(km)
+    if not with_gaps:
+        return np.asarray(there)
+    again = np.logical_or.accumulate(there[::-1], axis=0)[::-1]
+    gap = ~there & again
+    gap[1:] &= there[:-1]
+    gap[:1] = False
+    return np.asarray(there | gap)
 
 
 def colour_range(kv: Floats) -> tuple[float, float]:

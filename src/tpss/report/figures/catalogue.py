@@ -1,11 +1,12 @@
 """All figures by their names, with their titles."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 from matplotlib.figure import Figure
 
 from tpss.errors import ResultError, suggest
+from tpss.report.corridor import along
 from tpss.report.drawings.effort import effort
 from tpss.report.drawings.energy import energy_flow
 from tpss.report.drawings.journey import journey
@@ -46,7 +47,11 @@ ENDED = {
 
 
 def draw(
-    name: str, result: Result, train: str | None = None, against: Against = "distance"
+    name: str,
+    result: Result,
+    train: str | None = None,
+    against: Against = "distance",
+    corridor: Sequence[str] = (),
 ) -> Figure:
     """Draw a figure with its title, which also says if the run ended early.
 
@@ -59,6 +64,8 @@ def draw(
         The train of those of one train; the studied one, or the first on the line, by default.
     against : {"time", "distance"}
         Quantity of the horizontal axis of a journey.
+    corridor : sequence of str
+        Stations of a network over which it is drawn; by default those on the way of the first service.
 
     Raises
     ------
@@ -77,7 +84,7 @@ def draw(
         raise NothingToDrawError("no time step was simulated")
     of, describe = FIGURES[name]
     chosen = None if train is None and of == "run" else chosen_train(result, train)
-    figure = render(describe(result, chosen, against))
+    figure = render(describe(along(result, corridor), chosen, against))
     title = result.scenario.name + (f": {as_text(chosen)}" if of == "train" else "")
     figure.suptitle(title, fontsize="large")
     if result.status in ENDED:

@@ -44,6 +44,8 @@ class Evidence:
         The part of the scenario by which it is judged.
     line_speed_kmh : float
         Highest speed limit of the line, which chooses the least mean useful voltage. [km/h]
+    ends_km : mapping
+        Beginnings and ends of the lines by their names, an empty one for a single line. [km]
     mass_t : array, shape (trains,)
         Mass of each whole train. [t]
     """
@@ -51,6 +53,7 @@ class Evidence:
     dataset: xr.Dataset
     standards: Standards
     line_speed_kmh: float
+    ends_km: useful_voltage.Ends
     mass_t: Floats
 
     @cached_property
@@ -74,10 +77,14 @@ class Evidence:
     def useful_voltage_zones(self) -> pd.DataFrame:
         """EN 50388, one row per zone: mean useful voltage in the peak window."""
         zones: Iterable[Any] = self.standards.zones
-        sections = [useful_voltage.Section(z.name, z.from_km, z.to_km) for z in zones]
-        sections = sections or useful_voltage.feeding_sections(self.dataset)
+        told = len(self.ends_km) > 1
+        sections = [
+            useful_voltage.Section(z.name, z.line if told else "", z.from_km, z.to_km)
+            for z in zones
+        ]
+        sections = sections or useful_voltage.feeding_sections(self.dataset, self.ends_km)
         return useful_voltage.zone_table(
-            self.dataset, sections, self._window, self.least_useful_voltage_kv
+            self.dataset, sections, self.ends_km, self._window, self.least_useful_voltage_kv
         )
 
     @cached_property
@@ -242,10 +249,19 @@ def _plain(names: Iterable[Any], values: Iterable[float]) -> dict[str, float | N
 
 def gather(dataset: xr.Dataset, scenario: Scenario) -> Evidence:
     """Evidence of a run."""
-    trains = scenario.trains_by_service()
+    trains, lines = scenario.trains_by_service(), scenario.lines_by_name
+    several = len(lines) > 1
     return Evidence(
         dataset=dataset,
         standards=scenario.standards,
-        line_speed_kmh=max(limit.speed_kmh for limit in scenario.line.speed_limits),
+        line_speed_kmh=max(
+            limit.speed_kmh
+            for line in scenario.lines_by_name.values()
+            for limit in line.speed_limits
+        ),
+        ends_km={
+            name if several else "": (line.begins_at_km, line.end_km)
+            for name, line in lines.items()
+        },
         mass_t=np.array([trains[name].mass_t for name in dataset.service.to_numpy()], dtype=float),
     )

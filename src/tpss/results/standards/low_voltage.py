@@ -23,6 +23,7 @@ class LowVoltagePlace(NamedTuple):
 
     limit: str
     limit_kv: float
+    line: str
     from_km: float
     to_km: float
     lowest_kv: float
@@ -51,7 +52,8 @@ def find_low_voltage_places(
         _place(group)
         for bound in bounds(limits)
         if bound.side == "below"
-        for group in _stretches([each for each in listed if each.limit == bound.name])
+        for line in sorted({each.line for each in listed})
+        for group in _stretches([e for e in listed if (e.limit, e.line) == (bound.name, line)])
     ]
 
 
@@ -83,6 +85,7 @@ def _place(group: Sequence[Excursion]) -> LowVoltagePlace:
     return LowVoltagePlace(
         limit=worst.limit,
         limit_kv=worst.limit_kv,
+        line=worst.line,
         from_km=min(_ends_km(each)[0] for each in group),
         to_km=max(_ends_km(each)[1] for each in group),
         lowest_kv=worst.extreme_kv,

@@ -11,16 +11,17 @@ References
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tpss.results.places import lines_of, train_lines, where_told
 from tpss.results.standards.windows import TOLERANCE, Floats, step_values
 from tpss.results.tables import step_s
-from tpss.units import kilometres
+from tpss.units import kilometres, on_line
 
 LEAST_PRESENCE_S = 60.0
 """A train that is present for less is not a dimensioning train. [s]"""
@@ -35,27 +36,30 @@ class Section(NamedTuple):
     """A zone of the line."""
 
     name: str
+    line: str
     from_km: float
     to_km: float
 
 
-def feeding_sections(dataset: xr.Dataset) -> list[Section]:
-    """Sections of line between feeding stations, and from the outer ones to the line's ends."""
-    named = dict.fromkeys(_ends_km(dataset), "") | dict(
-        zip(dataset.station_position.to_numpy() / 1e3, dataset.station.to_numpy(), strict=True)
-    )
-    points = sorted(named)
-    label = {km: str(named[km]) or f"{kilometres(km)} km" for km in points}
-    return [
-        Section(f"{label[begin]}-{label[end]}", float(begin), float(end))
-        for begin, end in zip(points, points[1:], strict=False)
-    ]
+Ends = Mapping[str, tuple[float, float]]
+"""Beginnings and ends of the lines by their names, an empty one for a single line. [km]"""
 
 
-def _ends_km(dataset: xr.Dataset) -> tuple[float, float]:
-    """Beginning and end of the line, which are nodes. [km]"""
-    positions_m = dataset.node_position.to_numpy()
-    return float(positions_m.min()) / 1e3, float(positions_m.max()) / 1e3
+def feeding_sections(dataset: xr.Dataset, ends: Ends) -> list[Section]:
+    """Sections of line between feeding stations, and from the outer ones to the ends of lines."""
+    stations_km = dataset.station_position.to_numpy() / 1e3
+    stations, owners = dataset.station.to_numpy(), lines_of(dataset, "station")
+    sections = []
+    for index, (line, ends_km) in enumerate(ends.items()):
+        own = owners == index
+        named = dict.fromkeys(ends_km, "") | dict(zip(stations_km[own], stations[own], strict=True))
+        points = sorted(named)
+        label = {km: str(named[km]) or on_line(line, f"{kilometres(km)} km") for km in points}
+        sections += [
+            Section(f"{label[begin]}-{label[end]}", line, float(begin), float(end))
+            for begin, end in zip(points, points[1:], strict=False)
+        ]
+    return sections
 
 
 def steps_in_window(dataset: xr.Dataset, from_min: float, to_min: float | None) -> slice | None:
@@ -72,24 +76,30 @@ def window_steps(steps: int, step_s: float, from_min: float, to_min: float | Non
 
 
 def zone_table(
-    dataset: xr.Dataset, zones: Iterable[Section], window: slice | None, least_kv: float | None
+    dataset: xr.Dataset,
+    zones: Iterable[Section],
+    ends: Ends,
+    window: slice | None,
+    least_kv: float | None,
 ) -> pd.DataFrame:
     """One row per zone: its mean useful voltage, from how many trains, against the minimum.
 
-    A zone includes its beginning, and the line's end belongs to the last zone before it.
+    A zone includes its beginning, and a line's end belongs to the last zone before it.
     """
     chosen = slice(0) if window is None else window
     voltage = step_values(dataset, "pantograph_voltage")[chosen] / 1e3
     position_km = dataset.position.to_numpy()[:-1][chosen] / 1e3
-    _, end_km = _ends_km(dataset)
+    lines, index = train_lines(dataset)[:-1][chosen], list(ends).index
     rows = []
     for zone in zones:
-        upto = np.inf if zone.to_km >= end_km else zone.to_km
+        upto = np.inf if zone.to_km >= ends[zone.line][1] else zone.to_km
         inside = np.isfinite(voltage) & (position_km >= zone.from_km) & (position_km < upto)
+        inside &= lines == index(zone.line)
         mean = float(voltage[inside].mean()) if inside.any() else math.nan
         rows.append((*zone, int(inside.any(axis=0).sum()), mean))
-    names, begins, ends, trains, means = zip(*rows, strict=True)
-    columns = {"zone": names, "from_km": begins, "to_km": ends, "trains": trains}
+    names, owners, begins, until, trains, means = zip(*rows, strict=True)
+    columns = {"zone": names, "line": owners, "from_km": begins, "to_km": until, "trains": trains}
+    columns = where_told(columns, list(ends))
     return pd.DataFrame({**columns, **_judged(np.array(means), least_kv)})
 
 

@@ -11,6 +11,7 @@ import pandas as pd
 from tpss.results.standards.useful_voltage import MISSED
 from tpss.results.standards.voltage_limits import Excursion, bounds
 from tpss.scenario.standards import VoltageLimits
+from tpss.units import on_line
 
 
 class Violation(NamedTuple):
@@ -23,6 +24,7 @@ class Violation(NamedTuple):
     value_kv: float
     duration_min: float
     from_min: float
+    line: str
     position_km: float
     words: str
 
@@ -54,7 +56,7 @@ def find_violations(
         listed += [
             Violation(
                 "EN 50163", bound.rule, f"train {each.train}", each.limit_kv, each.extreme_kv,
-                each.duration_min, each.from_min, each.extreme_km, excursion_in_words(each),
+                each.duration_min, each.from_min, each.line, each.extreme_km, excursion_in_words(each),
             )
             for each in own
         ]  # fmt: skip
@@ -75,7 +77,7 @@ def _too_low(what: str, table: pd.DataFrame, counts: npt.NDArray[np.bool_]) -> I
         words = f"{subject}: mean useful voltage {means[i]:.2f} kV, below {kilovolts(least_kv)}"
         yield Violation(
             "EN 50388", "mean useful voltage", subject, least_kv, float(means[i]),
-            duration_min=math.nan, from_min=math.nan, position_km=math.nan, words=words,
+            duration_min=math.nan, from_min=math.nan, line="", position_km=math.nan, words=words,
         )  # fmt: skip
 
 
@@ -92,9 +94,10 @@ def excursion_in_words(excursion: Excursion) -> str:
     """An excursion, such as "train a: 4.5 min below 12.0 kV near km 82.0 (lowest ...)"."""
     side, extreme = ("below", "lowest") if excursion.is_low else ("above", "highest")
     least = "at least " if excursion.cut else ""
+    place = on_line(excursion.line, f"km {excursion.extreme_km:.1f}")
     return (
         f"train {excursion.train}: {least}{minutes(excursion.duration_min)} {side} "
-        f"{kilovolts(excursion.limit_kv)} near km {excursion.extreme_km:.1f} "
+        f"{kilovolts(excursion.limit_kv)} near {place} "
         f"({extreme} {excursion.extreme_kv:.2f} kV at {excursion.extreme_min:.1f} min)"
     )
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
+from tpss.results.places import line_names, train_lines
 from tpss.results.standards.windows import TOLERANCE, Floats, step_values
 from tpss.results.tables import short_s, step_s
 from tpss.scenario.standards import VoltageLimits
@@ -65,6 +66,8 @@ class Excursion(NamedTuple):
     duration_min: float
     cut: bool
     """Whether the run began or ended in it, so that it may have been longer."""
+    line: str
+    """Where it was worst; places are those on this line."""
     from_km: float
     to_km: float
     extreme_kv: float
@@ -87,10 +90,13 @@ def find_excursions(dataset: xr.Dataset, limits: VoltageLimits) -> list[Excursio
 def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
     voltage, h = step_values(dataset, "pantograph_voltage"), step_s(dataset) / 60.0
     position_m, names = dataset.position.to_numpy(), dataset.train.to_numpy()
+    on_line, lines = train_lines(dataset), line_names(dataset)
     for train, begin, end in _spells(bound.is_beyond(voltage)):
         within = voltage[begin:end, train]
         to_min = end * h - (short_s(dataset) / 60.0 if end == len(voltage) else 0.0)
         worst = begin + int(within.argmin() if bound.side == "below" else within.argmax())
+        line = on_line[worst, train]
+        first, *_, last = (i for i in (begin, *range(begin, end + 1)) if on_line[i, train] == line)
         yield Excursion(
             train=str(names[train]),
             limit=bound.name,
@@ -99,8 +105,9 @@ def _of_bound(dataset: xr.Dataset, bound: Bound) -> Iterator[Excursion]:
             to_min=to_min,
             duration_min=(end - begin) * h - (end * h - to_min),
             cut=begin == 0 or end == len(voltage),
-            from_km=float(position_m[begin, train]) / 1e3,
-            to_km=float(position_m[end, train]) / 1e3,
+            line=lines[line],
+            from_km=float(position_m[first, train]) / 1e3,
+            to_km=float(position_m[last, train]) / 1e3,
             extreme_kv=float(voltage[worst, train]) / 1e3,
             extreme_km=float(position_m[worst, train]) / 1e3,
             extreme_min=worst * h,

@@ -12,6 +12,8 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
+from tpss.results.places import LINE
+
 Floats = npt.NDArray[np.float64]
 
 WINDOWS_MIN = (1.0, 3.0, 15.0, 60.0)
@@ -27,12 +29,16 @@ def step_values(dataset: xr.Dataset, name: str) -> Floats:
 
 
 def table_of(rows: Sequence[tuple[Any, ...]], kind: type[Any]) -> pd.DataFrame:
-    """Table of rows that are named tuples of a kind, its columns typed even without a row."""
+    """Table of rows that are named tuples of a kind, its columns typed even without a row.
+
+    A column with lines is left out where none is told, as in a run of one line.
+    """
     types = {"str": object, "float": float, "int": int, "bool": bool}
     return pd.DataFrame(
         {
             name: np.array([row[i] for row in rows], dtype=types[annotation.__name__])
             for i, (name, annotation) in enumerate(kind.__annotations__.items())
+            if name != LINE or any(row[i] for row in rows)
         }
     )
 

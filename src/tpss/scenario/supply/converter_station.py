@@ -14,6 +14,8 @@ from tpss.scenario.fields import (
     Whole,
     fault,
     library_name,
+    name_of_line,
+    station_at,
 )
 
 
@@ -38,7 +40,9 @@ class ConverterStation(Part):
     """A converter station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Position = Field(description="Position on the line.")
+    line: Name | None = name_of_line()
+    at: Name | None = station_at()
+    position_km: Position = Field(description="Position on its line.")
     type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )

@@ -6,12 +6,14 @@ from pydantic import ConfigDict, Field, model_validator
 
 from tpss.scenario.fields import (
     FromLibrary,
+    Name,
     Part,
     Position,
     Real,
     Whole,
     ascending,
     either_or,
+    name_of_line,
     one_of,
 )
 from tpss.scenario.supply.catenary import SMALLEST_OHM
@@ -40,6 +42,7 @@ class HighVoltageLine(Part):
 
     model_config = ConfigDict(json_schema_extra=one_of("transformers_km", "transformers"))
 
+    line: Name | None = name_of_line()
     type: Annotated[LineType, FromLibrary("high_voltage_lines")] = Field(
         description="Library name, or a table of your own."
     )

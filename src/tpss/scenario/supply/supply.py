@@ -51,10 +51,10 @@ class Supply(Part):
         default=None, description="High-voltage line; leave it out if there is none."
     )
     transformer_stations: Annotated[
-        tuple[TransformerStation, ...], unique("name"), unique("position_km")
+        tuple[TransformerStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(default=(), description="Transformer stations at a grid of the same frequency.")
     converter_stations: Annotated[
-        tuple[ConverterStation, ...], unique("name"), unique("position_km")
+        tuple[ConverterStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(
         default=(),
         validate_default=True,
@@ -72,8 +72,8 @@ class Supply(Part):
                 "too_short", {"field_type": "Tuple", "min_length": 1, "actual_length": 0}
             )
         every = [*stations, *(station for each in others for station in each or ())]
-        for field in ("name", "position_km"):
-            demand_unique(every, field)
+        demand_unique(every, "name")
+        demand_unique(every, "position_km", of="line")
         return stations
 
     @property

@@ -4,7 +4,16 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from tpss.scenario.fields import Name, Part, Position, Real, Whole, fault
+from tpss.scenario.fields import (
+    Name,
+    Part,
+    Position,
+    Real,
+    Whole,
+    fault,
+    name_of_line,
+    station_at,
+)
 
 
 class StationTransformer(Part):
@@ -43,7 +52,9 @@ class TransformerStation(Part):
     """A transformer station that feeds the contact line."""
 
     name: Name = Field(description="Name, shown in the results.")
-    position_km: Position = Field(description="Position on the line.")
+    line: Name | None = name_of_line()
+    at: Name | None = station_at()
+    position_km: Position = Field(description="Position on its line.")
     no_load_voltage_kv: Real = Field(
         ge=0.1, le=100, description="Voltage without load, on the railway's side."
     )

@@ -1,0 +1,207 @@
+"""Corridors: a chain of lines, along which a run of a network is drawn as if it were one line.
+
+Kilometres along a corridor count from the station where it begins.  A run of one line needs none: its
+own kilometres serve.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tpss.errors import ResultError, suggest
+from tpss.report.sampling import Floats
+from tpss.results.places import LINE, lines_of, train_lines
+from tpss.results.result import Result
+from tpss.scenario.routes import Hop, NoWayError, find_way, hops_of
+from tpss.scenario.scenario import Scenario
+
+LANDMARK = "landmark"
+"""Coordinate with the names of the stations along a corridor."""
+
+
+class Stretch(NamedTuple):
+    """A stretch of a corridor on one line; a place p there is at s p + o along the corridor."""
+
+    line: str
+    begin_km: float
+    end_km: float
+    sign: float
+    offset_km: float
+
+    def along_km(self, place_km: Floats) -> Floats:
+        """Places along the corridor; NaN for those that are not on the stretch. [km]"""
+        low, high = sorted((self.begin_km, self.end_km))
+        with np.errstate(invalid="ignore"):
+            inside = (place_km >= low) & (place_km <= high)
+        return np.where(inside, self.sign * place_km + self.offset_km, np.nan)
+
+
+def corridor_of(scenario: Scenario, stations: Sequence[str] = ()) -> list[Stretch]:
+    """The shortest corridor over stations; by default the way of the first service, to where it turns.
+
+    Raises
+    ------
+    ResultError
+        There is no such station, or no way.
+    """
+    places = {
+        name: {station.name: station.position_km for station in line.stations}
+        for name, line in scenario.lines_by_name.items()
+    }
+    hops, first = hops_of(places), scenario.traffic[0]
+    for name in stations:
+        if name not in hops:
+            raise ResultError(f"there is no station {name!r}; {suggest(name, list(hops))}")
+    try:
+        if stations:
+            way = find_way(hops, stations[0], stations[1:-1], stations[-1])
+        else:
+            calls = [stop.station for stop in first.stops]
+            way = find_way(hops, first.origin, calls, first.destination, first.via)
+    except (NoWayError, IndexError) as error:
+        raise ResultError(f"no corridor over {', '.join(stations)}: {error}") from error
+    if way.turns and stations:
+        raise ResultError(f"the corridor would turn round at {way.hops[way.turns[0]].end}")
+    return list(_stretches(way.stretches))
+
+
+def _stretches(stretches: Sequence[Hop]) -> Iterator[Stretch]:
+    """Stretches of a way up to where it turns round, with kilometres from its beginning."""
+    reached_km, before = 0.0, ""
+    for hop in stretches:
+        if hop.line == before:
+            return
+        offset_km = reached_km - hop.sign * hop.begin_km
+        yield Stretch(hop.line, hop.begin_km, hop.end_km, hop.sign, offset_km)
+        reached_km, before = reached_km + hop.length_km, hop.line
+
+
+def along(result: Result, stations: Sequence[str] = ()) -> Result:
+    """A run as it is seen along a corridor; that of one line as it is.
+
+    What is not on the corridor is left out: trains are not there, nodes and feeding stations are none of
+    it.
+
+    Raises
+    ------
+    ResultError
+        As `corridor_of`; or stations are given for a run of one line.
+    """
+    if LINE not in result.dataset.coords:
+        if stations:
+            raise ResultError("a corridor is chosen among several lines; this run has one")
+        return result
+    corridor = corridor_of(result.scenario, stations)
+    data = _with_trains(result.dataset, corridor)
+    for what in ("node", "station"):
+        data = _with_fixed(data, what, result.scenario, corridor)
+    names, places_km = _landmarks(result.scenario, corridor)
+    data = data.assign_coords(
+        {LANDMARK: names, f"{LANDMARK}_position": (LANDMARK, 1e3 * np.array(places_km))}
+    )
+    return replace(result, dataset=data)
+
+
+def is_corridor(result: Result) -> bool:
+    """Whether a run is seen along a corridor of a network."""
+    return LANDMARK in result.dataset.coords
+
+
+def landmarks(result: Result) -> dict[str, float]:
+    """Places of the stations along a corridor, or along the line of a run of one. [km]"""
+    data = result.dataset
+    if not is_corridor(result):
+        return {each.name: each.position_km for each in result.scenario.only_line.stations}
+    places_km = data[f"{LANDMARK}_position"].to_numpy() / 1e3
+    return dict(
+        zip(data[LANDMARK].to_numpy().astype(str).tolist(), places_km.tolist(), strict=True)
+    )
+
+
+def span_km(result: Result) -> tuple[float, float]:
+    """Ends of a corridor, or of the line of a run of one. [km]"""
+    if is_corridor(result):
+        places = landmarks(result).values()
+        return min(places), max(places)
+    line = result.scenario.only_line
+    return line.begins_at_km, line.end_km
+
+
+def gradients_along(result: Result) -> list[tuple[float, float]]:
+    """Places from which gradients hold, along a corridor or a line, and the gradients. [km], [‰]"""
+    lines = result.scenario.lines_by_name
+    if not is_corridor(result):
+        return [(each.from_km, each.permille) for each in result.scenario.only_line.gradients]
+    names = list(landmarks(result))
+    profile: list[tuple[float, float]] = []
+    for stretch in corridor_of(result.scenario, names):
+        line = lines[stretch.line]
+        seen = line if stretch.sign > 0.0 else line.mirrored()
+        begin, end = (stretch.sign * km for km in (stretch.begin_km, stretch.end_km))
+        pieces = seen.gradients_between(begin, end)
+        profile += [(start + stretch.offset_km, permille) for start, _, permille in pieces]
+    return profile
+
+
+def _landmarks(scenario: Scenario, corridor: Sequence[Stretch]) -> tuple[list[str], list[float]]:
+    found: dict[str, float] = {}
+    for stretch in corridor:
+        for station in scenario.lines_by_name[stretch.line].stations:
+            here_km = float(stretch.along_km(np.array(station.position_km)))
+            if np.isfinite(here_km):
+                found.setdefault(station.name, here_km)
+    ordered = sorted(found, key=found.__getitem__)
+    return ordered, [found[name] for name in ordered]
+
+
+def _with_trains(data: xr.Dataset, corridor: Sequence[Stretch]) -> xr.Dataset:
+    names, line = data[LINE].to_numpy().astype(str).tolist(), train_lines(data)
+    places_km = data.position.to_numpy() / 1e3
+    along_km = np.full(places_km.shape, np.nan)
+    for stretch in corridor:
+        here = line == names.index(stretch.line)
+        along_km[here] = stretch.along_km(places_km[here])
+    there = np.isfinite(along_km)
+    changed = {"position": (data.position.dims, 1e3 * along_km, data.position.attrs)}
+    for name in ("pantograph_voltage", "pantograph_angle", "speed"):
+        values = np.where(there, data[name].to_numpy(), np.nan)
+        changed[name] = (data[name].dims, values, data[name].attrs)
+    return data.assign(changed)
+
+
+def _with_fixed(
+    data: xr.Dataset, what: str, scenario: Scenario, corridor: Sequence[Stretch]
+) -> xr.Dataset:
+    """The nodes or stations of a corridor, those of other lines at a station where lines meet too."""
+    names = data[LINE].to_numpy().astype(str)
+    owner = names[lines_of(data, what)]
+    places_km = data[f"{what}_position"].to_numpy() / 1e3
+    along_km = np.full(places_km.shape, np.nan)
+    for stretch in corridor:
+        for line, shift in _shared(scenario, stretch.line):
+            here = owner == line
+            if line != stretch.line:
+                here &= np.isin(places_km, list(shift))
+            own_km = np.array([shift.get(km, km) for km in places_km[here].tolist()])
+            along_km[here] = np.where(
+                np.isfinite(along_km[here]), along_km[here], stretch.along_km(own_km)
+            )
+    chosen = np.flatnonzero(np.isfinite(along_km))
+    order = chosen[np.argsort(along_km[chosen], kind="stable")]
+    attributes = data[f"{what}_position"].attrs
+    return data.isel({what: order}).assign_coords(
+        {f"{what}_position": (what, 1e3 * along_km[order], attributes)}
+    )
+
+
+def _shared(scenario: Scenario, line: str) -> Iterator[tuple[str, dict[float, float]]]:
+    """The line itself; and others with the places where they meet it, and these places on it. [km]"""
+    lines = scenario.lines_by_name
+    own = {station.name: station.position_km for station in lines[line].stations}
+    yield line, {}
+    for name, other in lines.items():
+        if name != line:
+            yield name, {s.position_km: own[s.name] for s in other.stations if s.name in own}

@@ -1,0 +1,176 @@
+"""Checks of the traffic: names of trains and stations, and the routes of the services.
+
+They read the document as it was written, see `scenario.raw`.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from tpss.errors import closest
+from tpss.scenario.raw import Ends, Fault, items, lines_of, number, places_of, table
+from tpss.scenario.routes import (
+    Hop,
+    NoWayError,
+    Way,
+    find_way,
+    hops_of,
+)
+from tpss.units import kilometres
+
+
+def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Faults of services: of names, and of routes that cannot be run."""
+    trains = list(table(document, "trains"))
+    stations = {name: places_of(line) for name, (_, line) in lines_of(document).items()}
+    yield from _service_names(document)
+    network = hops_of(stations)
+    names = list(network)
+    for i, entry in items(document, "traffic"):
+        key = f"traffic.{i}"
+        yield from _names(key, entry, trains, names)
+        if len(stations) == 1 and not _turns_or_chooses(entry):
+            (places,) = stations.values()
+            yield from _along_line(key, entry, places)
+        elif all(name in network for name in _calls(entry)):
+            yield from _over_network(key, entry, network, list(stations))
+
+
+def _service_names(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """The n-th train of a service is called "<service> n" or "<service> initial n"."""
+    entries = [(i, entry.get("name")) for i, entry in items(document, "traffic")]
+    names = {i: name for i, name in entries if isinstance(name, str)}
+    for i, name in names.items():
+        if name.endswith(" initial") and name.removesuffix(" initial") in names.values():
+            problem = "its trains would have the names of another service's initial trains"
+            yield f"traffic.{i}.name", repr(name), problem, "give it another name"
+
+
+def _unknown(key: str, name: object, known: list[str], kind: str) -> Iterator[Fault]:
+    if isinstance(name, str) and name not in known:
+        hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
+        listed = ", ".join(known) or "none"
+        yield key, repr(name), f"there is no such {kind}", f"{hint}{kind}s: {listed}"
+
+
+def _names(
+    key: str, entry: Mapping[str, Any], trains: list[str], stations: list[str]
+) -> Iterator[Fault]:
+    """Names of trains and stations that there are not."""
+    yield from _unknown(f"{key}.train", entry.get("train"), trains, "train")
+    begin, end = _ends_of(entry)
+    yield from _unknown(f"{key}.from", begin, stations, "station")
+    yield from _unknown(f"{key}.to", end, stations, "station")
+    for i, stop in items(entry, "stops"):
+        yield from _unknown(f"{key}.stops.{i}.station", stop.get("station"), stations, "station")
+    for i, name in enumerate(_via(entry)):
+        yield from _unknown(f"{key}.via.{i}", name, stations, "station")
+
+
+def _ends_of(entry: Mapping[str, Any]) -> tuple[object, object]:
+    """Names of the stations where the trains of a service begin and end."""
+    return entry.get("from", entry.get("origin")), entry.get("to", entry.get("destination"))
+
+
+def _via(entry: Mapping[str, Any]) -> list[object]:
+    given = entry.get("via")
+    return list(given) if isinstance(given, list | tuple) else []
+
+
+def _calls(entry: Mapping[str, Any]) -> list[object]:
+    """Names of all stations that a service names."""
+    return [
+        *_ends_of(entry),
+        *(stop.get("station") for _, stop in items(entry, "stops")),
+        *_via(entry),
+    ]
+
+
+def _turns_or_chooses(entry: Mapping[str, Any]) -> bool:
+    """Whether a service turns round on its way, or says which way it takes."""
+    return bool(_via(entry)) or any("turn_min" in stop for _, stop in items(entry, "stops"))
+
+
+def _over_network(
+    key: str, entry: Mapping[str, Any], network: Mapping[str, list[Hop]], lines: list[str]
+) -> Iterator[Fault]:
+    """Faults of the way of a service over the lines, of its turns and of its trains on the way."""
+    (begin, end), via = _ends_of(entry), [str(name) for name in _via(entry)]
+    stops = [stop for _, stop in items(entry, "stops")]
+    names = [str(stop["station"]) for stop in stops]
+    try:
+        way = find_way(network, str(begin), names, str(end), via)
+    except NoWayError as error:
+        yield f"{key}.{error.key}", repr(error.name), str(error), error.remedy
+        return
+    yield from _turns(key, stops, way)
+    for i, train in items(entry, "initial_trains"):
+        position = number(train, "position_km")
+        line = train.get("line", lines[0] if len(lines) == 1 else None)
+        if position is not None and line in lines and way.place(str(line), position) is None:
+            problem = f"on {line}, but not on the way of its trains"
+            place = f"{key}.initial_trains.{i}.position_km"
+            yield place, kilometres(position), problem, "place it on the way of its trains"
+
+
+def _turns(key: str, stops: list[Mapping[str, Any]], way: Way) -> Iterator[Fault]:
+    """Stops at which a train turns round without the time for it, or has time to turn and does not."""
+    for hop in way.turns:
+        if hop not in way.stops:
+            station = way.hops[hop].end
+            problem = f"its trains would turn round at {station}, without a stop there"
+            remedy = f"add a stop at {station} with turn_min, or name other stations in via"
+            yield f"{key}.stops", "", problem, remedy
+    for i, (stop, hop) in enumerate(zip(stops, way.stops, strict=True)):
+        station = way.hops[hop].end
+        if hop in way.turns and "turn_min" not in stop:
+            problem = f"it is missing: its trains turn round at {station}"
+            yield f"{key}.stops.{i}.turn_min", "", problem, "add the time that it takes"
+        elif hop not in way.turns and "turn_min" in stop:
+            problem = f"its trains do not turn round at {station}"
+            yield f"{key}.stops.{i}.turn_min", f"{stop['turn_min']}", problem, "leave it out"
+
+
+def _route_km(entry: Mapping[str, Any], places: dict[str, float]) -> Ends | None:
+    """Ends of a service's route, if both are known. [km]"""
+    begin, end = _ends_of(entry)
+    if not (isinstance(begin, str) and isinstance(end, str)):
+        return None
+    return (places[begin], places[end]) if begin in places and end in places else None
+
+
+def _along_line(key: str, entry: Mapping[str, Any], places: dict[str, float]) -> Iterator[Fault]:
+    """Faults of the direction of a service, of its stops and of its trains on the line."""
+    route = _route_km(entry, places)
+    if route is None:
+        return
+    (begin, end), (start_km, end_km) = _ends_of(entry), route
+    words = f"{end} ({kilometres(end_km)} km)", f"{begin} ({kilometres(start_km)} km)"
+    if end_km == start_km:
+        problem = f"trains would begin and end at the same place, {kilometres(end_km)} km"
+        yield f"{key}.to", repr(end), problem, "name another station"
+        return
+    sign = 1.0 if end_km > start_km else -1.0
+    yield from _stops(key, entry, places, route)
+    for i, train in items(entry, "initial_trains"):
+        position = number(train, "position_km")
+        if position is not None and not sign * start_km <= sign * position < sign * end_km:
+            problem = f"not between {words[1]} and {words[0]}"
+            place = f"{key}.initial_trains.{i}.position_km"
+            yield place, kilometres(position), problem, "place it on the route of its trains"
+
+
+def _stops(
+    key: str, entry: Mapping[str, Any], places: dict[str, float], route: Ends
+) -> Iterator[Fault]:
+    before_km, end_km = route
+    sign = 1.0 if end_km > before_km else -1.0
+    for i, stop in items(entry, "stops"):
+        name = stop.get("station")
+        if not isinstance(name, str) or name not in places:
+            continue
+        if not sign * before_km < sign * places[name] < sign * end_km:
+            here, before, end = map(kilometres, (places[name], before_km, end_km))
+            problem = f"at {here} km, not between {before} and {end} km"
+            remedy = "list the stops in the order of travel, without the first and last station"
+            yield f"{key}.stops.{i}.station", repr(name), problem, remedy
+        before_km = sign * max(sign * before_km, sign * places[name])

@@ -1,0 +1,1 @@
+"""The track: which places the routes of trains lead over."""

@@ -1,0 +1,274 @@
+"""Several lines that meet: routes over them, and a line that is cut, turned or renamed."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tpss
+
+SAME = 1e-9
+"""A line that is cut has one more node: voltages are found to a tolerance, not by the same way."""
+
+TRAIN = {"model": "Rc4-freight-1470t", "mass_t": 600.0}
+
+
+def line(length_km: float, stations: dict[str, float], **more: Any) -> dict[str, Any]:
+    return {
+        "length_km": length_km,
+        "gradients": [{"from_km": more.get("begins_at_km", 0.0), "permille": 0.0}],
+        "speed_limits": [{"from_km": more.get("begins_at_km", 0.0), "speed_kmh": 100.0}],
+        "stations": [{"name": name, "position_km": km} for name, km in stations.items()],
+        **more,
+    }
+
+
+def service(name: str, origin: str, destination: str, **more: Any) -> dict[str, Any]:
+    return {
+        "name": name, "train": "freight", "from": origin, "to": destination,
+        "departures_min": [0.0], **more,
+    }  # fmt: skip
+
+
+def network(lines: dict[str, Any], traffic: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+    first = next(iter(lines))
+    station = {"name": "feeder", "line": first, "position_km": 0.0, "type": "Q48/Q49"}
+    return {
+        "format": 1,
+        "name": "network",
+        "simulation": {"duration_min": 90.0, "time_step_min": 0.1},
+        "lines": lines,
+        "supply": {"catenary": "BT", "converter_stations": [{**station, "converters": 3}]},
+        "trains": {"freight": TRAIN},
+        "traffic": traffic,
+        **more,
+    }
+
+
+def scenario_of(document: dict[str, Any]) -> tpss.Scenario:
+    return tpss.Scenario.from_document(document, "network")
+
+
+def run(document: dict[str, Any]) -> tpss.Result:
+    result = tpss.simulate(scenario_of(document))
+    assert result.audit["passed"], result.audit["failures"]
+    return result
+
+
+STAR = {
+    "main": line(60.0, {"West": 0.0, "Fork": 40.0, "East": 60.0}),
+    "branch": line(30.0, {"Fork": 100.0, "Mine": 130.0}, begins_at_km=100.0),
+}
+
+
+def assert_same(found: tpss.Result, expected: tpss.Result, same: float = SAME) -> None:
+    """Assert that trains do the same, at the same times and voltages."""
+    assert found.status == expected.status
+    for name in ("route_position", "speed", "pantograph_voltage", "active_power", "braking_force"):
+        one, other = (each.dataset[name].to_numpy() for each in (found, expected))
+        largest = np.nanmax(np.abs(other))
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=same * largest, err_msg=name)
+    for name, energy in expected.summary["station_energy_mwh"].items():
+        assert found.summary["station_energy_mwh"][name] == pytest.approx(energy, rel=same)
+
+
+# Routes
+
+
+def test_a_route_leads_over_the_station_where_lines_meet():
+    """From West 40 km to Fork, and from km 100 of the branch on to its km 130: 70 km in all."""
+    result = run(network(STAR, [service("up", "West", "Mine")]))
+    (trip,) = result.trips.itertuples()
+    assert trip.distance_km == pytest.approx(70.0, abs=1e-6)
+    steps = result.train_steps
+    assert list(dict.fromkeys(steps.line)) == ["main", "branch"]
+    assert steps.position_km[steps.line == "main"].max() < 40.0 + 1e-6
+    on_branch = steps.position_km[steps.line == "branch"]
+    assert (on_branch.min(), on_branch.max()) == (pytest.approx(100.0, abs=3.0), 130.0)
+
+
+def test_kilometres_may_fall_on_the_second_line():
+    """From East down to Fork, and up the branch: 20 and 30 km."""
+    result = run(network(STAR, [service("down", "East", "Mine")]))
+    assert result.trips.distance_km[0] == pytest.approx(50.0, abs=1e-6)
+    main = result.train_steps[result.train_steps.line == "main"]
+    assert (np.diff(main.position_km) <= 0.0).all()
+
+
+def test_a_train_turns_round_where_it_has_time_for_it():
+    """To East and back to Fork, with 6 min at East: 20 km each way."""
+    stops = [{"station": "East", "dwell_min": 1.0, "turn_min": 6.0}]
+    result = run(network(STAR, [service("shuttle", "Fork", "Fork", stops=stops)]))
+    assert result.trips.distance_km[0] == pytest.approx(40.0, abs=1e-6)
+    begin, east, end = result.stops.itertuples()
+    assert (begin.station, east.station, end.station) == ("Fork", "East", "Fork")
+    assert east.dwell_min == pytest.approx(6.0)
+    there_min = east.arrival_min - begin.departure_min
+    # But for the voltage, which is lower the farther it starts from the feeder.
+    assert end.arrival_min - east.departure_min == pytest.approx(there_min, rel=0.01)
+
+
+def test_limits_of_the_next_line_are_met_at_the_border():
+    """The branch allows 40 km/h: nobody is faster there, and braking for it begins on the main line."""
+    lines = copy.deepcopy(STAR)
+    lines["branch"]["speed_limits"][0]["speed_kmh"] = 40.0
+    steps = run(network(lines, [service("up", "West", "Mine")])).train_steps
+    assert steps.speed_kmh[steps.line == "branch"].max() <= 40.0 + 1e-9
+    assert steps.speed_kmh[steps.line == "main"].max() > 90.0
+    assert (steps.state[steps.line == "main"] == "braking").any()
+
+
+def test_the_nearer_of_two_ways_is_taken_unless_via_names_the_other():
+    """A ring: from A to C 20 km over B, or 35 km over D."""
+    ring = {
+        "south": line(20.0, {"A": 0.0, "B": 10.0, "C": 20.0}),
+        "north": line(35.0, {"A": 0.0, "D": 15.0, "C": 35.0}),
+    }
+    traffic = [service("near", "A", "C"), service("far", "A", "C", via=["D"])]
+    assert run(network(ring, traffic)).trips.distance_km.tolist() == pytest.approx([20.0, 35.0])
+
+
+# The supply
+
+
+def test_lines_that_meet_are_tied_and_a_branch_is_fed_through():
+    """A train at Mine hangs behind 40 km of main line and 30 of branch, as at the end of 70 km."""
+    traffic = [service("out", "Mine", "West")]
+    alone = {"one": line(70.0, {"West": 0.0, "Mine": 70.0})}
+    forked, straight = network(STAR, traffic), network(alone, traffic)
+    for document in (forked, straight):
+        document["supply"]["catenary"] = {"r_ohm_per_km": 0.0335, "x_ohm_per_km": 0.031}
+    assert_same_energies(run(forked), run(straight))
+
+
+def assert_same_energies(found: tpss.Result, expected: tpss.Result) -> None:
+    for one, other in zip(found.trips.itertuples(), expected.trips.itertuples(), strict=True):
+        assert one.energy_mwh == pytest.approx(other.energy_mwh, rel=1e-6)
+        assert one.trip_min == pytest.approx(other.trip_min, rel=1e-6)
+        assert one.lowest_voltage_kv == pytest.approx(other.lowest_voltage_kv, rel=1e-6)
+    assert found.summary["losses_mwh"] == pytest.approx(expected.summary["losses_mwh"], rel=1e-6)
+
+
+def test_the_ring_shares_a_train_s_current_between_both_ways():
+    """Two ways of 10 km from feeder to train halve the impedance: the drop is that of 5 km alone.
+
+    The train stands in the middle of a ring of 20 km, and draws what its auxiliaries take.
+    """
+    stands = [{"line": "south", "position_km": 10.0, "speed_kmh": 0.0}]
+    ring = {
+        "south": line(10.0, {"A": 0.0, "B": 5.0, "C": 10.0}),
+        "north": line(10.0, {"A": 0.0, "C": 10.0}),
+    }
+    both = run(
+        network(
+            ring,
+            [service("back", "C", "A", via=["B"], initial_trains=stands, departures_min=[89.0])],
+        )
+    )
+    alone = run(network({"one": line(5.0, {"A": 0.0, "C": 5.0})}, [service("back", "C", "A")]))
+    drops = [result.dataset.pantograph_voltage.to_numpy()[0, 0] for result in (both, alone)]
+    assert drops[0] == pytest.approx(drops[1], rel=1e-3)
+
+
+# A line that is cut, renamed, reordered, mirrored
+
+
+def cut(document: dict[str, Any], at_km: float) -> dict[str, Any]:
+    """The single line of a document cut in two, which keep its kilometres and share a station."""
+    cut_one = copy.deepcopy(document)
+    whole = cut_one.pop("line")
+    length_km = whole["length_km"]
+    meeting = {"name": "Cut", "position_km": at_km}
+    low = {**whole, "length_km": at_km}
+    high = {**whole, "begins_at_km": at_km, "length_km": length_km - at_km}
+    high["speed_limits"] = _from(whole["speed_limits"], at_km)
+    low["stations"] = [*(s for s in whole["stations"] if s["position_km"] < at_km), meeting]
+    high["stations"] = [meeting, *(s for s in whole["stations"] if s["position_km"] > at_km)]
+    cut_one["lines"] = {"low": low, "high": high}
+    for kind in ("converter_stations", "transformer_stations"):
+        for station in cut_one["supply"].get(kind, []):
+            station["line"] = "low" if station["position_km"] <= at_km else "high"
+    return cut_one
+
+
+def _from(limits: list[dict[str, float]], at_km: float) -> list[dict[str, float]]:
+    before = [limit for limit in limits if limit["from_km"] <= at_km][-1]
+    return [{**before, "from_km": at_km}, *(each for each in limits if each["from_km"] > at_km)]
+
+
+TWO_WAYS = {
+    "format": 1,
+    "name": "two-ways",
+    "simulation": {"duration_min": 40.0, "time_step_min": 0.1},
+    "line": {
+        "length_km": 50.0,
+        "gradients": [{"from_km": 0.0, "permille": 3.0}, {"from_km": 22.0, "permille": -5.0}],
+        "speed_limits": [{"from_km": 0.0, "speed_kmh": 120.0}, {"from_km": 30.0, "speed_kmh": 90.0}],
+        "stations": [
+            {"name": "A", "position_km": 0.0}, {"name": "B", "position_km": 35.0},
+            {"name": "C", "position_km": 50.0},
+        ],
+    },
+    "supply": {
+        "catenary": "BT",
+        "converter_stations": [
+            {"name": "W", "position_km": 5.0, "type": "Q48/Q49", "converters": 3},
+            {"name": "E", "position_km": 45.0, "type": "Q48/Q49", "converters": 2},
+        ],
+    },
+    "trains": {"freight": {**TRAIN, "length_m": 400.0}},
+    "traffic": [
+        service("up", "A", "C", stops=[{"station": "B", "dwell_min": 1.0}]),
+        service("down", "C", "A"),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("motion", ["continuous", "stepped"])
+def test_a_line_that_is_cut_in_two_is_the_same_line(motion):
+    whole = copy.deepcopy(TWO_WAYS)
+    whole["simulation"]["motion"] = motion
+    assert_same(run(cut(whole, 20.0)), run(whole), 1e-7)
+
+
+def test_names_and_order_of_lines_change_nothing():
+    """To the last bit: the trains, and the supply as they see it, are the same."""
+    traffic = [service("up", "West", "Mine"), service("down", "East", "West")]
+    one = run(network(STAR, traffic))
+    names = {"main": "M", "branch": "B"}
+    renamed = {names[key]: value for key, value in STAR.items()}
+    other = network(renamed, traffic)
+    assert_same(run(other), one, 0.0)
+    turned = network(dict(reversed(renamed.items())), traffic)
+    turned["supply"]["converter_stations"][0]["line"] = "M"
+    assert_same(run(turned), one, SAME)
+
+
+def test_a_scenario_of_one_named_line_is_that_of_the_line():
+    document = copy.deepcopy(TWO_WAYS)
+    document["lines"] = {"main": document.pop("line")}
+    assert_same(run(document), run(TWO_WAYS), 0.0)
+
+
+def test_a_mirrored_line_among_others_gives_the_same():
+    """The main line counted from its other end, its gradients turned: trains do the same."""
+    traffic = [service("up", "West", "Mine"), service("down", "East", "West")]
+    lines = copy.deepcopy(STAR)
+    lines["main"]["gradients"] = [
+        {"from_km": 0.0, "permille": 4.0},
+        {"from_km": 30.0, "permille": -2.0},
+    ]
+    there = run(network(lines, traffic))
+    turned = copy.deepcopy(lines)
+    turned["main"] |= {
+        "gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 30.0, "permille": -4.0}],
+        "stations": [
+            {**each, "position_km": 60.0 - each["position_km"]}
+            for each in lines["main"]["stations"]
+        ],
+    }
+    back = network(turned, traffic)
+    back["supply"]["converter_stations"][0]["position_km"] = 60.0
+    found = run(back)
+    assert_same_energies(found, there)
