@@ -11,7 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from tpss.model.supply import LineLayout, build_supply
+from tpss.model.contact_line import LineLayout
+from tpss.model.supply import build_supply
 from tpss.powerflow.solve import solve
 from tpss.scenario.supply import Supply
 
@@ -34,7 +35,9 @@ def solved(capacitance_nf_per_km, powers, **changes):
         catenary={**LINE, "capacitance_nf_per_km": capacitance_nf_per_km},
         transformer_stations=[{**STATION, **changes}],
     )
-    network, _ = build_supply(supply, (LineLayout("line", 0, 0.0, 40.0, (), ""),))
+    network, _ = build_supply(
+        supply, (LineLayout("line", 0, 0.0, 40.0, (), ((0.0, 40.0, 1),), True),)
+    )
     case = place(network, constant_loads([14e3, 31e3][: len(powers)], powers))
     share, _ = solve(False, case.network, case.flow, case.loads)
     assert share == 1.0

@@ -269,8 +269,6 @@ ABSENT = [
     pytest.param({INLINE: None, "line.gradients": [{"from_km": 0.0, "permille": 5.0, "to_km": 3.0}]},
                  "line.gradients.0.to_km", "an end of a gradient", "add an entry with 0",
                  id="end of a gradient"),
-    pytest.param({"line.tracks": 2}, "line.tracks", "there is one, on which trains do not see each",
-                 "leave it out", id="tracks"),
     pytest.param({f"{ENTRY}.timetable": []}, f"{ENTRY}.timetable", "scheduled times of arrival",
                  "give departures_min", id="timetable"),
     pytest.param({f"{ENTRY}.direction": "down"}, f"{ENTRY}.direction", "trains run from `from` to `to`",
@@ -298,7 +296,7 @@ def test_what_is_known_to_be_absent_is_said_as_such_without_a_proposal(changes, 
     [
         ({f"{FREIGHT}.reach": 1}, f"{FREIGHT}.reach"),
         ({"line.branches": []}, "line.branches"),
-        ({"line.trucks": 1}, "line.trucks"),
+        ({"line.lorries": 1}, "line.lorries"),
         ({f"{ENTRY}.to_km": 5.0}, f"{ENTRY}.to_km"),
     ],
 )

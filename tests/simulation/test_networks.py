@@ -7,54 +7,10 @@ import numpy as np
 import pytest
 
 import tpss
+from lines import TRAIN, line, network, run, service
 
 SAME = 1e-9
 """A line that is cut has one more node: voltages are found to a tolerance, not by the same way."""
-
-TRAIN = {"model": "Rc4-freight-1470t", "mass_t": 600.0}
-
-
-def line(length_km: float, stations: dict[str, float], **more: Any) -> dict[str, Any]:
-    return {
-        "length_km": length_km,
-        "gradients": [{"from_km": more.get("begins_at_km", 0.0), "permille": 0.0}],
-        "speed_limits": [{"from_km": more.get("begins_at_km", 0.0), "speed_kmh": 100.0}],
-        "stations": [{"name": name, "position_km": km} for name, km in stations.items()],
-        **more,
-    }
-
-
-def service(name: str, origin: str, destination: str, **more: Any) -> dict[str, Any]:
-    return {
-        "name": name, "train": "freight", "from": origin, "to": destination,
-        "departures_min": [0.0], **more,
-    }  # fmt: skip
-
-
-def network(lines: dict[str, Any], traffic: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
-    first = next(iter(lines))
-    station = {"name": "feeder", "line": first, "position_km": 0.0, "type": "Q48/Q49"}
-    return {
-        "format": 1,
-        "name": "network",
-        "simulation": {"duration_min": 90.0, "time_step_min": 0.1},
-        "lines": lines,
-        "supply": {"catenary": "BT", "converter_stations": [{**station, "converters": 3}]},
-        "trains": {"freight": TRAIN},
-        "traffic": traffic,
-        **more,
-    }
-
-
-def scenario_of(document: dict[str, Any]) -> tpss.Scenario:
-    return tpss.Scenario.from_document(document, "network")
-
-
-def run(document: dict[str, Any]) -> tpss.Result:
-    result = tpss.simulate(scenario_of(document))
-    assert result.audit["passed"], result.audit["failures"]
-    return result
-
 
 STAR = {
     "main": line(60.0, {"West": 0.0, "Fork": 40.0, "East": 60.0}),

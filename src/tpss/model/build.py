@@ -36,6 +36,8 @@ class Layout:
     lines: tuple[str, ...]
     routes: tuple[Route, ...]
     legs: Records[Leg]
+    most_tracks: int
+    """Number of tracks where a line has most."""
 
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
@@ -55,7 +57,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         types=types,
         points=points,
         network=network,
-        legs=build_legs(routes, list(lines), plan),
+        legs=build_legs(routes, lines, plan.runs),
     )
     return model, Layout(
         supply=plan,
@@ -67,6 +69,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         lines=tuple(lines),
         routes=tuple(routes),
         legs=model.legs,
+        most_tracks=max(line.most_tracks for line in lines.values()),
     )
 
 

@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
-import numpy as np
-
+from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.sources import build_sources
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
@@ -28,19 +27,6 @@ HIGH_VOLTAGE_LINE = "high-voltage line"
 TRANSFORMER = "transformer"
 CONNECTION = "connection"
 FEEDER = "AT feeder"
-
-
-class LineLayout(NamedTuple):
-    """What the supply has to know of a line."""
-
-    name: str
-    number: int
-    begin_km: float
-    end_km: float
-    junctions: tuple[tuple[float, str], ...]
-    """Positions and names of the stations where it meets others."""
-    prefix: str
-    """What stands before positions on it: its name, if there are several."""
 
 
 @dataclass
@@ -59,16 +45,16 @@ class SupplyPlan:
     section_names: list[str] = field(default_factory=list)
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
-    sections_of_line: list[tuple[int, int]] = field(default_factory=list)
-    """Bounds of the sections of each line."""
+    runs: list[list[Run]] = field(default_factory=list)
+    """Of each line."""
     node_line: list[int] = field(default_factory=list)
     """Index of the line of each node."""
 
     def add_node(
-        self, kind: str, line: "LineLayout", position_km: float, level: float = 1.0
+        self, kind: str, line: LineLayout, position_km: float, level: float = 1.0, words: str = ""
     ) -> int:
-        """Add a node and return its index; its name begins with its kind."""
-        self.nodes.append(f"{kind} at {line.prefix}{kilometres(position_km)} km")
+        """Add a node and return its index; its name begins with its kind and may end in words."""
+        self.nodes.append(f"{kind} at {line.prefix}{kilometres(position_km)} km{words}")
         self.node_line.append(line.number)
         self.node_kinds.append(kind)
         self.node_km.append(position_km)
@@ -148,7 +134,8 @@ def layouts_of(lines: Mapping[str, Line]) -> tuple[LineLayout, ...]:
                 for station in line.stations
                 if stands_on[station.name] > 1
             ),
-            prefix=f"{name} " if len(lines) > 1 else "",
+            tracks=tuple(line.tracks_by_stretch),
+            alone=len(lines) == 1,
         )
         for number, (name, line) in enumerate(lines.items())
     )
@@ -167,11 +154,11 @@ def plan_supply(supply: Supply, lines: Sequence[LineLayout]) -> SupplyPlan:
     feeding = [
         _lay_line(plan, line, meeting, here, supply) for line, here in zip(lines, fed, strict=True)
     ]
-    connection = _connection_impedance(supply.catenary)
     node_of: dict[str, int] = {}
     for line, here, node in zip(lines, fed, feeding, strict=True):
-        if connection:
-            for km, station in sorted(here.stations.items()):
+        for km, station in sorted(here.stations.items()):
+            connection = _connection_impedance(catenary_at(km, line, supply))
+            if connection:
                 contact_line, node[km] = node[km], plan.add_node(FEEDER, line, km)
                 plan.add_branch(CONNECTION, station.name, node[km], contact_line, connection)
         if here.has_high_voltage:
@@ -187,37 +174,51 @@ class _OnLine(NamedTuple):
     stations: dict[float, Station]
     transformers_km: list[float]
     has_high_voltage: bool
+    fed_junctions: frozenset[str]
+    """Stations where lines meet at which a feeding station stands, on any line."""
 
     @classmethod
     def of(cls, supply: Supply, line: LineLayout, lines: Sequence[LineLayout]) -> "_OnLine":
         """What feeds one of several lines."""
-        alone = len(lines) == 1
-        stations = {s.position_km: s for s in supply.stations if alone or s.line == line.name}
+        stations = {s.position_km: s for s in supply.stations if line.holds(s.line)}
         high_voltage = supply.high_voltage_line
-        beside = high_voltage is not None and (alone or high_voltage.line == line.name)
+        beside = high_voltage is not None and line.holds(high_voltage.line)
         transformers = transformer_positions_km(supply) if beside else []
-        return cls(stations, transformers, beside)
+        fed = {
+            name
+            for each in lines
+            for km, name in each.junctions
+            if any(each.holds(s.line) and s.position_km == km for s in supply.stations)
+        }
+        return cls(stations, transformers, beside, frozenset(fed))
 
 
 def _lay_line(
     plan: SupplyPlan, line: LineLayout, meeting: dict[str, int], here: _OnLine, supply: Supply
 ) -> dict[float, int]:
-    """The contact line of a line; return its nodes by their positions. [km]"""
-    junctions = dict(line.junctions)
-    points = sorted({line.begin_km, line.end_km, *here.stations, *here.transformers_km, *junctions})
-    node: dict[float, int] = {}
-    for km in points:
+    """The contact line of a line; return its nodes at feeding points by their places. [km]"""
+    junctions = {
+        km: name
+        for km, name in line.junctions
+        if supply.junctions_tied or name in here.fed_junctions
+    }
+
+    def make_node(km: float, words: str) -> int:
         name = junctions.get(km)
         if name is None or name not in meeting:
-            node[km] = plan.add_node(CONTACT_LINE, line, km)
+            node = plan.add_node(CONTACT_LINE, line, km, words=words)
         else:
-            node[km] = meeting[name]
+            node = meeting[name]
         if name is not None:
-            meeting[name] = node[km]
-    first = len(plan.sections)
-    _lay_contact_line(plan, line, points, node, supply)
-    plan.sections_of_line.append((first, len(plan.sections)))
-    return node
+            meeting[name] = node
+        return node
+
+    feeding_km = {*here.stations, *here.transformers_km, *junctions}
+    laid = lay_contact_line(line, supply, feeding_km, make_node, len(plan.sections))
+    plan.sections += laid.sections
+    plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
+    plan.runs.append(laid.runs)
+    return laid.node
 
 
 def transformer_positions_km(supply: Supply) -> list[float]:
@@ -243,20 +244,6 @@ def _connection_impedance(catenary: Catenary) -> complex:
     return complex(si(catenary, "connection_r_ohm"), si(catenary, "connection_x_ohm"))
 
 
-def _lay_contact_line(
-    plan: SupplyPlan, line: LineLayout, points: list[float], node: dict[float, int], supply: Supply
-) -> None:
-    catenary = supply.catenary
-    impedance = complex(si(catenary, "r_ohm_per_km"), si(catenary, "x_ohm_per_km"))
-    susceptance = 2 * np.pi * supply.frequency_hz * si(catenary, "capacitance_nf_per_km")
-    for start, end in zip(points, points[1:], strict=False):
-        plan.sections.append(
-            SectionPart(node[start], node[end], start * 1e3, end * 1e3, impedance, susceptance)
-        )
-        place = f"{line.prefix}{kilometres(start)}-{kilometres(end)} km"
-        plan.section_names.append(f"{CONTACT_LINE} {place}")
-
-
 def _lay_high_voltage_line(
     plan: SupplyPlan, line: LineLayout, here: _OnLine, feeding: dict[float, int], supply: Supply
 ) -> None:
@@ -276,7 +263,7 @@ def _lay_high_voltage_line(
         unit = high_voltage.station_transformer if at_station else high_voltage.line_transformer
         impedance = complex(si(unit, "r_ohm"), si(unit, "x_ohm"))
         if not at_station:
-            impedance += _connection_impedance(supply.catenary)
+            impedance += _connection_impedance(catenary_at(km, line, supply))
         name = f"{line.prefix}{kilometres(km)} km"
         plan.add_branch(TRANSFORMER, name, feeding[km], node[km], impedance)
     for start, end in zip(stands, stands[1:], strict=False):

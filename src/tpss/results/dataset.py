@@ -35,18 +35,25 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         each.name: xr.Variable(each.dimensions, arrays[each.name], described(each))
         for each in RECORDED
     }
-    if len(layout.lines) > 1:
-        variables |= _lines(outcome, layout)
+    variables |= _lines_and_tracks(outcome, layout)
     return xr.Dataset(variables, coords=_indexed(_coordinates(outcome, model, layout)))
 
 
-def _lines(outcome: Outcome, layout: Layout) -> dict[str, xr.Variable]:
-    """On which lines trains are; -1: they are not there."""
+def _lines_and_tracks(outcome: Outcome, layout: Layout) -> dict[str, xr.Variable]:
+    """On which lines and tracks trains are, where there are several; -1: they are not there."""
     along_m = np.asarray(outcome.recording.trains)["route_position"]
     leg = legs_at(along_m, outcome.trains, layout)
-    line = np.where(np.isfinite(along_m), leg["line"], -1).astype(np.int16)
-    described = {"units": "1", "long_name": "index of the line of the train; -1: not there"}
-    return {"train_line": xr.Variable(("time", "train"), line, described)}
+    told = {
+        "train_line": ("line", "index of the line of the train", len(layout.lines) > 1),
+        "train_track": ("track", "track of the train", layout.most_tracks > 1),
+    }
+    found = {}
+    for name, (field, words, several) in told.items():
+        if several:
+            values = np.where(np.isfinite(along_m), leg[field], -1).astype(np.int16)
+            described = {"units": "1", "long_name": f"{words}; -1: it is not there"}
+            found[name] = xr.Variable(("time", "train"), values, described)
+    return found
 
 
 def _indexed(coordinates: dict[str, Any]) -> xr.Coordinates:

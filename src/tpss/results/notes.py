@@ -8,6 +8,7 @@ import xarray as xr
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
+from tpss.results.passing import passings
 from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
@@ -113,41 +114,16 @@ def _closeness(result: Result) -> Iterator[str]:
 
 
 def _passing(result: Result) -> Iterator[str]:
-    """Trains that passed through each other: the line has one track, and nothing keeps them apart."""
-    data, names = result.dataset, result.dataset.train.to_numpy()
-    place_m = data.position.to_numpy() + _apart_m(data)
-    count, first = 0, ""
-    for step in _steps_of_another_order(place_m):
-        there = np.flatnonzero(np.isfinite(place_m[step]) & np.isfinite(place_m[step + 1]))
-        ordered = there[np.argsort(place_m[step, there], kind="stable")]
-        after_m = place_m[step + 1, ordered]
-        passed = np.argwhere(np.triu(after_m[:, None] > after_m))
-        if len(passed) and not count:
-            one, other = ordered[passed[0]]
-            km = data.position.to_numpy()[step + 1, [one, other]].mean() / 1e3
-            line = line_names(data)[train_lines(data)[step + 1, one]]
-            first = (
-                f"{names[one]} and {names[other]} near {on_line(line, f'{km:.1f} km')} at "
-                f"{float(data.time[step]) / 60.0:.1f} min"
-            )
-        count += len(passed)
-    if count:
-        times = "once" if count == 1 else f"{count} times"
+    """Trains that passed through each other on one track, as nothing keeps them apart."""
+    found = passings(result)
+    if found:
+        times = "once" if len(found) == 1 else f"{len(found)} times"
+        single = all(line.most_tracks == 1 for line in result.scenario.lines_by_name.values())
+        where = "the line has one track" if single else "they run on one track"
         yield (
-            f"trains passed through each other {times}, first {first}: the line has one track, and "
+            f"trains passed through each other {times}, first {found[0].in_words}: {where}, and "
             "nothing keeps trains apart"
         )
-
-
-def _steps_of_another_order(place_m: Floats) -> Floats:
-    """Steps after which the trains present may stand in another order than before."""
-    here, after = place_m[:-1], place_m[1:]
-    order = np.argsort(np.where(np.isfinite(here), here, np.inf), axis=1, kind="stable")
-    moved = np.take_along_axis(after, order, axis=1)
-    with np.errstate(invalid="ignore"):  # trains that are not there
-        turned = (np.diff(moved, axis=1) < 0.0).any(axis=1)
-    left = (np.isfinite(here) & ~np.isfinite(after)).any(axis=1)
-    return np.asarray(np.flatnonzero(turned | left))
 
 
 def _apart_m(data: xr.Dataset) -> Floats:

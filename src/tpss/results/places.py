@@ -25,6 +25,17 @@ def train_lines(dataset: xr.Dataset) -> Indices:
     return np.asarray(dataset.train_line.to_numpy(), dtype=np.int64)
 
 
+TRACK = "train_track"
+"""Variable with the tracks of the trains; a dataset of single-track lines has none."""
+
+
+def train_tracks(dataset: xr.Dataset) -> Indices:
+    """Track of each train at each instant, counted from 1, shape (time, train)."""
+    if TRACK not in dataset:
+        return np.ones((dataset.sizes["time"], dataset.sizes["train"]), dtype=np.int64)
+    return np.asarray(dataset[TRACK].to_numpy(), dtype=np.int64)
+
+
 def lines_of(dataset: xr.Dataset, what: str) -> Indices:
     """Index of the line of each ``station`` or ``node``."""
     if LINE not in dataset.coords:

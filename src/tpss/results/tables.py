@@ -5,7 +5,14 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from tpss.results.places import line_names, lines_of, train_lines, where_told
+from tpss.results.places import (
+    TRACK,
+    line_names,
+    lines_of,
+    train_lines,
+    train_tracks,
+    where_told,
+)
 from tpss.step.recorded import RECORDED
 from tpss.units import si_factor
 
@@ -101,6 +108,7 @@ def train_steps(dataset: xr.Dataset) -> pd.DataFrame:
             "service": dataset.service.to_numpy()[train],
             "time_min": dataset.time.to_numpy()[instant] / 60.0,
             **where_told({"line": line[train_lines(dataset).T[there]]}, names),
+            **({"track": train_tracks(dataset).T[there]} if TRACK in dataset else {}),
             "state": np.array([*states, ""], dtype=object)[state],
             **{
                 column: dataset[name].to_numpy().T[there] / si_factor(column)

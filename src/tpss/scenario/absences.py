@@ -47,10 +47,6 @@ ABSENCES = (
         ("gradients",),
     ),
     Absence(
-        r"(single|double)_track|(number_of_)?tracks?$|lanes$|n_tracks",
-        "tracks: there is one, on which trains do not see each other",
-    ),
-    Absence(
         r"direction|reverse|return_trip|bidirectional",
         "a direction of its own: trains run from `from` to `to`",
         "leave it out, and name the stations in the order of travel",

@@ -16,6 +16,7 @@ from tpss.scenario.positions import check_positions, check_stations_named
 from tpss.scenario.raw import Fault, number, table
 from tpss.scenario.simulation import made_of_stepped_motion
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
+from tpss.scenario.wiring import check_wiring
 
 LONGEST_AGGRESSIVE_STEP_MIN = 1.0
 """Longest step with the aggressive driver, and the longest in the thesis. [min]"""
@@ -26,6 +27,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     supply, simulation = table(document, "supply"), table(document, "simulation")
     findings = list(check_positions(document))
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
+    findings += check_wiring(document)
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += check_traffic(document)

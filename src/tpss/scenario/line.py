@@ -8,7 +8,18 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from tpss.scenario.fields import Name, Part, Position, Real, ascending, fault, one_of, unique
+from tpss.scenario.fields import (
+    Flag,
+    Name,
+    Part,
+    Position,
+    Real,
+    Whole,
+    ascending,
+    fault,
+    one_of,
+    unique,
+)
 from tpss.units import kilometres
 
 FARTHEST_KM = 10_000.0
@@ -43,6 +54,15 @@ class SpeedLimit(Part):
         ge=-100_000, le=100_000, description="Position from which the limit applies."
     )
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
+
+
+class TrackCount(Part):
+    """A number of tracks that applies from its position to that of the next one."""
+
+    from_km: Position = Field(
+        ge=-100_000, le=100_000, description="Position from which the number applies."
+    )
+    count: Whole = Field(ge=1, le=8, description="Number of tracks.")
 
 
 class TrackCurve(Part):
@@ -84,11 +104,20 @@ def _one_after_another(curves: Sequence[TrackCurve]) -> Sequence[TrackCurve]:
     return curves
 
 
+Tracks = Annotated[tuple[TrackCount, ...], Field(min_length=1), ascending("from_km")]
+
+
 class Station(Part):
     """A passenger station, where trains may begin, stop or end."""
 
     name: Name = Field(description="Name that traffic entries refer to.")
     position_km: Position = Field(description="Position on the line.")
+    tracks: Whole = Field(
+        default=1,
+        ge=1,
+        le=50,
+        description="Tracks at the station: with more than one, trains may cross there.",
+    )
 
 
 class Line(Part):
@@ -121,6 +150,14 @@ class Line(Part):
         description="Speed limits of trains that run towards falling kilometres, if they are others; in "
         "rising kilometres too.",
     )
+    tracks: Annotated[Whole, Field(ge=1, le=8)] | Tracks = Field(
+        default=1,
+        description="Number of tracks; or a list, each number with from_km, where it begins.",
+    )
+    left_hand_running: Flag = Field(
+        default=False,
+        description="Whether trains run on the left of several tracks, seen in their direction.",
+    )
     curves: Annotated[tuple[TrackCurve, ...], AfterValidator(_one_after_another)] = Field(
         default=(), description="Curves; between them the track is straight."
     )
@@ -148,6 +185,19 @@ class Line(Part):
         return (
             f"{length} km" if self.begins_at_km == 0.0 else f"{length} km, from {begin} to {end} km"
         )
+
+    @property
+    def most_tracks(self) -> int:
+        """Number of tracks where it has most."""
+        return max(int(count) for *_, count in self.tracks_by_stretch)
+
+    @property
+    def tracks_by_stretch(self) -> list[Piece]:
+        """Stretches with the same number of tracks."""
+        if isinstance(self.tracks, int):
+            return [(self.begins_at_km, self.end_km, self.tracks)]
+        counts = [(each.from_km, each.count) for each in self.tracks]
+        return _pieces(counts, self.begins_at_km, self.end_km)
 
     def mirrored(self) -> Self:
         """The line as trains see it that run towards falling kilometres: positions are minus those here.

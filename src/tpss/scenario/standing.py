@@ -32,5 +32,5 @@ def stand_at_stations(document: dict[str, Any]) -> dict[str, Any]:
 def _parts(document: Mapping[str, Any]) -> Iterator[Any]:
     """Tables of all that may stand at a station."""
     supply = table(document, "supply")
-    for kind in STATIONS:
+    for kind in (*STATIONS, "posts"):
         yield from (part for _, part in items(supply, kind))

@@ -1,6 +1,7 @@
 """The power supply, one file per noun."""
 
 from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.contact_line import ContactLine, Post, SectionBreak
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
 from tpss.scenario.supply.supply import Station, Supply
@@ -9,10 +10,13 @@ from tpss.scenario.supply.transformer_station import TransformerStation
 
 __all__ = [
     "Catenary",
+    "ContactLine",
     "ConverterStation",
     "ConverterType",
     "HighVoltageLine",
     "LineType",
+    "Post",
+    "SectionBreak",
     "Station",
     "Supply",
     "System",

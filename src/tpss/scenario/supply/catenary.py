@@ -18,12 +18,35 @@ class Catenary(Part):
     capacitance_nf_per_km: Real = Field(
         default=0.0, ge=0, le=1_000, description="Capacitance to earth."
     )
+    mutual_r_ohm_per_km: Real = Field(
+        default=0.0,
+        ge=0,
+        le=10,
+        description="Resistance common to it and that of a track beside it.",
+    )
+    mutual_x_ohm_per_km: Real = Field(
+        default=0.0,
+        ge=0,
+        le=10,
+        description="Reactance common to both, by their mutual inductance.",
+    )
     connection_r_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Resistance between a feeding point and the line."
     )
     connection_x_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Reactance between a feeding point and the line."
     )
+
+    @model_validator(mode="after")
+    def _tracks_have_impedances_of_their_own(self) -> Self:
+        for axis in ("r", "x"):
+            own, common = (getattr(self, f"{which}{axis}_ohm_per_km") for which in ("", "mutual_"))
+            if common > 0.0 and common >= own:
+                raise fault(
+                    f"mutual_{axis}_ohm_per_km ({common:g}) is no less than {axis}_ohm_per_km ({own:g})",
+                    "give what the contact lines of two tracks have in common",
+                )
+        return self
 
     @model_validator(mode="after")
     def _connection_impedance_is_resolved(self) -> Self:

@@ -5,8 +5,9 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticKnownError
 
-from tpss.scenario.fields import FromLibrary, Part, Real, demand_unique, fault, unique
+from tpss.scenario.fields import Flag, FromLibrary, Part, Real, demand_unique, fault, unique
 from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.contact_line import ContactLine, Post, SectionBreak, Tied
 from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
@@ -46,6 +47,26 @@ class Supply(Part):
     )
     catenary: Annotated[Catenary, FromLibrary("catenaries")] = Field(
         description="Library name, or a table of your own."
+    )
+    tracks_tied: Tied | None = Field(
+        default=None,
+        description="Where the contact lines of several tracks are tied: `everywhere`, at `posts` "
+        "(those below, feeding points, stations where lines meet), or `no` (there, but at no posts).  "
+        "Needed where a line has several tracks.",
+    )
+    contact_lines: tuple[ContactLine, ...] = Field(
+        default=(), description="Stretches of lines with another contact line, or other ties."
+    )
+    posts: Annotated[tuple[Post, ...], unique("name")] = Field(
+        default=(), description="Coupling posts between tracks."
+    )
+    section_breaks: Annotated[tuple[SectionBreak, ...], unique("name")] = Field(
+        default=(), description="Breaks of the contact line, each with a switch."
+    )
+    junctions_tied: Flag = Field(
+        default=True,
+        description="Whether the contact lines of lines that meet at a station are tied there, where no "
+        "feeding station does it.",
     )
     high_voltage_line: HighVoltageLine | None = Field(
         default=None, description="High-voltage line; leave it out if there is none."

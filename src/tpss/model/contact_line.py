@@ -1,0 +1,247 @@
+r"""The contact line along a line of one or more tracks, as sections between nodes.
+
+Where the contact lines of n like tracks are tied everywhere they are one, of impedance and capacitance
+
+.. math:: z = \frac{z_s + (n - 1) z_m}{n}, \qquad c = n c_s,
+
+with what each has by itself and what two of them have in common.  Elsewhere each track has sections of
+its own between the places where they are tied.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import groupby, pairwise
+from typing import NamedTuple
+
+from tpss.powerflow.network import SectionPart
+from tpss.scenario.supply import Catenary, Supply
+from tpss.units import kilometres, si
+
+
+class LineLayout(NamedTuple):
+    """What the supply has to know of a line."""
+
+    name: str
+    number: int
+    begin_km: float
+    end_km: float
+    junctions: tuple[tuple[float, str], ...]
+    """Positions and names of the stations where it meets others."""
+    tracks: tuple[tuple[float, float, float], ...]
+    """Beginning and end of stretches [km], and their number of tracks."""
+    alone: bool
+    """Whether there is no other line."""
+
+    @property
+    def prefix(self) -> str:
+        """What stands before positions on it: its name, if there are several."""
+        return "" if self.alone else f"{self.name} "
+
+    def holds(self, line: str | None) -> bool:
+        """Whether something with the name of a line stands on it."""
+        return self.alone or line == self.name
+
+
+class Stretch(NamedTuple):
+    """A stretch of a line with one make of contact line."""
+
+    begin_km: float
+    end_km: float
+    catenary: Catenary
+    conductors: int
+    """One for all tracks that are tied everywhere, otherwise one a track."""
+    tracks: int
+    ties_at_posts: bool
+
+    def impedance_ohm_per_m(self) -> complex:
+        """Series impedance of a conductor. [Ω/m]"""
+        own = complex(si(self.catenary, "r_ohm_per_km"), si(self.catenary, "x_ohm_per_km"))
+        if self.conductors == self.tracks:
+            return own
+        common = complex(
+            si(self.catenary, "mutual_r_ohm_per_km"), si(self.catenary, "mutual_x_ohm_per_km")
+        )
+        return (own + (self.tracks - 1) * common) / self.tracks
+
+    def susceptance_s_per_m(self, frequency_hz: float) -> float:
+        """Shunt susceptance of a conductor. [S/m]"""
+        own = 2 * math.pi * frequency_hz * si(self.catenary, "capacitance_nf_per_km")
+        return own if self.conductors == self.tracks else self.tracks * own
+
+
+class Run(NamedTuple):
+    """A part of a line in which each track has the sections of one range above it."""
+
+    begin_km: float
+    end_km: float
+    sections: tuple[tuple[int, int], ...]
+    """Bounds of the sections of each conductor."""
+
+    def above(self, track: int) -> tuple[int, int]:
+        """Bounds of the sections above a track, counted from 1."""
+        return self.sections[0 if len(self.sections) == 1 else track - 1]
+
+
+def stretches_of(line: LineLayout, supply: Supply) -> list[Stretch]:
+    """Stretches of a line, in ascending order."""
+    others = [each for each in supply.contact_lines if line.holds(each.line)]
+    ends = {line.begin_km, line.end_km, *(km for piece in line.tracks for km in piece[:2])}
+    for each in others:
+        ends |= {km for km in (each.from_km, each.to_km) if km is not None}
+    return [_stretch(begin, end, line, supply) for begin, end in pairwise(sorted(ends))]
+
+
+def _stretch(begin_km: float, end_km: float, line: LineLayout, supply: Supply) -> Stretch:
+    catenary, tied = supply.catenary, supply.tracks_tied
+    for each in supply.contact_lines:
+        first = line.begin_km if each.from_km is None else each.from_km
+        last = line.end_km if each.to_km is None else each.to_km
+        if line.holds(each.line) and first <= begin_km and end_km <= last:
+            catenary, tied = each.catenary or catenary, each.tracks_tied or tied
+    tracks = int(next(count for begin, end, count in line.tracks if begin <= begin_km < end))
+    conductors = 1 if tied == "everywhere" else tracks
+    return Stretch(begin_km, end_km, catenary, conductors, tracks, tied == "posts")
+
+
+def catenary_at(place_km: float, line: LineLayout, supply: Supply) -> Catenary:
+    """Contact line at a place; that behind it where it changes. [km]"""
+    stretches = stretches_of(line, supply)
+    here = [each for each in stretches if each.begin_km <= place_km < each.end_km]
+    return (here or stretches[-1:])[0].catenary
+
+
+class Laid(NamedTuple):
+    """The contact line of a line."""
+
+    node: dict[float, int]
+    """Nodes where all conductors are tied, by their places. [km]"""
+    sections: list[SectionPart]
+    names: list[str]
+    """Of the sections."""
+    runs: list[Run]
+
+
+def lay_contact_line(
+    line: LineLayout,
+    supply: Supply,
+    feeding_km: set[float],
+    make_node: Callable[[float, str], int],
+    first_section: int,
+) -> Laid:
+    """Lay out the contact line of a line.
+
+    Parameters
+    ----------
+    line : LineLayout
+    supply : Supply
+    feeding_km : set of float
+        Places where it is fed or meets other lines. [km]
+    make_node : callable
+        Gives the node at a place [km] its index; its second argument is what its name says beside the
+        place.
+    first_section : int
+        Index of the first section.
+    """
+    stretches = stretches_of(line, supply)
+    breaks = {
+        each.position_km: each.name
+        for each in supply.section_breaks
+        if not each.closed and line.holds(each.line)
+    }
+    ties_km = feeding_km | _posts_km(line, stretches, supply)
+    ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}
+    points = sorted({*ends_km, *ties_km, *breaks})
+    pieces = [_piece(*ends, stretches) for ends in pairwise(points)]
+    node: dict[float, int] = {}
+    starts: list[list[int]] = []
+    stops: list[list[int]] = []
+    for km, before, behind in zip(points, [None, *pieces], [*pieces, None], strict=True):
+        sides = [each.stretch.conductors for each in (before, behind) if each is not None]
+        made: list[list[int]]
+        if km in breaks and len(sides) == 2:
+            made = [
+                _nodes(km, count, f", {side} {breaks[km]}", make_node)
+                for side, count in zip(("before", "behind"), sides, strict=True)
+            ]
+        elif km in ties_km or min(sides) == 1 or sides[0] != sides[-1]:
+            node[km] = make_node(km, "")
+            made = [[node[km]] * count for count in sides]
+        else:
+            made = [_nodes(km, sides[0], "", make_node)] * len(sides)
+        if before is not None:
+            stops.append(made[0])
+        if behind is not None:
+            starts.append(made[-1])
+    between = list(zip(pieces, starts, stops, strict=True))
+    return Laid(node, *_sections(line, supply, between, first_section))
+
+
+class _Piece(NamedTuple):
+    """A part of a stretch between neighbouring points."""
+
+    begin_km: float
+    end_km: float
+    stretch: Stretch
+
+
+def _piece(begin_km: float, end_km: float, stretches: Sequence[Stretch]) -> _Piece:
+    stretch = next(each for each in stretches if each.begin_km <= begin_km < each.end_km)
+    return _Piece(begin_km, end_km, stretch)
+
+
+def _posts_km(line: LineLayout, stretches: Sequence[Stretch], supply: Supply) -> set[float]:
+    """Places of closed posts where they have tracks to tie. [km]"""
+    return {
+        post.position_km
+        for post in supply.posts
+        if post.closed
+        and line.holds(post.line)
+        and any(
+            each.begin_km <= post.position_km <= each.end_km
+            and each.conductors > 1
+            and each.ties_at_posts
+            for each in stretches
+        )
+    }
+
+
+def _nodes(
+    place_km: float, count: int, words: str, make_node: Callable[[float, str], int]
+) -> list[int]:
+    """A node for each conductor."""
+    if count == 1:
+        return [make_node(place_km, words)]
+    return [make_node(place_km, f", track {k + 1}{words}") for k in range(count)]
+
+
+def _sections(
+    line: LineLayout,
+    supply: Supply,
+    pieces: Sequence[tuple[_Piece, list[int], list[int]]],
+    first: int,
+) -> tuple[list[SectionPart], list[str], list[Run]]:
+    """Sections of pieces between their nodes; those of a conductor follow each other in a run."""
+    sections: list[SectionPart] = []
+    names: list[str] = []
+    runs: list[Run] = []
+    for conductors, group in groupby(pieces, key=lambda each: each[0].stretch.conductors):
+        run, bounds = list(group), []
+        for k in range(conductors):
+            begin = first + len(sections)
+            for piece, starts, stops in run:
+                stretch = piece.stretch
+                sections.append(
+                    SectionPart(
+                        starts[k],
+                        stops[k],
+                        piece.begin_km * 1e3,
+                        piece.end_km * 1e3,
+                        stretch.impedance_ohm_per_m(),
+                        stretch.susceptance_s_per_m(supply.frequency_hz),
+                    )
+                )
+                place = f"{line.prefix}{kilometres(piece.begin_km)}-{kilometres(piece.end_km)} km"
+                names.append(place if conductors == 1 else f"{place}, track {k + 1}")
+            bounds.append((begin, first + len(sections)))
+        runs.append(Run(run[0][0].begin_km, run[-1][0].end_km, tuple(bounds)))
+    return sections, names, runs

@@ -1,0 +1,68 @@
+"""The contact line along lines of several tracks: its make by stretch, ties between tracks, breaks."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tpss.scenario.fields import (
+    Flag,
+    FromLibrary,
+    Name,
+    Part,
+    Position,
+    fault,
+    name_of_line,
+    station_at,
+)
+from tpss.scenario.supply.catenary import Catenary
+
+Tied = Literal["everywhere", "posts", "no"]
+"""Where the contact lines of several tracks are tied."""
+
+
+class ContactLine(Part):
+    """A stretch of a line whose contact line is another one than the supply's."""
+
+    line: Name | None = name_of_line()
+    from_km: Position | None = Field(
+        default=None, description="Where it begins; leave it out: where the line does."
+    )
+    to_km: Position | None = Field(
+        default=None, description="Where it ends; leave it out: where the line does."
+    )
+    catenary: Annotated[Catenary, FromLibrary("catenaries")] | None = Field(
+        default=None,
+        description="Library name, or a table of your own; leave it out: the supply's.",
+    )
+    tracks_tied: Tied | None = Field(
+        default=None,
+        description="Where the contact lines of its tracks are tied; leave it out: as the supply says.",
+    )
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        if self.from_km is not None and self.to_km is not None and self.to_km <= self.from_km:
+            raise fault(
+                f"the stretch ends at {self.to_km:g} km, and begins at {self.from_km:g} km",
+                "give the lower position as from_km",
+            )
+        return self
+
+
+class Post(Part):
+    """A coupling post, a switch that ties the contact lines of all tracks at its place."""
+
+    name: Name = Field(description="Name, shown in the results.")
+    line: Name | None = name_of_line()
+    at: Name | None = station_at()
+    position_km: Position = Field(description="Position on its line.")
+    closed: Flag = Field(default=True, description="Whether it ties the tracks.")
+
+
+class SectionBreak(Part):
+    """A break of the contact line with a switch; open, it parts the line there, on all tracks."""
+
+    name: Name = Field(description="Name, shown in the results.")
+    line: Name | None = name_of_line()
+    position_km: Position = Field(description="Position on its line.")
+    closed: Flag = Field(default=True, description="Whether the contact line goes on.")

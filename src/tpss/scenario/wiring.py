@@ -1,0 +1,182 @@
+"""Checks of the contact line of several tracks: its ties, posts, breaks and stretches.
+
+They read the document as it was written, see `scenario.raw`.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from tpss import library
+from tpss.scenario.line import CLOSEST_KM
+from tpss.scenario.raw import Ends, Fault, ends_of, items, lines_of, number, places_of, table
+from tpss.scenario.supply.supply import STATIONS
+from tpss.units import kilometres
+
+
+class _Stretch(NamedTuple):
+    """A stretch of a line with what is said about its contact line."""
+
+    begin_km: float
+    end_km: float
+    tracks: int
+    tied: object
+    catenary: object
+    key: str
+    """Where its catenary is given."""
+
+
+def check_wiring(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Faults of the contact line of several tracks, of posts and breaks."""
+    supply, lines = table(document, "supply"), lines_of(document)
+    for i, each in items(supply, "contact_lines"):
+        yield from _overlaps(i, each, supply)
+    stretches = {
+        name: _stretches(name, line, ends, supply, len(lines) == 1)
+        for name, (_, line) in lines.items()
+        if (ends := ends_of(line)) is not None
+    }
+    for name, (key, line) in lines.items():
+        yield from _untold(name if len(lines) > 1 else "the line", stretches.get(name, []))
+        yield from _early_tracks(key, line)
+    for i, post in items(supply, "posts"):
+        yield from _idle_post(f"supply.posts.{i}", post, stretches)
+    for i, each in items(supply, "section_breaks"):
+        yield from _break_at_a_node(f"supply.section_breaks.{i}", each, document)
+
+
+def _overlaps(i: int, here: Mapping[str, Any], supply: Mapping[str, Any]) -> Iterator[Fault]:
+    for k, other in items(supply, "contact_lines"):
+        if k >= i or here.get("line") != other.get("line"):
+            continue
+        (first, last), (begin, end) = (_span(each) for each in (here, other))
+        if first < end and begin < last:
+            problem = f"overlaps supply.contact_lines.{k}"
+            yield f"supply.contact_lines.{i}", "", problem, "give each place one contact line"
+
+
+def _span(stretch: Mapping[str, Any]) -> Ends:
+    begin, end = number(stretch, "from_km"), number(stretch, "to_km")
+    return -1e9 if begin is None else begin, 1e9 if end is None else end
+
+
+def _stretches(
+    name: str, line: Mapping[str, Any], ends: Ends, supply: Mapping[str, Any], alone: bool
+) -> list[_Stretch]:
+    """Stretches of a line, as far as it tells them."""
+    counts = _counts(line, ends)
+    others = [
+        (f"supply.contact_lines.{i}", each)
+        for i, each in items(supply, "contact_lines")
+        if alone or each.get("line") == name
+    ]
+    borders = {*ends, *(km for begin, end, _ in counts for km in (begin, end))}
+    borders |= {km for _, each in others for km in _span(each)}
+    inside = sorted(km for km in borders if ends[0] <= km <= ends[1])
+    found = []
+    for begin, end in zip(inside, inside[1:], strict=False):
+        tracks = next((count for first, last, count in counts if first <= begin < last), 1)
+        tied, catenary, key = supply.get("tracks_tied"), supply.get("catenary"), "supply"
+        for place, each in others:
+            first, last = _span(each)
+            if first <= begin and end <= last:
+                tied = each.get("tracks_tied", tied)
+                if "catenary" in each:
+                    catenary, key = each["catenary"], place
+        found.append(_Stretch(begin, end, tracks, tied, catenary, key))
+    return found
+
+
+def _counts(line: Mapping[str, Any], ends: Ends) -> list[tuple[float, float, int]]:
+    given = line.get("tracks", 1)
+    if isinstance(given, int):
+        return [(*ends, given)]
+    rows = [
+        (km, int(count))
+        for _, each in items(line, "tracks")
+        if (km := number(each, "from_km")) is not None
+        and (count := number(each, "count")) is not None
+    ]
+    begins = [ends[0], *(km for km, _ in rows[1:])]
+    return [
+        (begin, end, count)
+        for begin, end, (_, count) in zip(begins, [*begins[1:], ends[1]], rows, strict=False)
+    ]
+
+
+def _early_tracks(key: str, line: Mapping[str, Any]) -> Iterator[Fault]:
+    ends, first = ends_of(line), next((each for _, each in items(line, "tracks")), {})
+    begin = number(first, "from_km")
+    if ends is not None and begin is not None and begin > ends[0]:
+        problem = "no number of tracks applies at the beginning of the line"
+        remedy = f"make the first one begin at {kilometres(ends[0])}"
+        yield f"{key}.tracks.0.from_km", kilometres(begin), problem, remedy
+
+
+def _untold(line: str, stretches: list[_Stretch]) -> Iterator[Fault]:
+    """Several tracks of which it is not said whether they are tied, or that cannot be told apart."""
+    several = [each for each in stretches if each.tracks > 1]
+    untold = next((each for each in several if each.tied is None), None)
+    if untold is not None:
+        problem = f"it is missing, and {line} has {untold.tracks} tracks"
+        remedy = (
+            'add "everywhere", "posts" or "no": tied or not changes the voltage drop of tracks by a '
+            "factor of about two"
+        )
+        yield "supply.tracks_tied", "", problem, remedy
+    for each in several:
+        common = _common(each.catenary)
+        if each.tied in ("posts", "no") and common:
+            problem = f"not modelled: {common} of tracks that are not tied everywhere"
+            remedy = 'leave it out, or give tracks_tied = "everywhere"'
+            yield f"{each.key}.catenary", "", problem, remedy
+            return
+
+
+def _common(catenary: object) -> str:
+    """Key of a common impedance of two tracks that is not 0, if there is one."""
+    entries = library.entries("catenaries")
+    if isinstance(catenary, str) and catenary in entries:
+        catenary = entries[catenary]
+    if not isinstance(catenary, Mapping):
+        return ""
+    keys = ("mutual_r_ohm_per_km", "mutual_x_ohm_per_km")
+    return next((key for key in keys if number(catenary, key)), "")
+
+
+def _idle_post(
+    key: str, post: Mapping[str, Any], stretches: Mapping[str, list[_Stretch]]
+) -> Iterator[Fault]:
+    """A post where no tracks are tied at posts."""
+    km = number(post, "position_km")
+    line = post.get("line", next(iter(stretches), None) if len(stretches) == 1 else None)
+    if km is None or line not in stretches:
+        return
+    here = [each for each in stretches[str(line)] if each.begin_km <= km <= each.end_km]
+    if here and not any(each.tracks > 1 and each.tied == "posts" for each in here):
+        problem = f"ties nothing: at {kilometres(km)} km no tracks are tied at posts"
+        remedy = 'leave it out, or give tracks_tied = "posts" where the line has several tracks'
+        yield key, "", problem, remedy
+
+
+def _break_at_a_node(
+    key: str, section_break: Mapping[str, Any], document: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """A break where the contact line is fed or meets others, so that it parts nothing."""
+    supply, lines = table(document, "supply"), lines_of(document)
+    km = number(section_break, "position_km")
+    line = section_break.get("line", next(iter(lines)) if len(lines) == 1 else None)
+    if km is None or line not in lines:
+        return
+    fed = [
+        number(each, "position_km")
+        for kind in (*STATIONS, "posts")
+        for _, each in items(supply, kind)
+        if len(lines) == 1 or each.get("line") == line
+    ]
+    own = places_of(lines[str(line)][1])
+    others = [places_of(other) for name, (_, other) in lines.items() if name != line]
+    fed += [place for name, place in own.items() if any(name in each for each in others)]
+    fed += list(ends_of(lines[str(line)][1]) or ())
+    if any(place is not None and abs(place - km) < CLOSEST_KM for place in fed):
+        problem = "the contact line is fed, tied or ends here"
+        yield f"{key}.position_km", kilometres(km), problem, "place it beside"

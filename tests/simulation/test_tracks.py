@@ -1,0 +1,254 @@
+"""Contact lines of several tracks: tied everywhere, at posts, or not; who runs on which track."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tpss
+from lines import line, network, run, scenario_of, service
+from tpss.results.passing import passings
+
+KIND = {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.15}
+
+BOTH_WAYS = [
+    service("up", "A", "B", departures_min=[0.0, 6.0]),
+    service("down", "B", "A", departures_min=[0.0, 4.0]),
+]
+
+
+def double_track(
+    tied: str | None, traffic: list[dict[str, Any]] = BOTH_WAYS, tracks: Any = 2, **kind: float
+) -> dict[str, Any]:
+    """40 km of two tracks between two stations."""
+    document = network({"main": line(40.0, {"A": 0.0, "B": 40.0}, tracks=tracks)}, traffic)
+    document["supply"]["catenary"] = {**KIND, **kind}
+    end = {"name": "end", "line": "main", "position_km": 40.0, "type": "Q48/Q49", "converters": 2}
+    document["supply"]["converter_stations"].append(end)
+    if tied is not None:
+        document["supply"]["tracks_tied"] = tied
+    return document
+
+
+def with_posts(document: dict[str, Any], *places_km: float, **more: Any) -> dict[str, Any]:
+    document["supply"]["posts"] = [
+        {"name": f"P{km:g}", "line": "main", "position_km": km, **more} for km in places_km
+    ]
+    return document
+
+
+# One line for all tracks
+
+
+def test_tracks_tied_everywhere_are_a_line_of_half_the_impedance():
+    """Two of 0.2 + j0.15 ohm/km in parallel: 0.1 + j0.075."""
+    tied = run(double_track("everywhere"))
+    half = run(double_track(None, tracks=1, r_ohm_per_km=0.1, x_ohm_per_km=0.075))
+    for name in ("route_position", "pantograph_voltage"):
+        np.testing.assert_array_equal(tied.dataset[name], half.dataset[name])
+
+
+def test_what_both_have_in_common_is_not_halved():
+    """(0.2 + 0.02)/2 + j (0.15 + 0.05)/2 = 0.11 + j0.1 ohm/km; twice 10 nF/km."""
+    common = {
+        "mutual_r_ohm_per_km": 0.02,
+        "mutual_x_ohm_per_km": 0.05,
+        "capacitance_nf_per_km": 10.0,
+    }
+    tied = run(double_track("everywhere", **common))
+    one = {"r_ohm_per_km": 0.11, "x_ohm_per_km": 0.1, "capacitance_nf_per_km": 20.0}
+    alone = run(double_track(None, tracks=1, **one))
+    np.testing.assert_allclose(
+        tied.dataset.pantograph_voltage, alone.dataset.pantograph_voltage, rtol=1e-12
+    )
+
+
+# Tracks with contact lines of their own
+
+
+def snapshot(result: tpss.Result, step: int, ties_km: list[float]) -> tuple[Any, Any]:
+    """Recorded voltages of the trains in a step, and those of all nodes of both tracks solved at once.
+
+    Every train and every tie is a node; pieces between neighbours of a track have their impedance, and
+    stations the voltage that they have.  The trains' powers are given, their currents iterated.
+    """
+    data = result.dataset.isel(time=step)
+    there = np.isfinite(data.pantograph_voltage.to_numpy())
+    km, track = data.position.to_numpy()[there] / 1e3, data.train_track.to_numpy()[there]
+    volts = (data.pantograph_voltage * np.exp(1j * data.pantograph_angle)).to_numpy()[there]
+    powers = (data.active_power + 1j * data.reactive_power).to_numpy()[there]
+    count, trains = len(ties_km), len(km)
+    admittance = np.zeros((count + trains, count + trains), dtype=complex)
+    for number in (1, 2):
+        on_track = [(km[i], count + i) for i in range(trains) if track[i] == number]
+        points = sorted([*zip(ties_km, range(count), strict=True), *on_track])
+        for (begin_km, a), (end_km, b) in zip(points, points[1:], strict=False):
+            y = 1.0 / ((0.2 + 0.15j) * max(end_km - begin_km, 1e-3))
+            admittance[[a, b], [a, b]] += y
+            admittance[[a, b], [b, a]] -= y
+    node_v = (data.node_voltage * np.exp(1j * data.node_angle)).to_numpy()
+    fixed = [0, count - 1]
+    free = [n for n in range(count + trains) if n not in fixed]
+    found = np.full(count + trains, node_v[0])
+    place = {float(km): n for n, km in enumerate(data.node_position.to_numpy() / 1e3)}
+    found[fixed] = node_v[[place[ties_km[0]], place[ties_km[-1]]]]
+    for _ in range(200):
+        current = np.zeros(count + trains, dtype=complex)
+        current[count:] = -np.conj(powers / found[count:])
+        rest = current[free] - admittance[np.ix_(free, fixed)] @ found[fixed]
+        found[free] = np.linalg.solve(admittance[np.ix_(free, free)], rest)
+    return volts, found[count:]
+
+
+@pytest.mark.parametrize(("tied", "posts_km"), [("posts", [12.0, 25.0]), ("posts", []), ("no", [])])
+def test_every_track_is_solved_with_the_other_as_all_nodes_together(tied, posts_km):
+    result = run(with_posts(double_track(tied), *posts_km))
+    for step in (20, 60, 100, 150):
+        recorded, expected = snapshot(result, step, [0.0, *posts_km, 40.0])
+        assert len(recorded) >= 2
+        np.testing.assert_allclose(recorded, expected, rtol=0.0, atol=1e-6 * 15e3)
+
+
+def test_a_post_that_is_open_ties_nothing():
+    open_post = run(with_posts(double_track("posts"), 20.0, closed=False))
+    without = run(double_track("no"))
+    np.testing.assert_array_equal(
+        open_post.dataset.pantograph_voltage, without.dataset.pantograph_voltage
+    )
+
+
+def test_the_more_the_tracks_are_tied_the_less_the_voltage_falls():
+    one_way = [service("up", "A", "B")]
+    lowest = [
+        run(document).trips.lowest_voltage_kv[0]
+        for document in (
+            double_track("no", one_way),
+            with_posts(double_track("posts", one_way), 20.0),
+            with_posts(double_track("posts", one_way), 10.0, 20.0, 30.0),
+            double_track("everywhere", one_way),
+        )
+    ]
+    assert lowest == sorted(lowest)
+    assert lowest[-1] - lowest[0] > 0.1
+
+
+def test_a_second_track_that_ends_is_tied_to_the_first_there():
+    """From km 15 on there is one track: the same as two tied lines up to a post there, then one."""
+    tracks = [{"from_km": 0.0, "count": 2}, {"from_km": 15.0, "count": 1}]
+    result = run(double_track("posts", tracks=tracks))
+    steps = result.train_steps
+    assert set(steps.track[steps.position_km < 14.9]) == {1, 2}
+    assert set(steps.track[steps.position_km > 15.1]) == {1}
+    assert [str(name) for name in result.dataset.node.to_numpy()] == [
+        "contact line at 0 km", "contact line at 15 km", "contact line at 40 km",
+    ]  # fmt: skip
+
+
+# Stretches and breaks
+
+
+def test_each_stretch_has_the_contact_line_that_is_said_of_it():
+    """The outer halves of one kind and another are those of two lines that meet, one of each kind."""
+    other = {"r_ohm_per_km": 0.05, "x_ohm_per_km": 0.05}
+    document = double_track(None, tracks=1)
+    document["supply"]["contact_lines"] = [{"line": "main", "from_km": 20.0, "catenary": other}]
+    mixed = run(document)
+    assert list(mixed.dataset.node_position.to_numpy()) == [0.0, 20e3, 40e3]
+    plain = run(double_track(None, tracks=1))
+    assert (mixed.trips.lowest_voltage_kv >= plain.trips.lowest_voltage_kv).all()
+    assert mixed.summary["losses_mwh"] < plain.summary["losses_mwh"]
+
+
+def test_an_open_break_parts_the_line_and_a_closed_one_does_nothing():
+    """Parted at km 15, each station feeds its own side: no power crosses."""
+    document = double_track("everywhere")
+    document["supply"]["section_breaks"] = [{"name": "B", "line": "main", "position_km": 15.0}]
+    closed = run(document)
+    np.testing.assert_array_equal(
+        closed.dataset.pantograph_voltage,
+        run(double_track("everywhere")).dataset.pantograph_voltage,
+    )
+    parted = copy.deepcopy(document)
+    parted["supply"]["section_breaks"][0]["closed"] = False
+    data = run(parted).dataset
+    names = [str(name) for name in data.node.to_numpy()]
+    assert names[1:3] == ["contact line at 15 km, before B", "contact line at 15 km, behind B"]
+    on_first = np.isfinite(data.position) & (data.position < 15e3)
+    drawn_w = data.active_power.where(on_first).sum("train").to_numpy()[:-1]
+    fed_w = data.station_active_power.to_numpy()[:-1, 0]
+    assert (fed_w - drawn_w >= -1e3).all()  # nothing but the losses of its side beside
+    assert (fed_w[drawn_w == 0.0] < 1e3).all()
+
+
+# Who runs where
+
+
+@pytest.mark.parametrize(("left", "up", "down"), [(False, 2, 1), (True, 1, 2)])
+def test_trains_keep_to_the_side_that_the_line_says(left, up, down):
+    document = double_track("everywhere")
+    document["lines"]["main"]["left_hand_running"] = left
+    steps = run(document).train_steps
+    assert set(steps.track[steps.service == "up"]) == {up}
+    assert set(steps.track[steps.service == "down"]) == {down}
+
+
+def test_trains_on_two_tracks_do_not_pass_through_each_other_and_on_one_they_do():
+    assert passings(run(double_track("everywhere"))) == []
+    met = passings(run(double_track(None, tracks=1)))
+    assert len(met) == 4
+    assert {each.one.split()[0] for each in met} == {"up"}
+
+
+def test_trains_that_meet_at_a_station_of_two_tracks_cross_there():
+    """Alike trains from both ends at once meet in the middle, where there is a loop or there is none."""
+    pair = [service("up", "A", "B"), service("down", "B", "A")]
+    document = double_track(None, pair, tracks=1)
+    assert len(passings(run(document))) == 1
+    middle = {"name": "M", "position_km": 20.0, "tracks": 2}
+    document["lines"]["main"]["stations"].insert(1, middle)
+    assert passings(run(document)) == []
+
+
+# Faults
+
+
+def faults_of(document: dict[str, Any]) -> list[tuple[str, str]]:
+    with pytest.raises(tpss.ScenarioError) as caught:
+        scenario_of(document)
+    return [(finding.key, finding.problem) for finding in caught.value.findings]
+
+
+def test_two_tracks_have_to_say_whether_they_are_tied():
+    assert faults_of(double_track(None)) == [
+        ("supply.tracks_tied", "it is missing, and the line has 2 tracks")
+    ]
+
+
+def test_a_post_where_nothing_is_tied_at_posts_is_a_fault():
+    ((key, problem),) = faults_of(with_posts(double_track("everywhere"), 20.0))
+    assert key == "supply.posts.0"
+    assert "ties nothing" in problem
+
+
+def test_common_impedances_need_ties_everywhere():
+    ((key, problem),) = faults_of(double_track("posts", mutual_x_ohm_per_km=0.05))
+    assert key == "supply.catenary"
+    assert problem.startswith("not modelled: mutual_x_ohm_per_km")
+
+
+def test_a_break_at_a_feeding_point_is_a_fault():
+    document = double_track("everywhere")
+    document["supply"]["section_breaks"] = [{"name": "B", "line": "main", "position_km": 40.0}]
+    ((key, _),) = faults_of(document)
+    assert key == "supply.section_breaks.0.position_km"
+
+
+def test_stretches_of_contact_line_may_not_overlap():
+    document = double_track("everywhere")
+    document["supply"]["contact_lines"] = [
+        {"line": "main", "to_km": 20.0, "catenary": "AT"},
+        {"line": "main", "from_km": 10.0, "catenary": "BT"},
+    ]
+    ((key, problem),) = faults_of(document)
+    assert (key, problem) == ("supply.contact_lines.1", "overlaps supply.contact_lines.0")
