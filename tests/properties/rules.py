@@ -11,6 +11,8 @@ from tpss.model.build import steps_of
 from tpss.scenario.machine import RetardationBands
 from tpss.step.state import TrainState
 
+from .ways import along_way
+
 ROUNDING_M_S = 2e-9
 ROUNDING_M = 1e-6
 STOP_ERROR_M = 1e-3
@@ -32,7 +34,10 @@ def judge_values(result: Result) -> None:
     steps = data.sizes["time"] - 1
     state = data.train_state.to_numpy()[:steps]
     present, driven = state >= 0, (state >= 0) & (state != TrainState.ARRIVED)
-    for name in set(data.data_vars) - {"train_state", "load_flow_passes"}:
+    for name in {"train_line", "train_track"} & set(data.data_vars):
+        assert ((data[name].to_numpy()[:steps] >= 0) == present).all(), f"{name} is not told"
+    codes = {"train_state", "load_flow_passes", "train_line", "train_track"}
+    for name in set(data.data_vars) - codes:
         values = data[name].to_numpy()[:steps]
         if data[name].dims == ("time", "train"):
             expected = present if name in ("position", "route_position", "speed") else driven
@@ -116,7 +121,7 @@ class Journey:
     """The way of one train, and the rules that it has to keep."""
 
     def __init__(self, result: Result, name: str) -> None:
-        data, line = result.dataset, result.scenario.line
+        data = result.dataset
         i = data.train.to_numpy().tolist().index(name)
         self.name = name
         self.step_s = float(data.attrs["time_step_s"])
@@ -131,21 +136,17 @@ class Journey:
         self.time_s = data.time.to_numpy()[rows]
         self.x, self.v, self.braking, self.a, self.state = (
             data[name].to_numpy()[rows, i]
-            for name in ("position", "speed", "braking_force", "acceleration", "train_state")
+            for name in ("route_position", "speed", "braking_force", "acceleration", "train_state")
         )
         service = str(data.service.to_numpy()[i])
         self.entry = next(entry for entry in result.scenario.traffic if entry.name == service)
         self.train = result.scenario.trains[self.entry.train]
-        self.place_m = {station.name: station.position_km * 1e3 for station in line.stations}
-        down = self.place_m[self.entry.destination] < self.place_m[self.entry.origin]
-        given = (line.speed_limits_down if down else ()) or line.speed_limits
-        self.limit_m = np.array([limit.from_km * 1e3 for limit in given])
-        limits = [min(item.speed_kmh, self.train.max_speed_kmh) for item in given]
+        way = along_way(result.scenario, self.entry)
+        self.stops_m, self.end_m = way.stops_m, way.end_m
+        self.limit_m = np.array([from_m for from_m, _ in way.limits])
+        limits = [min(speed_kmh, self.train.max_speed_kmh) for _, speed_kmh in way.limits]
         self.limit = np.array(limits) / 3.6
-        if down:
-            self.look_towards_falling_kilometres()
         self.keep_limits_until_the_tail_has_passed()
-        self.end_m = self.place_m[self.entry.destination]
         self.force, self.volts, resistance, climb = (
             data[name].to_numpy()[rows, i]
             for name in (
@@ -155,15 +156,6 @@ class Journey:
         self.opposing = resistance + climb
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
-
-    def look_towards_falling_kilometres(self) -> None:
-        """Replace positions by minus these: an item of the profile ends where it began, and begins where
-        the next one did."""
-        self.x = -self.x
-        self.place_m = {name: -place_m for name, place_m in self.place_m.items()}
-        farthest_m = min(self.x.min(), *self.place_m.values(), -self.limit_m[-1]) - 1.0
-        self.limit_m = np.array([farthest_m, *-self.limit_m[:0:-1]])
-        self.limit = self.limit[::-1].copy()
 
     def keep_limits_until_the_tail_has_passed(self) -> None:
         """Replace the limits by the lowest ones under the train."""
@@ -246,7 +238,7 @@ class Journey:
 
         That is what adhesion allows at its speed, and the machine at its voltage.
         """
-        ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
+        ends = [*self.stops_m, self.end_m]
         for k in np.flatnonzero((self.state[:-1] >= 0) & (self.state[:-1] != TrainState.DWELLING)):
             limit = self.limit[np.searchsorted(self.limit_m, self.x[k], side="right") - 1]
             if abs(self.v[k + 1] - limit) < ROUNDING_M_S:
@@ -288,7 +280,7 @@ class Journey:
 
     def near_a_stop(self, k: int) -> bool:
         """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""
-        ends = [*(self.place_m[stop.station] for stop in self.entry.stops), self.end_m]
+        ends = [*self.stops_m, self.end_m]
         fastest = self.limit.max()
         room_m = fastest * (2.0 * self.step_s + fastest / self.retardation[1].min())
         ahead = (self.limit_m > self.x[k]) & (self.limit_m < self.x[k] + room_m)
@@ -316,7 +308,7 @@ class Journey:
     def stops_and_dwells_to_the_second(self) -> None:
         """At each stop it meets: within a millimetre at the instants, and for its dwell."""
         for call, stop in enumerate(self.entry.stops):
-            place, dwell_s = self.place_m[stop.station], 60.0 * stop.dwell_min
+            place, dwell_s = self.stops_m[call], 60.0 * max(stop.dwell_min, stop.turn_min or 0.0)
             if self.x[0] >= place or self.x[-1] <= place + STOP_ERROR_M:
                 continue
             stood_s = self.went_on_s[call] - self.arrived_s[call]
@@ -330,7 +322,7 @@ class Journey:
                 f"{self.name} dwells {stood_s} s at {place} m"
             )
         dwelling = self.state == TrainState.DWELLING
-        places = np.array([self.place_m[stop.station] for stop in self.entry.stops])
+        places = np.array(self.stops_m)
         for x in self.x[dwelling]:
             assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, (
                 f"{self.name} stands at {x}"
@@ -340,11 +332,11 @@ class Journey:
         """At each stop it meets: within a millimetre, for the steps of its dwell."""
         stops = [
             (
-                self.place_m[stop.station],
-                steps_of(60.0 * stop.dwell_min, self.step_s),
+                place_m,
+                steps_of(60.0 * max(stop.dwell_min, stop.turn_min or 0.0), self.step_s),
                 60.0 * (stop.depart_after_min or 0.0),
             )
-            for stop in self.entry.stops
+            for stop, place_m in zip(self.entry.stops, self.stops_m, strict=True)
         ]
         for place, dwell, leaves_s in [*stops, (self.end_m, 0, 0.0)]:
             stood = (np.abs(self.x - place) < STOP_ERROR_M) & (self.v == 0.0)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
+from .networks import into_network
 from .ranges import numbers
 
 Draw = Any
@@ -237,7 +238,7 @@ def with_one_retardation(trains: Document) -> None:
 def sound_scenarios(draw: Draw) -> Document:
     """A scenario without faults, but for trains that may be placed too fast to stop.
 
-    A fifth of the lines begin elsewhere than at 0.
+    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.
     """
     begin_km = draw(BEGINNINGS_KM)
     line = draw(lines())
@@ -266,7 +267,8 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
-    return document if begin_km is None else moved(document, begin_km)
+    document = document if begin_km is None else moved(document, begin_km)
+    return into_network(draw, document, lines()) if draw(st.integers(0, 3)) == 3 else document
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]
