@@ -1,0 +1,140 @@
+"""Time of a train and step in a network: twenty double-track lines, five hundred trains both ways.
+
+Usage: python benchmarks/network.py [--runs N]
+"""
+
+import statistics
+import time
+from typing import Any
+
+import numpy as np
+
+import tpss
+from tpss.model import build_model
+from tpss.model.start import start_of
+from tpss.run.kernels import make_ready
+from tpss.run.run import advance_to_end, run_of
+from tpss.step.state import TrainState
+
+from report import arguments, stay_on_one_core
+
+LINES, LENGTH_KM, TRAINS = 20, 80.0, 500
+STEP_MIN, DURATION_MIN = 0.1, 60.0
+BORDER_KM = LENGTH_KM / 2.0
+"""Where a line meets the one it hangs from; every line has a feeding station at its far end."""
+
+
+def scenario(trains: int = TRAINS) -> tpss.Scenario:
+    """A tree of lines, each from the middle of an earlier one, with posts every 15 km.
+
+    Railcars run all along each line, in both directions, at equal distances in time.
+    """
+    each = trains // (2 * LINES)
+    return tpss.Scenario.from_document(
+        {
+            "format": 1,
+            "name": "network",
+            "simulation": {"time_step_min": STEP_MIN, "duration_min": DURATION_MIN},
+            "lines": {f"line {i}": _line(i) for i in range(LINES)},
+            "supply": {
+                "catenary": {"r_ohm_per_km": 0.12, "x_ohm_per_km": 0.13},
+                "tracks_tied": "posts",
+                "converter_stations": _stations(),
+                "posts": [
+                    {"name": f"post {i} {k}", "line": f"line {i}", "position_km": 8.0 + 15.0 * k}
+                    for i in range(LINES)
+                    for k in range(5)
+                ],
+            },
+            "trains": {"railcar": RAILCAR},
+            "traffic": [
+                {
+                    "name": f"{i} {way}",
+                    "train": "railcar",
+                    "from": ends[0],
+                    "to": ends[1],
+                    "headway_min": LENGTH_KM / 100.0 * 60.0 / each,
+                    "already_running": True,
+                }
+                for i in range(LINES)
+                for way, ends in (("up", _ends(i)), ("down", _ends(i)[::-1]))
+            ],
+        },
+        "network",
+    )
+
+
+def _ends(i: int) -> tuple[str, str]:
+    return f"begin {i}" if i == 0 else f"middle {(i - 1) // 2}", f"end {i}"
+
+
+def _line(i: int) -> dict[str, Any]:
+    begin, end = _ends(i)
+    hills = np.random.default_rng(i).uniform(-6.0, 6.0, 40)
+    return {
+        "length_km": LENGTH_KM,
+        "tracks": 2,
+        "gradients": [{"from_km": 2.0 * k, "permille": float(g)} for k, g in enumerate(hills)],
+        "speed_limits": [{"from_km": 0.0, "speed_kmh": 120.0}],
+        "stations": [
+            {"name": begin, "position_km": 0.0},
+            {"name": f"middle {i}", "position_km": BORDER_KM},
+            {"name": end, "position_km": LENGTH_KM},
+        ],
+    }
+
+
+def _stations() -> list[dict[str, Any]]:
+    kind = {"type": "Q48/Q49", "converters": 6}
+    ends = [
+        {"name": f"far {i}", "line": f"line {i}", "position_km": 75.0, **kind} for i in range(LINES)
+    ]
+    middles = [
+        {"name": f"near {i}", "line": f"line {i}", "position_km": 20.0, **kind} for i in range(10)
+    ]
+    return [*ends, *middles]
+
+
+RAILCAR = {
+    "mass_t": 110.0,
+    "adhesive_mass_t": 55.0,
+    "max_speed_kmh": 120.0,
+    "max_retardation_m_s2": 0.6,
+    "resistance_a_n": 1500.0,
+    "resistance_b_n_s_per_m": 20.0,
+    "resistance_c_n_s2_per_m2": 6.0,
+    "rotating_mass_share": 0.07,
+    "tractive_effort": {"max_force_kn": 90.0, "max_power_kw": 1600.0},
+    "power_factor": 0.98,
+    "efficiency": 0.86,
+    "auxiliary_power_kw": 60.0,
+}
+
+
+def main() -> None:
+    asked = arguments(__doc__, runs=5)
+    stay_on_one_core()
+    model, _ = build_model(scenario())
+    make_ready(model)
+    started = time.perf_counter()
+    start = start_of(scenario(), model)
+    prepared_s = time.perf_counter() - started
+    times = []
+    for _ in range(asked.runs):
+        run = run_of(start)
+        began = time.process_time()
+        status = advance_to_end(run, start)
+        times.append(time.process_time() - began)
+    state = run.recording.train_state[: run.step]
+    train_steps = int(((state >= 0) & (state != TrainState.ARRIVED)).sum())
+    print(
+        f"{status}: {len(model.network.sections)} sections, {model.network.source_of_node.size} nodes, "
+        f"{train_steps / run.step:.0f} trains at a time, {run.step} steps, "
+        f"{run.recording.passes[: run.step].mean():.2f} passes a step"
+    )
+    print(f"prepared in {prepared_s:.2f} s; a run takes {1e3 * statistics.median(times):.0f} ms")
+    print(f"least {min(times) / train_steps * 1e9:.0f} ns a train and step")
+
+
+if __name__ == "__main__":
+    main()
