@@ -18,6 +18,7 @@ from tpss.results.result import Result
 from tpss.results.step_words import step_lines
 from tpss.results.stops import punctuality
 from tpss.results.tables import train_steps
+from tpss.results.waits import waits_in_words
 from tpss.step.recorded import RECORDED
 from tpss.units import on_line
 
@@ -146,6 +147,7 @@ def key_figures(result: Result) -> list[str]:
         lines.append(f"Trip time of {summary['studied_train']}: {summary['trip_time_min']:.2f} min")
     if any(entry.is_scheduled for entry in result.scenario.traffic):
         lines += punctuality(result.stops)
+    lines += waits_in_words(result.waits)
     lines += _lost_time(summary.get("lost_time"))
     total, losses = summary["total_energy_mwh"], summary["losses_mwh"]
     share = f" ({100 * losses / total:.2f} %)" if total > 0 else ""

@@ -136,7 +136,7 @@ def look_ahead(
     if motion.wait_s > 0.0 or v <= 0.0:
         return
     here = index_at(motion.position_m, data.limits.from_m[row])
-    cruise = highest_speed(data.limits.value[row][at(here)], kind)
+    cruise = min(highest_speed(data.limits.value[row][at(here)], kind), motion.ceiling_m_s)
     if v > cruise:
         return
     motion.gradient = index_from(motion.gradient, motion.position_m, data.gradients.from_m[row])

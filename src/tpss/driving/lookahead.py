@@ -61,7 +61,8 @@ def what_to_brake_for(
     from_m, value = data.limits.from_m[row], data.limits.value[row]
     per_metre = 2.0 * kind.highest_retardation_m_s2
     position_m, fastest = motion.position_m, kind.highest_speed_m_s
-    target_m, target_m_s = data.stops[at(route), at(motion.next_stop)].position_m, 0.0
+    stop_m, target_m_s = data.stops[at(route), at(motion.next_stop)].position_m, 0.0
+    target_m = min(stop_m, motion.authority_m)
     square = per_metre * (target_m - position_m)
     b, bands = kind.highest_retardation_m_s2, kind.braking
     reach = braking_square(fastest, b, bands) + fastest * per_metre * data.options.step_s

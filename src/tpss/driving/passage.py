@@ -50,7 +50,7 @@ from tpss.vehicle.phase import (
     force_of_phase,
     voltage_decides,
 )
-from tpss.vehicle.train import MOST_CALLS, Passage, Phase, Train, copy_motion
+from tpss.vehicle.train import MOST_CALLS, Motion, Passage, Phase, Train, copy_motion
 from tpss.vehicle.train_type import TrainType
 
 LONGEST_PHASE_S = 3.0
@@ -269,6 +269,19 @@ def _stand(
 
 
 @inlined
+def _is_held(motion: Motion) -> bool:
+    """Whether a train stands at the end of its authority."""
+    return motion.speed_m_s <= 0.0 and motion.authority_m - motion.position_m <= SLACK_M
+
+
+@inlined
+def _hold(voltage_v: float, passage: Passage, kind: TrainType) -> None:
+    """Let a train stand for the rest of the step, as others are in its way."""
+    _draw_standing(voltage_v, passage.left_s, passage, kind)
+    passage.left_s, passage.acceleration_m_s2 = 0.0, 0.0
+
+
+@inlined
 def _come_to_stop(passage: Passage, train: Train, data: DrivingData) -> None:
     """A train stands at its stop: it has arrived, dwells, or continues at once."""
     motion = passage.motion
@@ -331,6 +344,7 @@ def _aim(
     motion, from_m = passage.motion, data.limits.from_m[at(kind.profile)]
     v, b, left = motion.speed_m_s, kind.highest_retardation_m_s2, passage.left_s
     cruise = highest_speed(data.limits.value[at(kind.profile)][at(here)], kind)
+    cruise = min(cruise, motion.ceiling_m_s)
     bands = kind.braking
     own = braking_square(v, b, bands)
     to_brake = v > target_m_s and own >= square * (1.0 - ROUNDING)
@@ -425,7 +439,8 @@ def _drive(
             off_m = abs(motion.position_m - aim.target_m)
             passage.stop_error_m = max(passage.stop_error_m, off_m)
             motion.position_m = aim.target_m
-            if aim.until_m_s == 0.0:
+            stop = data.stops[at(train.route), at(motion.next_stop)]
+            if aim.until_m_s == 0.0 and motion.position_m >= stop.position_m:
                 _come_to_stop(passage, train, data)
 
 
@@ -474,6 +489,8 @@ def pass_through(
             return
         if passage.motion.wait_s > 0.0:
             _stand(voltage_v, passage, train, kind, data.options.step_s)
+        elif _is_held(passage.motion):
+            _hold(voltage_v, passage, kind)
         else:
             _drive(voltage_v, passage, train, kind, data, points, scratch)
     passage.stalled = True

@@ -17,6 +17,7 @@ from tpss.physics.adhesion import Rail
 from tpss.record import Records
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model, RunControl
+from tpss.step.separation import Separation, Signalling
 from tpss.track.leg import Leg
 from tpss.units import si
 
@@ -58,6 +59,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         points=points,
         network=network,
         legs=build_legs(routes, lines, plan.runs),
+        signalling=_signalling(scenario),
     )
     return model, Layout(
         supply=plan,
@@ -95,6 +97,16 @@ def _options(scenario: Scenario) -> Options:
         driver=switch(Driver[_member(simulation.driver)]),
         braking=switch(Braking[_member(simulation.braking)]),
         motion=switch(MotionModel[_member(simulation.how_trains_move)]),
+    )
+
+
+def _signalling(scenario: Scenario) -> Signalling:
+    given = scenario.signalling
+    return Signalling(
+        separation=switch(Separation[_member(given.separation)]),
+        reaction_s=given.reaction_s,
+        margin_m=given.margin_m,
+        block_m=given.block_m or 0.0,
     )
 
 

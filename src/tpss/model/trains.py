@@ -78,6 +78,7 @@ def _train_type(train: Train, profile: int, book: CurveBook) -> Any:
         highest_acceleration_m_s2=_si_or(train, "max_acceleration_m_s2", math.inf),
         **_braking(train),
         highest_speed_m_s=si(train, "max_speed_kmh"),
+        length_m=si(train, "length_m"),
         profile=profile,
         adhesion=CurvePlace.row() if train.adhesion is None else _over_speed(train.adhesion, book),
         efficiency=_over_speed(train.efficiency, book),

@@ -104,6 +104,11 @@ def report(result: Result) -> str:
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stops", "Times at stops", result.stops),
+        *(
+            [tables.of_frame("waits", "Waits for others", result.waits)]
+            if len(result.waits)
+            else []
+        ),
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_standards(result),
     ]

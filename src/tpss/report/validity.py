@@ -10,8 +10,8 @@ ALWAYS = (
     "Quasi-stationary: voltages and currents are phasors, forces and powers constant within a time "
     "step, or means of it. No transients, no harmonics, no protection.",
     "Results depend on the time step; run the scenario with half of it to see by how much.",
-    "Trains see no signals and no other trains; drivers hold the speed limit and make no mistakes. No "
-    "regenerative braking.",
+    "Trains that meet on one track do not see each other, nor do those that follow unless they are kept "
+    "apart; drivers hold the speed limit and make no mistakes. No regenerative braking.",
 )
 
 SUPPLY = (

@@ -27,6 +27,7 @@ _OF_STANDARDS = (
 TABLE_PLACES = {
     "trips": "trips",
     "stops": "stops",
+    "waits": "waits",
     "stations": "stations",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "trains": "train_steps",

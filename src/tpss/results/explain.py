@@ -51,6 +51,7 @@ _LIMITED = {
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
+    "too_near": "trains were nearer to others than they could brake for, where lines meet or as placed",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
 }
 

@@ -12,6 +12,7 @@ import xarray as xr
 from tpss.results import store, tables
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
+from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
 
 STANDARDS = "standards"
@@ -63,6 +64,12 @@ class Result:
     def stops(self) -> pd.DataFrame:
         """One row per train and station where it stops: arrival, departure, dwell."""
         return stops(self.dataset, self.scenario)
+
+    @cached_property
+    def waits(self) -> pd.DataFrame:
+        """One row per time that a train stood because of others; empty unless trains are kept apart."""
+        kept_apart = self.scenario.signalling.separation != "none"
+        return waits(self.dataset if kept_apart else self.dataset.isel(train=slice(0)))
 
     @cached_property
     def stations(self) -> pd.DataFrame:

@@ -67,6 +67,8 @@ class ScheduledTrain(NamedTuple):
     dwell_steps_left: int = 0
     wait_s: float = 0.0
     under_way_s: float = 0.0
+    authority_m: float = math.inf
+    ceiling_m_s: float = math.inf
     plan_step: int = 0
     plan_hold_steps: int = 0
     plan_first: float = 0.0

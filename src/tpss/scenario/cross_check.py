@@ -29,6 +29,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
     findings += check_wiring(document)
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
+    findings += _separation(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += check_traffic(document)
     return [Finding(file, *finding) for finding in findings]
@@ -49,6 +50,16 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[Fault]:
         problem = "too long for the aggressive driver, who checks the speed only once per step"
         remedy = f'use {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
+
+
+def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
+    """Trains that are kept apart, with stepped motion, which knows no authorities."""
+    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
+    choices += made_of_stepped_motion(simulation.get)
+    wanted = table(document, "signalling").get("separation", "none")
+    if choices and wanted != "none":
+        problem = f"does not go with {choices[0]}"
+        yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"
 
 
 def _bands(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:

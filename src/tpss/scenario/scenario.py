@@ -15,6 +15,7 @@ from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, uniqu
 from tpss.scenario.line import Line
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.signalling import Signalling
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import Supply
@@ -52,6 +53,9 @@ class Scenario(Part):
     )
     traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")] = Field(
         description="Services, at least one; the first train of the first one is studied."
+    )
+    signalling: Signalling = Field(
+        default={}, validate_default=True, description="What keeps trains apart."
     )
     standards: Standards = Field(
         default={}, validate_default=True, description="Criteria by which the result is judged."

@@ -14,6 +14,7 @@ from tpss.step.coupling import solve_step
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
+from tpss.step.separation import Separation, keep_apart
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.vehicle.train import Course, Phase, Train
@@ -58,8 +59,14 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     remove_arrived(state.trains)
     # 2. Converter control (3.6)-(3.9).
     control_converters(step * model.options.step_s, model, state)
-    # 3. Where the trains stand.
-    return place_trains(model, state)
+    # 3. Where the trains stand, and how far that lets others go.
+    count = place_trains(model, state)
+    if model.signalling.separation != Separation.NONE:
+        recording.counters[Counter.TOO_NEAR] += keep_apart(
+            count, model.options.step_s, state.flow.standing, state.trains, model.types, model.legs,
+            state.occupancies, state.first_on_track, model.signalling,
+        )  # fmt: skip
+    return count
 
 
 @kernel

@@ -7,6 +7,7 @@ from tpss.kernel import inlined
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Network
 from tpss.record import Records
+from tpss.step.separation import Signalling
 from tpss.track.leg import Leg
 from tpss.vehicle.train_type import TrainType
 
@@ -37,6 +38,7 @@ class Model(NamedTuple):
     network: Network
     legs: Records[Leg]
     """Shape (routes, most legs); what is left of a row begins nowhere."""
+    signalling: Signalling
 
 
 @inlined
@@ -62,6 +64,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.points,
         model.network,
         model.legs,
+        model.signalling,
     )
 
 

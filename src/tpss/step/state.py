@@ -8,9 +8,10 @@ import numpy.typing as npt
 
 from tpss.kernel import inlined
 from tpss.numerics.series import SCRATCH_SHAPE
-from tpss.powerflow.network import Flow, Loads, new_flow
+from tpss.powerflow.network import Flow, Indices, Loads, new_flow
 from tpss.record import Record, Records
 from tpss.step.model import Model, driving_data
+from tpss.step.separation import Occupancy, tracks_of
 from tpss.vehicle.breaches import BREACHES, Breach
 from tpss.vehicle.train import Train
 
@@ -54,6 +55,7 @@ class Counter(IntEnum):
     EFFICIENCY_EXTRAPOLATED = Breach.EFFICIENCY_EXTRAPOLATED
     CURRENT_LIMITED = Breach.CURRENT_LIMITED
     SHORT_PIECE = BREACHES
+    TOO_NEAR = BREACHES + 1
 
 
 class Clock(Record):
@@ -96,6 +98,10 @@ class State(NamedTuple):
     flow: Flow
     clock: Records[Clock]
     """One record."""
+    occupancies: Records[Occupancy]
+    """Parts of tracks that trains stand on: of each one below its head, and one on the leg before."""
+    first_on_track: Indices
+    """First one on each track; -1: none."""
 
 
 @inlined
@@ -115,4 +121,6 @@ def new_state(model: Model, trains: Records[Train]) -> State:
         scratch=np.empty(SCRATCH_SHAPE),
         flow=new_flow(model.network, trains.size),
         clock=clock,
+        occupancies=Occupancy.blank(2 * trains.size),
+        first_on_track=np.full(tracks_of(model.legs), -1, dtype=np.int64),
     )

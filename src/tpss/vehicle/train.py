@@ -78,6 +78,10 @@ class Motion(Record):
     """Time until it departs, if it moves continuously. [s]"""
     under_way_s: float
     """Time since it departed at its origin, for its scheduled times; infinite: not known. [s]"""
+    authority_m: float
+    """Position that it may not pass in this step, because of others; infinite: any. [m]"""
+    ceiling_m_s: float
+    """Speed that it may not exceed in this step, because of others; infinite: any. [m/s]"""
 
 
 class Plan(Record):
@@ -235,6 +239,8 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.dwell_steps_left = source.dwell_steps_left
     target.wait_s = source.wait_s
     target.under_way_s = source.under_way_s
+    target.authority_m = source.authority_m
+    target.ceiling_m_s = source.ceiling_m_s
 
 
 @kernel

@@ -79,6 +79,8 @@ class TrainType(Record):
     """The highest retardation over speed."""
     highest_speed_m_s: float
     """Highest speed of the train. [m/s]"""
+    length_m: float
+    """Length of the train. [m]"""
     profile: int
     """Row of the line's profiles, which are laid out for each length of train."""
     resistance: DavisCoefficients

@@ -1,0 +1,220 @@
+r"""Trains that follow each other keep apart: how far each may go in a step, and how fast.
+
+A train may go as far as the rear of the train ahead of it on its track, less a margin: the **end of its
+authority**, with moving blocks.  With fixed blocks it may go as far as the block in which that rear is.
+It brakes for this place as for a stop, which moves on from step to step.  Places are those at the start
+of the step: the train ahead has gone on by its end, so nobody comes too near.
+
+Not to brake and accelerate in turns behind a slower train, it is no faster than that it could stop at
+the end of its authority after a reaction time t_r of going on as before:
+
+.. math:: v t_r + \frac{v^2}{2 b} = d \;\Rightarrow\; v = -b t_r + \sqrt{b^2 t_r^2 + 2 b d},
+
+the reaction time being a time step at least, in which the place that it aims at stays.
+
+Trains are kept in a list for each track, so that a train looks at those on its own way only.
+Trains that run towards each other on one track do not see each other.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from tpss.kernel import at, inlined, kernel
+from tpss.powerflow.network import Indices, Standing
+from tpss.record import Record, Records
+from tpss.track.leg import Leg, place_on_line
+from tpss.vehicle.braking import braking_square
+from tpss.vehicle.train import Train
+from tpss.vehicle.train_type import TrainType
+
+MOST_TRACKS = 8
+"""Of a line."""
+
+RESTART_M = 20.0
+"""A train that stands starts again once it may go so far. [m]"""
+
+ROUNDING_M = 0.001
+"""A train that brakes for the end of its authority is as near to it as it may be, but for this. [m]"""
+
+SLOWEST_M_S = 1.0
+"""A train that moves is held to no less, until it brakes for the end of its authority. [m/s]"""
+
+
+class Separation(IntEnum):
+    """How trains that follow each other are kept apart."""
+
+    NONE = 0
+    MOVING_BLOCK = 1
+    FIXED_BLOCK = 2
+
+
+class Signalling(NamedTuple):
+    """What keeps trains apart."""
+
+    separation: Separation
+    reaction_s: float
+    """Time that a train goes on before it brakes. [s]"""
+    margin_m: float
+    """Distance that is kept from the train or block ahead. [m]"""
+    block_m: float
+    """Length of fixed blocks, counted from kilometre 0 of each line. [m]"""
+
+
+class Occupancy(Record):
+    """A part of a track that a train stands on."""
+
+    train: int
+    sign: float
+    """Direction of the train there: 1.0 towards rising kilometres."""
+    low_m: float
+    """Where it begins on the line. [m]"""
+    high_m: float
+    """Where it ends. [m]"""
+    next: int
+    """Next one on the track; -1: none."""
+
+
+def tracks_of(legs: Records[Leg]) -> int:
+    """Number of lists that tracks take."""
+    return (int(legs["line"].max(initial=0)) + 1) * (MOST_TRACKS + 1)
+
+
+@inlined
+def _track(leg: Leg) -> int:
+    """Number of the list of a leg's track."""
+    return leg.line * (MOST_TRACKS + 1) + leg.track
+
+
+@kernel
+def _occupy(
+    k: int, i: int, from_m: float, to_m: float, leg: Leg, occupancies: Records[Occupancy],
+    first: Indices,
+) -> None:  # fmt: skip
+    """Note in the `k`-th entry that train `i` stands between two positions along its route. [m]"""
+    entry, track = occupancies[at(k)], _track(leg)
+    one_m, other_m = place_on_line(from_m, leg), place_on_line(to_m, leg)
+    entry.train, entry.sign = i, leg.sign
+    entry.low_m, entry.high_m = min(one_m, other_m), max(one_m, other_m)
+    entry.next, first[at(track)] = first[at(track)], k
+
+
+@inlined
+def note_places(
+    count: int, standing: Records[Standing], trains: Records[Train], types: Records[TrainType],
+    legs: Records[Leg], occupancies: Records[Occupancy], first: Indices,
+) -> None:  # fmt: skip
+    """List what the first `count` trains of `standing` stand on, by tracks."""
+    first[:] = -1
+    for n in range(count):
+        i = standing[at(n)].train
+        train = trains[at(i)]
+        head_m = train.motion.position_m
+        rear_m = head_m - types[at(train.train_type)].length_m
+        leg = legs[at(train.route), at(train.leg)]
+        _occupy(2 * n, i, max(rear_m, leg.from_m), head_m, leg, occupancies, first)
+        if rear_m < leg.from_m and train.leg > 0:
+            before = legs[at(train.route), at(train.leg - 1)]
+            rear_m = max(rear_m, before.from_m)
+            _occupy(2 * n + 1, i, rear_m, leg.from_m, before, occupancies, first)
+
+
+@inlined
+def _end_before(entry: Occupancy, leg: Leg, signalling: Signalling) -> float:
+    """End of authority before an occupied part of a track, along the route of a train behind it. [m]"""
+    if signalling.separation == Separation.MOVING_BLOCK:
+        rear_m = entry.low_m if leg.sign > 0.0 else entry.high_m
+    elif leg.sign > 0.0:
+        rear_m = math.floor(entry.low_m / signalling.block_m) * signalling.block_m
+    else:
+        rear_m = math.ceil(entry.high_m / signalling.block_m) * signalling.block_m
+    return leg.sign * (rear_m - leg.offset_m) - signalling.margin_m
+
+
+@inlined
+def _is_ahead(entry: Occupancy, i: int, position_m: float, own: bool, leg: Leg) -> bool:
+    """Whether a part of a track is ahead of train `i`, on the leg where it is (its own) or later."""
+    if entry.train == i or entry.sign != leg.sign:
+        return False
+    head_m = leg.sign * ((entry.high_m if leg.sign > 0.0 else entry.low_m) - leg.offset_m)
+    if not own:
+        return head_m >= leg.from_m
+    return head_m > position_m or (head_m == position_m and entry.train < i)
+
+
+@kernel
+def end_of_authority(
+    i: int, reach_m: float, train: Train, legs: Records[Leg], occupancies: Records[Occupancy],
+    first: Indices, signalling: Signalling,
+) -> float:  # fmt: skip
+    """Position that train `i` may not pass because of others; infinite: none within its reach. [m]"""
+    end_m, position_m = math.inf, train.motion.position_m
+    for n in range(train.leg, legs.shape[1]):
+        leg = legs[at(train.route), at(n)]
+        if leg.from_m > position_m + reach_m or end_m < leg.from_m:
+            break
+        until_m = math.inf
+        if n + 1 < legs.shape[1]:
+            until_m = legs[at(train.route), at(n + 1)].from_m
+        k = first[at(_track(leg))]
+        while k >= 0:
+            entry = occupancies[at(k)]
+            if _is_ahead(entry, i, position_m, n == train.leg, leg):
+                before_m = _end_before(entry, leg, signalling)
+                if before_m < until_m:
+                    end_m = min(end_m, before_m)
+            k = entry.next
+    return end_m
+
+
+@inlined
+def give_authority(
+    end_m: float, step_s: float, train: Train, kind: TrainType, signalling: Signalling
+) -> bool:
+    """Set how far and how fast a train may go; return whether it is nearer than it can brake for."""
+    motion = train.motion
+    motion.authority_m, motion.ceiling_m_s = end_m, math.inf
+    if end_m == math.inf:
+        return False
+    room_m, v, b = end_m - motion.position_m, motion.speed_m_s, kind.highest_retardation_m_s2
+    if v <= 0.0:
+        if room_m < RESTART_M:
+            motion.authority_m = motion.position_m
+        return False
+    braking_m = braking_square(v, b, kind.braking) / (2.0 * b)
+    too_near = room_m < braking_m - ROUNDING_M
+    if too_near:
+        room_m = braking_m
+        motion.authority_m = motion.position_m + braking_m
+    reach_s = max(signalling.reaction_s, step_s)
+    calm = math.sqrt((b * reach_s) ** 2 + 2.0 * b * max(0.0, room_m)) - b * reach_s
+    motion.ceiling_m_s = max(SLOWEST_M_S, calm)
+    return too_near
+
+
+@kernel
+def keep_apart(
+    count: int, step_s: float, standing: Records[Standing], trains: Records[Train],
+    types: Records[TrainType], legs: Records[Leg], occupancies: Records[Occupancy],
+    first: Indices, signalling: Signalling,
+) -> int:  # fmt: skip
+    """Give the first `count` trains of `standing` their authorities in a step.
+
+    Returns
+    -------
+    int
+        Number of trains that are nearer to another one than they can brake for.
+    """
+    note_places(count, standing, trains, types, legs, occupancies, first)
+    too_near = 0
+    for n in range(count):
+        i = standing[at(n)].train
+        train = trains[at(i)]
+        kind = types[at(train.train_type)]
+        b = kind.highest_retardation_m_s2
+        fastest = kind.highest_speed_m_s
+        reach_m = braking_square(fastest, b, kind.braking) / (2.0 * b) + signalling.margin_m
+        reach_m += fastest * (signalling.reaction_s + 2.0 * step_s) + signalling.block_m
+        end_m = end_of_authority(i, reach_m, train, legs, occupancies, first, signalling)
+        too_near += give_authority(end_m, step_s, train, kind, signalling)
+    return too_near
