@@ -52,7 +52,9 @@ TABLES = """## Tables
 
 `Result.trips`, `Result.stops`, `Result.stations` and `Result.train_steps` are pandas tables; those of
 `Result.standards` stand on [a page of their own](evidence.md). What a train has not done yet, or not
-within the run, is NaN."""
+within the run, is NaN. With `simulation.starts_at` the stops have their times by the clock too, in
+columns named `arrival_clock`, `departure_clock`, `scheduled_arrival_clock` and
+`scheduled_departure_clock`."""
 
 TRIPS = {
     "train": "name",

@@ -62,7 +62,7 @@ def judge_departures(result: Result) -> None:
     continuous = result.scenario.simulation.how_trains_move == "continuous"
     begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled"))
     for entry in result.scenario.traffic:
-        asked_min = entry.departures_min
+        asked_min = entry.listed_departures_min
         if asked_min is None:
             last_min = begun * h / 60.0 + entry.headway_min
             count = max(0, math.ceil((last_min - entry.first_departure_min) / entry.headway_min))

@@ -46,7 +46,7 @@ UNKNOWN_KEYS = [
     unknown(FREIGHT, "mass_kg", 1_470_000, "mass_t"),
     unknown(FREIGHT, "max_current_a", 1250.0, "max_motor_current_a"),
     unknown(ENTRY, "headway_s", 600.0, "headway_min"),
-    unknown(ENTRY, "departure_min", 0.0, "departures_min"),
+    unknown(ENTRY, "departures", [0.0], "departures_min"),
     pytest.param(
         {f"{ENTRY}.stops": [{"station": "Middle", "dwell_min": 1.0, "dwell_s": 60.0}]},
         f"{ENTRY}.stops.0.dwell_s", "60.0", "did you mean dwell_min?", id="key-of-a-stop",

@@ -71,7 +71,7 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
     for entry in scenario.traffic:
         yield "traffic", _service(entry)
     yield "standards", _standards(scenario.standards)
-    yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
+    yield "simulation", _simulation(scenario.simulation, scenario.traffic[0])
     for name, variant in scenario.variants.items():
         yield "variant", f"{name}: {variant.description or 'changes ' + ', '.join(variant.paths)}"
 
@@ -172,8 +172,8 @@ def _service(entry: Traffic) -> str:
     texts = [f"{entry.name}: {entry.train} from {entry.origin} to {entry.destination}"]
     if entry.via:
         texts.append(f"over {_listed(list(entry.via))}")
-    if entry.departures_min is not None:
-        texts.append(f"at {_listed([f'{minute:g} min' for minute in entry.departures_min])}")
+    if (listed := entry.listed_departures_min) is not None:
+        texts.append(f"at {_listed([f'{minute:g} min' for minute in listed])}")
     else:
         texts.append(f"every {entry.headway_min:g} min from {entry.first_departure_min:g} min")
     if entry.already_running:
@@ -193,10 +193,11 @@ def _stop(stop: Stop) -> str:
     return f"{text}, not before {stop.depart_after_min:g} min under way"
 
 
-def _simulation(simulation: Simulation, studied: str) -> str:
+def _simulation(simulation: Simulation, first: Traffic) -> str:
     step, duration = simulation.time_step_min, simulation.duration_min
     steps = "steps of a length to be chosen" if step is None else f"steps of {step:g} min"
-    end = f"until {studied} 1 arrives" if duration is None else f"for {duration:g} min"
+    studied = first.name if first.departure_min is not None else f"{first.name} 1"
+    end = f"until {studied} arrives" if duration is None else f"for {duration:g} min"
     choices = [
         f"{key} {getattr(simulation, key)}"
         for key, field in Simulation.model_fields.items()

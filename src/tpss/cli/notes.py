@@ -189,15 +189,15 @@ def _idle_current(name: str, train: Train) -> Iterator[str]:
 
 def _times(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
     step, duration = scenario.simulation.time_step_min, scenario.simulation.duration_min
-    departures = entry.departures_min or (entry.first_departure_min,)
+    departures = entry.listed_departures_min or (entry.first_departure_min,)
     key = f"traffic.{i} ({entry.name})"
     if duration is not None and departures[0] >= duration:
         yield (
             f"{key}: its first departure, at {departures[0]:g} min, is not before the end of the "
             f"run, at {duration:g} min"
         )
-    if step is None:  # it will be chosen
-        return
+    if step is None or scenario.simulation.how_trains_move == "continuous":
+        return  # it will be chosen, or does not matter
     if not all(_is_whole(time / step) for time in (*departures, entry.headway_min or 0.0)):
         yield (
             f"{key}: its departures are not all at whole time steps of {step:g} min; a train departs "

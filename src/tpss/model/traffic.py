@@ -56,8 +56,9 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
 
 
 def _departures(entry: Traffic) -> dict[str, Any]:
-    if entry.departures_min is not None:
-        return {"departures_s": tuple(60.0 * minute for minute in entry.departures_min)}
+    if (listed := entry.listed_departures_min) is not None:
+        departures_s = tuple(60.0 * minute for minute in listed)
+        return {"departures_s": departures_s, "is_one_train": entry.departure_min is not None}
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 from tpss.model.routes import Route, routes_of
 from tpss.results.standards.windows import Floats, table_of
 from tpss.results.tables import step_s
+from tpss.scenario.clock import clock_at
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
@@ -37,12 +38,17 @@ class StopTimes(NamedTuple):
     """How much later than scheduled it arrived, or departed where no arrival is scheduled."""
 
 
+TIMES = ("arrival", "departure", "scheduled_arrival", "scheduled_departure")
+"""Times that are also shown by the clock."""
+
+
 def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     """One row per train and station where it begins, stops or ends: arrival, departure, dwell.
 
     Scheduled times count from the train's own departure at its origin, and are NaN where none are given.
     A train that brakes within a step arrives when it stands, not at the next instant.  What it has not
-    done within the run is NaN, and so is what it did before, if it was on the line at the start.
+    done within the run is NaN, and so is what it did before, if it was on the line at the start.  Where
+    the simulation has a clock, columns with its times come behind the others.
     """
     entries = {entry.name: entry for entry in scenario.traffic}
     calls = {
@@ -70,7 +76,18 @@ def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
                     late_min,
                 )
             )
-    return table_of(rows, StopTimes)
+    return _with_clock(table_of(rows, StopTimes), scenario.simulation.start_s)
+
+
+def _with_clock(table: pd.DataFrame, start_s: float | None) -> pd.DataFrame:
+    """The table with its times by the clock, if that is known."""
+    if start_s is None:
+        return table
+    clocks = {
+        f"{time}_clock": [clock_at(minute, start_s) for minute in table[f"{time}_min"].tolist()]
+        for time in TIMES
+    }
+    return table.assign(**clocks)
 
 
 def punctuality(stops: pd.DataFrame) -> list[str]:
@@ -84,6 +101,8 @@ def punctuality(stops: pd.DataFrame) -> list[str]:
         worst = int(np.nanargmax(late_min))
         train, station = stops.train.to_numpy()[worst], stops.station.to_numpy()[worst]
         text += f", most by {train} at {station}, {late_min[worst]:.2f} min"
+        if "arrival_clock" in stops:
+            text += f" ({stops.arrival_clock[worst] or stops.departure_clock[worst]})"
     return [text]
 
 

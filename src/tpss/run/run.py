@@ -299,7 +299,7 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     demand_room(model, capacity, len(on_line) + departures)
     trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
     names = [train.name for train in trains]
-    studied_name = f"{services[0].name} 1"
+    studied_name = services[0].name_of(1)
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
     model = model._replace(control=RunControl(studied_train=ends_with))

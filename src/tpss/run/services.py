@@ -28,6 +28,8 @@ class Service:
     headway_s: float = math.inf
     first_s: float = 0.0
     departures_s: tuple[float, ...] = ()
+    is_one_train: bool = False
+    """Whether it is a single train, which has its name."""
     already_running: bool = False
     initial: tuple[tuple[float, float], ...] = ()
     """Position [m] and speed [m/s] of each train on the line at the start."""
@@ -41,6 +43,10 @@ class Service:
         while (time := self.first_s + count * self.headway_s) < until_s:
             yield time
             count += 1
+
+    def name_of(self, number: int) -> str:
+        """Name of the train that departs as the n-th, counted from 1."""
+        return self.name if self.is_one_train else f"{self.name} {number}"
 
     def departures_before(self, until_s: float) -> int:
         """Number of departures before `until_s`."""
@@ -95,7 +101,7 @@ def departing_trains(
             if first <= step < last:
                 trains.append(
                     ScheduledTrain(
-                        name=f"{service.name} {number}",
+                        name=service.name_of(number),
                         service=service.name,
                         train_type=service.train_type,
                         route=service.route,

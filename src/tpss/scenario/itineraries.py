@@ -36,12 +36,21 @@ def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _service_names(document: Mapping[str, Any]) -> Iterator[Fault]:
-    """The n-th train of a service is called "<service> n" or "<service> initial n"."""
-    entries = [(i, entry.get("name")) for i, entry in items(document, "traffic")]
-    names = {i: name for i, name in entries if isinstance(name, str)}
+    """The n-th train of a service is called "<service> n" or "<service> initial n".
+
+    A single train has the name of its service.
+    """
+    entries = list(items(document, "traffic"))
+    names = {i: entry["name"] for i, entry in entries if isinstance(entry.get("name"), str)}
+    known = set(names.values())
+    single = {i for i, entry in entries if "departure_min" in entry}
     for i, name in names.items():
-        if name.endswith(" initial") and name.removesuffix(" initial") in names.values():
+        service, _, which = name.rpartition(" ")
+        if which == "initial" and service in known:
             problem = "its trains would have the names of another service's initial trains"
+            yield f"traffic.{i}.name", repr(name), problem, "give it another name"
+        if i in single and which.isdecimal() and service.removesuffix(" initial") in known:
+            problem = "a single train, whose name a train of another service has"
             yield f"traffic.{i}.name", repr(name), problem, "give it another name"
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from tpss.scenario.clock import Moment
 from tpss.scenario.fields import (
     Flag,
     Name,
@@ -19,10 +20,14 @@ from tpss.scenario.fields import (
 )
 
 Times = Annotated[
-    tuple[Annotated[Real, Field(ge=0, le=100_000)], ...],
+    tuple[Moment, ...],
     Field(min_length=1),
     ascending("departures_min"),
 ]
+
+
+DEPARTURES = ("headway_min", "departures_min", "departure_min")
+"""Keys that say when trains depart, of which a service has one."""
 
 
 class Stop(Part):
@@ -78,9 +83,11 @@ class InitialTrain(Part):
 class Traffic(Part):
     """A service: trains of one type from one station to another."""
 
-    model_config = ConfigDict(json_schema_extra=one_of("headway_min", "departures_min"))
+    model_config = ConfigDict(json_schema_extra=one_of(*DEPARTURES))
 
-    name: Name = Field(description="Name, from which the names of its trains are derived.")
+    name: Name = Field(
+        description="Name, from which the names of its trains are derived, or that of a single train."
+    )
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
@@ -94,8 +101,13 @@ class Traffic(Part):
     departures_min: Times | None = Field(
         default=None, description="Times of departure, in place of a headway."
     )
-    first_departure_min: Real = Field(
-        default=0.0, ge=0, le=100_000, description="Time of the first departure, with a headway."
+    departure_min: Moment | None = Field(
+        default=None,
+        description="Time of departure of a single train, in place of a headway; its name is that of "
+        "the service.",
+    )
+    first_departure_min: Moment = Field(
+        default=0.0, description="Time of the first departure, with a headway."
     )
     already_running: Flag = Field(
         default=False,
@@ -112,6 +124,11 @@ class Traffic(Part):
         le=100_000,
         description="Scheduled arrival at the destination, counted from each train's own departure.",
     )
+
+    @property
+    def listed_departures_min(self) -> tuple[float, ...] | None:
+        """Departures, if they are listed or that of a single train; None with a headway. [min]"""
+        return self.departures_min if self.departure_min is None else (self.departure_min,)
 
     @property
     def is_scheduled(self) -> bool:
@@ -141,16 +158,16 @@ class Traffic(Part):
 
     @model_validator(mode="after")
     def _departures_are_given_once(self) -> Self:
-        if (self.headway_min is None) == (self.departures_min is None):
-            raise either_or("headway_min", "departures_min")
-        if self.already_running and (self.departures_min is not None or self.initial_trains):
+        if sum(getattr(self, key) is not None for key in DEPARTURES) != 1:
+            raise either_or(*DEPARTURES)
+        if self.already_running and (self.headway_min is None or self.initial_trains):
             raise fault(
                 "already_running needs headway_min, and replaces initial_trains",
                 "leave already_running out, or use it with headway_min alone",
             )
-        if self.departures_min is not None and self.first_departure_min:
+        if self.headway_min is None and self.first_departure_min:
             raise fault(
-                "first_departure_min belongs to headway_min; departures_min lists every departure",
+                "first_departure_min belongs to headway_min; the departures are given",
                 "leave first_departure_min out",
             )
         return self

@@ -9,6 +9,7 @@ from pydantic import BaseModel, Tag, ValidationError
 from tpss import units
 from tpss.errors import Finding, ScenarioError, closest, shortened, suggest
 from tpss.scenario.absences import absence_of
+from tpss.scenario.clock import START_S, start_of
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files, lines_of
@@ -70,7 +71,8 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     findings = inlined.findings
     scenario = None
     try:
-        scenario = model.model_validate(inlined.document)
+        context = {START_S: start_of(inlined.document)}
+        scenario = model.model_validate(inlined.document, context=context)
     except ValidationError as error:
         details: list[dict[str, Any]] = [dict(d) for d in error.errors(include_url=False)]
         locations: set[Location] = {detail["loc"] for detail in details}
