@@ -71,10 +71,11 @@ TRIPS = {
 }
 STOPS = {
     "train": "name",
-    "station": "where it begins, stops or ends",
+    "station": "where it begins, stops, passes or ends",
     "position_km": "position on the line",
-    "arrival_min": "when it came to stand; NaN where it begins",
-    "departure_min": "when it went on; NaN where it ends",
+    "kind": "which of these: `start`, `stop`, `pass` or `end`",
+    "arrival_min": "when it came to stand, or passed; NaN where it begins",
+    "departure_min": "when it went on, or passed; NaN where it ends",
     "dwell_min": "from one to the other",
     "scheduled_arrival_min": "when it should have; NaN where nothing is scheduled or known",
     "scheduled_departure_min": "when it should have gone on, likewise",

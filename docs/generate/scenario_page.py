@@ -46,6 +46,7 @@ DEFAULTS = {
     "Traffic.headway_min": "this, `departures_min` or `departure_min`",
     "Traffic.departures_min": "this, `headway_min` or `departure_min`",
     "Traffic.departure_min": "this, `headway_min` or `departures_min`",
+    "Scenario.traffic": "this or `timetables`",
     "Supply.frequency_hz": "the system's",
     "Supply.transformer_stations": "none",
     "Supply.converter_stations": "none; there is a station of some kind",

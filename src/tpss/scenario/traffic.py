@@ -72,6 +72,19 @@ class Stop(Part):
         return self
 
 
+class Pass(Part):
+    """A station where a train does not stop, for the time at which it passes."""
+
+    station: Name = Field(description="Station of the line.")
+    after_min: Real | None = Field(
+        default=None,
+        ge=0,
+        le=100_000,
+        description="Scheduled time, counted from the train's own departure at its origin; its lateness "
+        "is judged by it, and no train waits for it.",
+    )
+
+
 class InitialTrain(Part):
     """A train that is on its way when the simulation begins, heading for its next stop."""
 
@@ -118,6 +131,10 @@ class Traffic(Part):
         default=(), description="Trains on the line at the start."
     )
     stops: tuple[Stop, ...] = Field(default=(), description="Intermediate stops, in order.")
+    passes: tuple[Pass, ...] = Field(
+        default=(),
+        description="Stations on the way without a stop whose times are wanted, in order.",
+    )
     arrive_after_min: Real | None = Field(
         default=None,
         gt=0,
@@ -133,10 +150,9 @@ class Traffic(Part):
     @property
     def is_scheduled(self) -> bool:
         """Whether times are scheduled on the way or at the destination."""
-        times = [(stop.arrive_after_min, stop.depart_after_min) for stop in self.stops]
-        return any(time is not None for pair in times for time in pair) or (
-            self.arrive_after_min is not None
-        )
+        times = [self.arrive_after_min, *(each.after_min for each in self.passes)]
+        times += [time for s in self.stops for time in (s.arrive_after_min, s.depart_after_min)]
+        return any(time is not None for time in times)
 
     @model_validator(mode="after")
     def _scheduled_times_grow(self) -> Self:

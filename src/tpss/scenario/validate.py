@@ -87,7 +87,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
             _traced(finding, inlined) for finding in cross_check(inlined.document, str(source))
         ]
     if findings or scenario is None:
-        raise ScenarioError(findings)
+        raise ScenarioError(list(dict.fromkeys(findings)))
     return scenario
 
 
@@ -99,6 +99,8 @@ def _follows_from_another(
     if inlined.is_unread(location):
         return True
     if detail["type"] == "too_short":
+        if location == ("traffic",) and inlined.document.get("timetables"):
+            return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.
