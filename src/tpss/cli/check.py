@@ -200,6 +200,9 @@ def _service(entry: Traffic, start_s: float | None) -> str:
         texts.append("already running at the start")
     if entry.initial_trains:
         texts.append(f"trains on the line at the start: {len(entry.initial_trains)}")
+    if entry.delays is not None:
+        share, mean_min = 100.0 * entry.delays.share, entry.delays.mean_min
+        texts.append(f"{share:g} % delayed by {mean_min:g} min on average")
     if entry.stops:
         stops = [_stop(stop) for stop in entry.stops]
         texts.append(f"stops: {_listed(stops)}")

@@ -9,6 +9,7 @@ from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.numerics.staircase import index_at
+from tpss.run.delays import Delays
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
@@ -41,6 +42,7 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
                     for t in entry.initial_trains
                 ),
                 already_running=entry.already_running,
+                delays=_delays(entry),
                 **_departures(entry),
             )
         )
@@ -53,6 +55,11 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
     if findings:
         raise ScenarioError(findings)
     return services
+
+
+def _delays(entry: Traffic) -> Delays | None:
+    given = entry.delays
+    return None if given is None else Delays(si(given, "mean_min"), given.share, given.seed)
 
 
 def _departures(entry: Traffic) -> dict[str, Any]:

@@ -64,6 +64,7 @@ class Times(NamedTuple):
     time_s: Floats
     step_s: float
     departure_s: float
+    delay_s: float
     arrival_s: float
     call_arrival_s: Floats
     call_departure_s: Floats
@@ -80,7 +81,8 @@ TIMES = ("arrival", "departure", "scheduled_arrival", "scheduled_departure")
 def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     """One row per train and station where it begins, stops, passes or ends: arrival, departure, dwell.
 
-    Scheduled times count from the train's own departure at its origin, and are NaN where none are given.
+    Scheduled times count from the train's own departure at its origin, of single trains and where there
+    are delays from the scheduled one, and are NaN where none are given.
     A train that brakes within a step arrives when it stands, not at the next instant.  What it has not
     done within the run is NaN, and so is what it did before, if it was on the line at the start.  Where
     the simulation has a clock, columns with its times come behind the others.
@@ -95,7 +97,7 @@ def stops(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     for name, service, train in zip(names, services, _trains_of(dataset), strict=True):
         for call in calls[service]:
             times = _times_at(call, train)
-            scheduled = _scheduled_at(call, train.departure_s / 60.0)
+            scheduled = _scheduled_at(call, (train.departure_s - train.delay_s) / 60.0)
             late_min = times[0] - scheduled[0]
             if math.isnan(scheduled[0]):
                 late_min = times[1] - scheduled[1]
@@ -160,7 +162,14 @@ def calls_of(entry: Traffic, route: Route, several: bool) -> list[Call]:
         between[hop] = at_end(hop, "pass", arrive_min=each.after_min)
     first = way.hops[0]
     return [
-        Call(first.begin, first.line if several else "", first.begin_km, "start", route.start_m),
+        Call(
+            first.begin,
+            first.line if several else "",
+            first.begin_km,
+            "start",
+            route.start_m,
+            depart_min=0.0 if entry.departs_by_schedule else None,
+        ),
         *(between[hop] for hop in sorted(between)),
         at_end(len(way.hops) - 1, "end", arrive_min=entry.arrive_after_min),
     ]
@@ -169,9 +178,15 @@ def calls_of(entry: Traffic, route: Route, several: bool) -> list[Call]:
 def _trains_of(dataset: xr.Dataset) -> Iterator[Times]:
     """What the dataset says of each train; arrays once, as reading a dataset takes long."""
     time_s, h = dataset.time.to_numpy(), step_s(dataset)
-    names = ("departure_time", "arrival_time", "call_arrival_time", "call_departure_time")
-    unknown = np.full((dataset.sizes["train"], 0), np.nan)  # earlier results have no calls
-    columns = [dataset[name].to_numpy() if name in dataset else unknown for name in names]
+    trains = dataset.sizes["train"]
+    # Earlier results have no delays, nor calls.
+    absent = {"departure_delay": np.zeros(trains)}
+    unknown = np.full((trains, 0), np.nan)
+    columns = [
+        dataset[name].to_numpy() if name in dataset.coords else absent.get(name, unknown)
+        for name in ("departure_time", "departure_delay", "arrival_time", "call_arrival_time",
+                     "call_departure_time")
+    ]  # fmt: skip
     for name in ("route_position", "speed", "holding_time", "train_state"):
         columns.append(dataset[name].to_numpy().T)
     for values in zip(*columns, strict=True):

@@ -221,7 +221,8 @@ def _lone_run(model: Model, service: Service, wait_s: float) -> Run:
     """Run of a lone train at nominal voltage, which departs after a wait in the first step."""
     h = model.options.step_s
     control = RunControl(model.network.system.nominal_voltage_v, studied_train=0)
-    lone = departing_trains([replace(service, first_s=wait_s)], model.options, 0, 1)[:1]
+    on_time = replace(service, first_s=wait_s, delays=None)
+    lone = departing_trains([on_time], model.options, 0, 1)[:1]
     capacity = foreseen_steps(model, service)
     run = Run(model._replace(control=control), lone, capacity, with_journeys=True)
     run.advance_to(capacity)
@@ -293,7 +294,7 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     """
     h = model.options.step_s
     on_line = trains_on_line(model, services)
-    first_s = next(services[0].departure_times_s(math.inf))
+    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
     capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
     departures = sum(service.departures_before(capacity * h) for service in services)
     demand_room(model, capacity, len(on_line) + departures)

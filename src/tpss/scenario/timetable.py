@@ -17,6 +17,7 @@ from tpss.errors import Finding
 from tpss.scenario.clock import minute_of
 from tpss.scenario.fields import Name, Part, Real
 from tpss.scenario.timetable_rows import DURATIONS, KIND_OF_PLACE, Row, read_rows
+from tpss.scenario.traffic import Delays
 
 Location = tuple[int | str, ...]
 
@@ -38,6 +39,9 @@ class Timetable(Part):
         ge=0,
         le=6_000_000,
         description="Least duration of the stops for which the file gives none.",
+    )
+    delays: Delays | None = Field(
+        default=None, description="Delays of departures; leave it out: none."
     )
 
 
@@ -78,6 +82,8 @@ class TimetabledTrain:
         elif key in KIND_OF_KEY and below[1:]:
             rows = [row for row in self.rows[1:-1] if row.kind == KIND_OF_KEY[key]]
             row, column = rows[int(below[1])], PLACE_OF_KEY.get(str(below[-1]), "")
+        elif key == "delays":
+            row, column = None, ""
         elif key == "train":
             row, column = next((row for row in self.rows if row["train"]), None), "train"
         else:
@@ -101,13 +107,16 @@ class Defaults(NamedTuple):
     """Number of the timetable among those of the scenario."""
     train: str | None
     min_dwell_s: float
+    delays: Any
+    """As they were written; None without any."""
 
     @classmethod
     def of(cls, number: int, table: Mapping[str, Any]) -> Self:
         """Of a table as it was written; what is wrong with it has findings of its own."""
         train, dwell_s = table.get("train"), table.get("min_dwell_s", 0.0)
         is_number = isinstance(dwell_s, int | float) and dwell_s >= 0.0
-        return cls(number, train if isinstance(train, str) else None, dwell_s if is_number else 0.0)
+        train = train if isinstance(train, str) else None
+        return cls(number, train, dwell_s if is_number else 0.0, table.get("delays"))
 
 
 def read_timetable(
@@ -248,7 +257,7 @@ def _entry(rows: list[Row], start_s: float | None, defaults: Defaults) -> dict[s
         "from": origin["station"],
         "to": destination["station"],
         "departure_min": departure_min,
-        **_given(arrive_after_min=after(destination["arrival"])),
+        **_given(arrive_after_min=after(destination["arrival"]), delays=defaults.delays),
         "stops": stops,
         "passes": passes,
         # Rows stand in the order of travel: stations that are passed say which way a train takes.

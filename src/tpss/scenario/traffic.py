@@ -12,6 +12,7 @@ from tpss.scenario.fields import (
     Part,
     Position,
     Real,
+    Whole,
     ascending,
     either_or,
     fault,
@@ -85,6 +86,26 @@ class Pass(Part):
     )
 
 
+class Delays(Part):
+    """Departures that are later than scheduled, drawn for each train; its other times stay scheduled.
+
+    A delay depends on seed and name of its train only. Trains that run already at the start have none.
+    """
+
+    mean_min: Real = Field(
+        gt=0,
+        le=1_000,
+        description="Mean delay of the trains that are delayed, distributed exponentially.",
+    )
+    share: Real = Field(default=1.0, gt=0, le=1, description="Share of trains that are delayed.")
+    seed: Whole = Field(
+        default=0,
+        ge=0,
+        le=2**53,
+        description="Number that decides which trains are delayed, and by what.",
+    )
+
+
 class InitialTrain(Part):
     """A train that is on its way when the simulation begins, heading for its next stop."""
 
@@ -127,6 +148,9 @@ class Traffic(Part):
         description="Whether trains are distributed along the line at the start, as if the "
         "service had always run.",
     )
+    delays: Delays | None = Field(
+        default=None, description="Delays of departures; leave it out: none."
+    )
     initial_trains: tuple[InitialTrain, ...] = Field(
         default=(), description="Trains on the line at the start."
     )
@@ -148,8 +172,18 @@ class Traffic(Part):
         return self.departures_min if self.departure_min is None else (self.departure_min,)
 
     @property
+    def departs_by_schedule(self) -> bool:
+        """Whether its trains have a scheduled departure, from which their other times count.
+
+        Without it they count from each train's departure, whenever that is.
+        """
+        return self.departure_min is not None or self.delays is not None
+
+    @property
     def is_scheduled(self) -> bool:
-        """Whether times are scheduled on the way or at the destination."""
+        """Whether lateness is judged: with delays, or times on the way or at the destination."""
+        if self.delays is not None:
+            return True
         times = [self.arrive_after_min, *(each.after_min for each in self.passes)]
         times += [time for s in self.stops for time in (s.arrive_after_min, s.depart_after_min)]
         return any(time is not None for time in times)
