@@ -200,6 +200,11 @@ def _service(entry: Traffic, start_s: float | None) -> str:
         texts.append("already running at the start")
     if entry.initial_trains:
         texts.append(f"trains on the line at the start: {len(entry.initial_trains)}")
+    if entry.has_supplement:
+        keys = ("supplement_percent", "supplement_min_per_100km")
+        given = {key: getattr(entry, key) for key in keys if getattr(entry, key) > 0.0}
+        shares = [f"{value:g} {units.label(key)}" for key, value in given.items()]
+        texts.append(f"supplement {' and '.join(shares)}")
     if entry.delays is not None:
         share, mean_min = 100.0 * entry.delays.share, entry.delays.mean_min
         texts.append(f"{share:g} % delayed by {mean_min:g} min on average")

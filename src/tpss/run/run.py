@@ -194,12 +194,12 @@ def trains_already_running(model: Model, service: Service) -> list[ScheduledTrai
     train departs so that the start is one of its instants.
     """
     found: list[ScheduledTrain] = []
-    lone, number = _lone_run(model, service, 0.0), 1
+    lone, number = lone_run(model, service, 0.0), 1
     while True:
         since_s = number * service.headway_s - service.first_s
         step, wait_s = _instant_after(since_s, model.options)
         if wait_s != lone.trains[0].departure_wait_s:
-            lone = _lone_run(model, service, wait_s)
+            lone = lone_run(model, service, wait_s)
         if step > (lone.step - 1 if lone.status == Status.FINISHED else lone.step):
             return found
         if step >= 1:
@@ -217,7 +217,7 @@ def _instant_after(since_s: float, options: Options) -> tuple[int, float]:
     return step, wait_s if wait_s > DEPARTURE_ROUNDING_S else 0.0
 
 
-def _lone_run(model: Model, service: Service, wait_s: float) -> Run:
+def lone_run(model: Model, service: Service, wait_s: float) -> Run:
     """Run of a lone train at nominal voltage, which departs after a wait in the first step."""
     h = model.options.step_s
     control = RunControl(model.network.system.nominal_voltage_v, studied_train=0)

@@ -59,8 +59,8 @@ ABSENCES = (
     ),
     Absence(
         r"supplement|(time_)?margin|recovery|allowance|buffer",
-        "supplements to running times",
-        "lower max_speed_kmh or the speed limits, or lengthen the stops",
+        "a supplement to running times at this place",
+        "give supplement_percent or supplement_min_per_100km of a service",
     ),
     Absence(
         r"elevation|altitude|height|heights$",

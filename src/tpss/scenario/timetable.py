@@ -17,7 +17,7 @@ from tpss.errors import Finding
 from tpss.scenario.clock import minute_of
 from tpss.scenario.fields import Name, Part, Real
 from tpss.scenario.timetable_rows import DURATIONS, KIND_OF_PLACE, Row, read_rows
-from tpss.scenario.traffic import Delays
+from tpss.scenario.traffic import Delays, Supplement
 
 Location = tuple[int | str, ...]
 
@@ -43,6 +43,14 @@ class Timetable(Part):
     delays: Delays | None = Field(
         default=None, description="Delays of departures; leave it out: none."
     )
+    supplement_percent: Supplement = Field(
+        default=0.0, description="As of a service in the traffic, of all its trains."
+    )
+    supplement_min_per_100km: Supplement = Field(default=0.0, description="Likewise.")
+
+
+OF_ALL_TRAINS = ("delays", "supplement_percent", "supplement_min_per_100km")
+"""Keys that a timetable gives for each of its trains."""
 
 
 PLACE_OF_KEY = {
@@ -82,7 +90,7 @@ class TimetabledTrain:
         elif key in KIND_OF_KEY and below[1:]:
             rows = [row for row in self.rows[1:-1] if row.kind == KIND_OF_KEY[key]]
             row, column = rows[int(below[1])], PLACE_OF_KEY.get(str(below[-1]), "")
-        elif key == "delays":
+        elif key in OF_ALL_TRAINS:
             row, column = None, ""
         elif key == "train":
             row, column = next((row for row in self.rows if row["train"]), None), "train"
@@ -107,8 +115,8 @@ class Defaults(NamedTuple):
     """Number of the timetable among those of the scenario."""
     train: str | None
     min_dwell_s: float
-    delays: Any
-    """As they were written; None without any."""
+    of_all: dict[str, Any]
+    """What is given for each of its trains."""
 
     @classmethod
     def of(cls, number: int, table: Mapping[str, Any]) -> Self:
@@ -116,7 +124,8 @@ class Defaults(NamedTuple):
         train, dwell_s = table.get("train"), table.get("min_dwell_s", 0.0)
         is_number = isinstance(dwell_s, int | float) and dwell_s >= 0.0
         train = train if isinstance(train, str) else None
-        return cls(number, train, dwell_s if is_number else 0.0, table.get("delays"))
+        of_all = {key: table[key] for key in OF_ALL_TRAINS if key in table}
+        return cls(number, train, dwell_s if is_number else 0.0, of_all)
 
 
 def read_timetable(
@@ -257,7 +266,8 @@ def _entry(rows: list[Row], start_s: float | None, defaults: Defaults) -> dict[s
         "from": origin["station"],
         "to": destination["station"],
         "departure_min": departure_min,
-        **_given(arrive_after_min=after(destination["arrival"]), delays=defaults.delays),
+        **_given(arrive_after_min=after(destination["arrival"])),
+        **defaults.of_all,
         "stops": stops,
         "passes": passes,
         # Rows stand in the order of travel: stations that are passed say which way a train takes.

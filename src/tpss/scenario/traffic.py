@@ -27,6 +27,9 @@ Times = Annotated[
 ]
 
 
+Supplement = Annotated[Real, Field(ge=0, le=200)]
+"""A supplement to running times."""
+
 DEPARTURES = ("headway_min", "departures_min", "departure_min")
 """Keys that say when trains depart, of which a service has one."""
 
@@ -151,6 +154,13 @@ class Traffic(Part):
     delays: Delays | None = Field(
         default=None, description="Delays of departures; leave it out: none."
     )
+    supplement_percent: Supplement = Field(
+        default=0.0,
+        description="Supplement to the technical running time between stops: trains hold less speed.",
+    )
+    supplement_min_per_100km: Supplement = Field(
+        default=0.0, description="Supplement for each 100 km, alone or in addition."
+    )
     initial_trains: tuple[InitialTrain, ...] = Field(
         default=(), description="Trains on the line at the start."
     )
@@ -178,6 +188,11 @@ class Traffic(Part):
         Without it they count from each train's departure, whenever that is.
         """
         return self.departure_min is not None or self.delays is not None
+
+    @property
+    def has_supplement(self) -> bool:
+        """Whether its trains take longer than they might."""
+        return self.supplement_percent > 0.0 or self.supplement_min_per_100km > 0.0
 
     @property
     def is_scheduled(self) -> bool:
@@ -214,6 +229,11 @@ class Traffic(Part):
             raise fault(
                 "already_running needs headway_min, and replaces initial_trains",
                 "leave already_running out, or use it with headway_min alone",
+            )
+        if self.has_supplement and self.initial_trains:
+            raise fault(
+                "initial_trains may be faster than trains that take a supplement hold",
+                "leave initial_trains out, or the supplement",
             )
         if self.headway_min is None and self.first_departure_min:
             raise fault(
