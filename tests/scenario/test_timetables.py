@@ -212,3 +212,41 @@ def test_a_timetable_that_is_not_there_or_of_other_keys(tmp_path):
     assert finding.key == "timetables.0.trian"
     (finding,) = faults(tmp_path, TWO_TRAINS, changes={"timetables.0.file": None})
     assert finding.key == "timetables.0.file"
+
+
+def test_stations_that_are_passed_say_which_way_a_train_takes_over_several_lines(tmp_path):
+    """From A to B it is 10 km on one line, and 20 km over C on two others, which the timetable wants.
+
+    It turns round at C, as it comes from B and goes on to B.
+    """
+    lines = {
+        name: {
+            "length_km": length_km,
+            "gradients": [{"from_km": 0.0, "permille": 0.0}],
+            "speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0}],
+            "stations": [
+                {"name": first, "position_km": 0.0},
+                {"name": last, "position_km": length_km},
+            ],
+        }
+        for name, first, last, length_km in (("direct", "A", "B", 10.0), ("there", "A", "C", 8.0),
+                                             ("back", "C", "B", 12.0))
+    }  # fmt: skip
+    stations = [
+        {"name": name, "line": "direct", "position_km": km, "type": "Q48/Q49", "converters": 2}
+        for name, km in (("A", 0.0), ("B", 10.0))
+    ]
+    changes = {"line": None, "lines": lines, "supply.converter_stations": stations}
+    header = "name,station,arrival,departure,turn_s,kind\n"
+    text = header + "a,A,,05:40,,\na,C,05:50,,,pass\na,B,06:05,,,\n"
+    table = tpss.simulate(scenario(tmp_path, text, changes=changes)).stops
+    assert table.station.tolist() == ["A", "C", "B"]
+    assert table.line.tolist() == ["there", "there", "back"]
+    assert 7.0 < table.arrival_min[1] - table.departure_min[0] < 12.0
+    turning = header + "a,B,,05:40,,\na,C,,06:00,{},stop\na,B,06:15,,,\n"
+    (train,) = scenario(tmp_path, turning.format("300"), changes=changes).traffic
+    assert train.stops[0].turn_min == 5.0
+    (finding,) = faults(tmp_path, turning.format(""), changes=changes)
+    assert (finding.key, finding.remedy) == ("line 3, turn_s", "add the time that it takes")
+    (finding,) = faults(tmp_path, header + "a,A,,05:40,,\na,D,,,,\na,B,06:05,,,\n", changes=changes)
+    assert (finding.key, finding.problem) == ("line 3, station", "there is no such station")

@@ -211,7 +211,7 @@ def _service(entry: Traffic, start_s: float | None) -> str:
     if entry.stops:
         stops = [_stop(stop) for stop in entry.stops]
         texts.append(f"stops: {_listed(stops)}")
-    if entry.passes:
+    if entry.passes and not entry.via:
         texts.append(f"passes {_listed([each.station for each in entry.passes])}")
     return ", ".join(texts)
 
