@@ -139,7 +139,8 @@ def _faults_of_header(path: Path, number: int, columns: list[str]) -> Iterator[F
         if columns.count(column) > 1:
             yield Finding(str(path), place, column, "the column is there twice", "leave one out")
         if column == "track":
-            problem, remedy = "tracks are not modelled: there is one", "leave the column out"
+            problem = "trains take the tracks of their direction, whatever a timetable says"
+            remedy = "leave the column out"
             yield Finding(str(path), place, column, problem, remedy)
         elif column not in COLUMNS:
             yield Finding(str(path), place, column, "no such column", suggest(column, COLUMNS))
