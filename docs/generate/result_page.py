@@ -52,7 +52,9 @@ TABLES = """## Tables
 
 `Result.trips`, `Result.stops`, `Result.stations` and `Result.train_steps` are pandas tables; those of
 `Result.standards` stand on [a page of their own](evidence.md). What a train has not done yet, or not
-within the run, is NaN."""
+within the run, is NaN. With `simulation.starts_at` the stops have their times by the clock too, in
+columns named `arrival_clock`, `departure_clock`, `scheduled_arrival_clock` and
+`scheduled_departure_clock`."""
 
 TRIPS = {
     "train": "name",
@@ -69,10 +71,11 @@ TRIPS = {
 }
 STOPS = {
     "train": "name",
-    "station": "where it begins, stops or ends",
+    "station": "where it begins, stops, passes or ends",
     "position_km": "position on the line",
-    "arrival_min": "when it came to stand; NaN where it begins",
-    "departure_min": "when it went on; NaN where it ends",
+    "kind": "which of these: `start`, `stop`, `pass` or `end`",
+    "arrival_min": "when it came to stand, or passed; NaN where it begins",
+    "departure_min": "when it went on, or passed; NaN where it ends",
     "dwell_min": "from one to the other",
     "scheduled_arrival_min": "when it should have; NaN where nothing is scheduled or known",
     "scheduled_departure_min": "when it should have gone on, likewise",

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from tpss import library
 from tpss.scenario import Scenario
 from tpss.scenario.absences import ABSENCES
+from tpss.scenario.clock import OrClock
 from tpss.scenario.fields import fields_of
 from tpss.units import label
 
@@ -42,8 +43,10 @@ DEFAULTS = {
     "Line.gradients": "this or `gradients_file`",
     "Simulation.time_step_min": "chosen",
     "Simulation.until": "this, unless `duration_min`",
-    "Traffic.headway_min": "this or `departures_min`",
-    "Traffic.departures_min": "this or `headway_min`",
+    "Traffic.headway_min": "this, `departures_min` or `departure_min`",
+    "Traffic.departures_min": "this, `headway_min` or `departure_min`",
+    "Traffic.departure_min": "this, `headway_min` or `departures_min`",
+    "Scenario.traffic": "this or `timetables`",
     "Supply.frequency_hz": "the system's",
     "Supply.transformer_stations": "none",
     "Supply.converter_stations": "none; there is a station of some kind",
@@ -151,7 +154,8 @@ def _words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     if isinstance(annotation, type) and fields_of(annotation):
         return f"[table](#{anchor(_heads(Scenario)[annotation][0])})"
     if annotation in WORDS:
-        return ", ".join(filter(None, (WORDS[annotation], _range(metadata))))
+        words = ", ".join(filter(None, (WORDS[annotation], _range(metadata))))
+        return f"{words}, or a time of the clock" if OrClock() in metadata else words
     if get_origin(annotation) is Literal:
         return " or ".join(code(choice) for choice in inner)
     if get_origin(annotation) is tuple:

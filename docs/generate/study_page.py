@@ -31,7 +31,7 @@ the whole path or of itself. The text `"none"` leaves a key out, as in `"supply.
 A new `line.length_km` moves what stands along the line in proportion: {places}. The gradients
 keep their places. Other values are set after that, so a position is one on the new line.
 
-A key replaces the one that it excludes: {instead}."""
+Of these keys one replaces the others: {instead}."""
 
 GRADIENTS = """A profile has exactly the mean and the standard deviation that are asked for, over the
 line of its case. Before they are shifted and stretched, the gradients of neighbouring pieces are
@@ -140,7 +140,10 @@ MADE = {
 def page() -> str:
     """Text of the page."""
     outputs = [name for name in OUTPUTS if not name.startswith(("audit.", "limited."))]
-    instead = ", ".join(f"`{a}` that of `{b}`" for a, b in list(INSTEAD_OF.items())[::2])
+    groups = {
+        frozenset((key, *others)): (key, *others) for key, others in reversed(INSTEAD_OF.items())
+    }
+    instead = "; ".join(", ".join(map(code, group)) for group in reversed(groups.values()))
     places = ", ".join(code(place).replace('"', "") for place in PLACES)
     return "\n\n".join(
         [

@@ -13,6 +13,8 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     # suffix: (label, factor to SI)
     "_wh_per_t_km": ("Wh/t km", 3.6e-3),
     "_kwh_per_km": ("kWh/km", 3.6e3),
+    "_min_per_100km": ("min/100 km", 6e-4),
+    "_percent": ("%", 1e-2),
     "_ohm_per_km": ("Ω/km", 1e-3),
     "_nf_per_km": ("nF/km", 1e-12),
     "_n_s_per_m": ("N s/m", 1.0),

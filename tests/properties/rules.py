@@ -1,6 +1,7 @@
 """What must hold of every run, whatever the scenario; an AssertionError says which rule is broken."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 
 from tpss import Result, library
 from tpss.model.build import steps_of
+from tpss.run.delays import Delays
 from tpss.scenario.machine import RetardationBands
+from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
 
 from .ways import along_way
@@ -62,11 +65,13 @@ def judge_departures(result: Result) -> None:
     continuous = result.scenario.simulation.how_trains_move == "continuous"
     begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled"))
     for entry in result.scenario.traffic:
-        asked_min = entry.departures_min
+        asked_min = entry.listed_departures_min
         if asked_min is None:
             last_min = begun * h / 60.0 + entry.headway_min
             count = max(0, math.ceil((last_min - entry.first_departure_min) / entry.headway_min))
             asked_min = [entry.first_departure_min + k * entry.headway_min for k in range(count)]
+        if entry.delays is not None:
+            asked_min = delayed(asked_min, entry)
         mine = data.departure_time.to_numpy()[data.service.to_numpy() == entry.name]
         departed_s = mine[np.isfinite(mine)]
         if continuous:
@@ -86,6 +91,16 @@ def judge_departures(result: Result) -> None:
         due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]
         departed = np.rint(departed_s / h)
         assert departed.tolist() == [step for step in due if step < max(begun, 1)], entry.name
+
+
+def delayed(scheduled_min: Sequence[float], entry: Traffic) -> list[float]:
+    """Times of departure of trains that are delayed, ascending. [min]"""
+    drawn = Delays(60.0 * entry.delays.mean_min, entry.delays.share, entry.delays.seed)
+    alone = entry.departure_min is not None
+    names = [entry.name if alone else f"{entry.name} {k}" for k in range(1, len(scheduled_min) + 1)]
+    return sorted(
+        minute + drawn.of(name) / 60.0 for minute, name in zip(scheduled_min, names, strict=True)
+    )
 
 
 def motor_force_n(speed_kmh: float, voltage_kv: float, current_a: float) -> float:
@@ -130,7 +145,8 @@ class Journey:
         calls = data.isel(train=i)
         self.arrived_s = calls.call_arrival_time.to_numpy()
         self.went_on_s = calls.call_departure_time.to_numpy()
-        self.departed_s = float(calls.departure_time)
+        # Where trains may be late, their times stay those of the schedule.
+        self.departed_s = float(calls.departure_time - calls.departure_delay)
         rows = np.flatnonzero(np.isfinite(data.position.to_numpy()[:, i]))
         assert (np.diff(rows) == 1).all(), f"{self.name} is away for a while"
         self.time_s = data.time.to_numpy()[rows]

@@ -176,7 +176,7 @@ def test_nodes_of_an_earlier_result_have_the_kinds_that_they_have_now(earlier):
     }  # fmt: skip
     xr.testing.assert_equal(result.dataset.node_kind, now.dataset.node_kind)
     assert result.dataset.node_kind.attrs == now.dataset.node_kind.attrs
-    since = {"call", "call_arrival_time", "call_departure_time"}
+    since = {"departure_delay", "call", "call_arrival_time", "call_departure_time"}
     assert set(result.dataset.coords) | since == set(now.dataset.coords)
 
 

@@ -119,7 +119,7 @@ PLACES = [
 
 CONFLICTS = [
     pytest.param({**NOT_RUNNING, f"{ENTRY}.departures_min": [0.0]}, ENTRY, "",
-                 "leave one of them out", id="headway-and-departures"),
+                 "leave all but one of them out", id="headway-and-departures"),
     pytest.param({f"{ENTRY}.headway_min": None}, ENTRY, "", "add the one that is missing",
                  id="neither-headway-nor-departures"),
     pytest.param({"simulation.duration_min": 90.0}, "simulation", "", "leave one of them out",

@@ -117,3 +117,51 @@ def test_times_that_do_not_follow_the_travel_are_faults():
     }
     with pytest.raises(tpss.ScenarioError, match="East is scheduled after 20 min, before Middle"):
         short_line(crossed)
+
+
+@pytest.mark.parametrize("step_min", [0.1, 1.0, 7.3])
+def test_a_train_passes_a_station_between_two_instants(step_min):
+    """200 m while it gets to 20 m/s in 20 s, and 9.8 km in 490 s: 510 s, 8.5 min after its departure."""
+    passing = {"traffic.0.passes": [{"station": "Middle", "after_min": 8.0}]}
+    table = run({**CLOSED_FORM, **passing, "simulation.time_step_min": step_min}).stops
+    assert table.kind.tolist() == ["start", "pass", "end"]
+    call = table.iloc[1]
+    assert call.arrival_min == call.departure_min == pytest.approx(3.0 + 8.5, rel=1e-9)
+    assert call.dwell_min == 0.0
+    assert call.scheduled_arrival_min == 11.0
+    assert call.late_min == pytest.approx(0.5, rel=1e-9)
+    assert np.isnan(call.scheduled_departure_min)
+
+
+@pytest.mark.parametrize(("way_km", "time_s"), [(0.1, 200.0**0.5), (19.95, 1020.0 - 10.0)])
+def test_a_passing_while_the_speed_changes_is_exact_too(way_km, time_s):
+    """100 m at 1 m/s² take √(2 · 100) s, and the last 50 m to standstill √(2 · 50) = 10 s.
+
+    20 km take 20 + 980 + 20 s.  Steps of 6 s change the speed evenly where it passes.
+    """
+    changes = {
+        **CLOSED_FORM, "simulation.time_step_min": 0.1, "traffic.0.from": "East", "traffic.0.to": "West",
+        "line.stations.+": {"name": "Halt", "position_km": 20.0 - way_km},
+        "traffic.0.passes": [{"station": "Halt"}],
+    }  # fmt: skip
+    call = run(changes).stops.iloc[1]
+    assert 60.0 * (call.arrival_min - 3.0) == pytest.approx(time_s, abs=1e-6)
+    assert np.isnan(call.late_min)
+
+
+def test_what_a_train_has_passed_before_the_start_or_not_yet_is_not_known():
+    changes = {
+        "traffic.0.initial_trains": [{"position_km": 12.0, "speed_kmh": 0.0}],
+        "traffic.0.passes": [{"station": "Middle", "after_min": 8.5}],
+        "simulation.time_step_min": 0.1,
+        "simulation.until": None,
+        "simulation.duration_min": 8.0,
+    }
+    table = run({**CLOSED_FORM, **changes}).stops
+    assert table.arrival_min[table.kind == "pass"].isna().tolist() == [True, True]
+
+
+def test_passes_are_on_the_way_and_in_its_order():
+    passes = [{"station": "Middle"}, {"station": "East"}, {"station": "Mddle"}]
+    keys = [finding.key for finding in faults_of({"traffic.0.passes": passes})]
+    assert keys == ["traffic.0.passes.2.station", "traffic.0.passes.1.station"]

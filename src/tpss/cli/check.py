@@ -18,6 +18,7 @@ from tpss.model.supply import transformer_positions_km
 from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
+from tpss.scenario.clock import clock_at
 from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line, SpeedLimit
 from tpss.scenario.open_step import with_step
@@ -68,10 +69,10 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
     yield from _supply(scenario.supply)
     for name, train in scenario.trains.items():
         yield "train", f"{name}: {_train(train)}"
-    for entry in scenario.traffic:
-        yield "traffic", _service(entry)
+    for text in _traffic(scenario.traffic, scenario.simulation.start_s):
+        yield "traffic", text
     yield "standards", _standards(scenario.standards)
-    yield "simulation", _simulation(scenario.simulation, scenario.traffic[0].name)
+    yield "simulation", _simulation(scenario.simulation, scenario.traffic[0])
     for name, variant in scenario.variants.items():
         yield "variant", f"{name}: {variant.description or 'changes ' + ', '.join(variant.paths)}"
 
@@ -168,21 +169,50 @@ def _plain(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else textwrap.shorten(str(value), 40)
 
 
-def _service(entry: Traffic) -> str:
+def _traffic(traffic: Sequence[Traffic], start_s: float | None) -> Iterator[str]:
+    """Each service; of many single trains, as of a timetable, what they have in common."""
+    single = [entry for entry in traffic if entry.departure_min is not None]
+    for entry in traffic:
+        if entry.departure_min is None or len(single) <= MOST_LISTED:
+            yield _service(entry, start_s)
+    if len(single) > MOST_LISTED:
+        minutes = [entry.departure_min for entry in single if entry.departure_min is not None]
+        ends = " to ".join(_moment(minute, start_s) for minute in (min(minutes), max(minutes)))
+        calls = sum(len(entry.stops) for entry in single)
+        yield f"{_listed([entry.name for entry in single])}: from {ends}, with {calls} stops"
+
+
+def _moment(minute: float, start_s: float | None) -> str:
+    clock = "" if start_s is None else f" ({clock_at(minute, start_s)})"
+    return f"{minute:g} min{clock}"
+
+
+def _service(entry: Traffic, start_s: float | None) -> str:
     texts = [f"{entry.name}: {entry.train} from {entry.origin} to {entry.destination}"]
     if entry.via:
         texts.append(f"over {_listed(list(entry.via))}")
-    if entry.departures_min is not None:
-        texts.append(f"at {_listed([f'{minute:g} min' for minute in entry.departures_min])}")
+    if (listed := entry.listed_departures_min) is not None:
+        texts.append(f"at {_listed([_moment(minute, start_s) for minute in listed])}")
     else:
-        texts.append(f"every {entry.headway_min:g} min from {entry.first_departure_min:g} min")
+        first = _moment(entry.first_departure_min, start_s)
+        texts.append(f"every {entry.headway_min:g} min from {first}")
     if entry.already_running:
         texts.append("already running at the start")
     if entry.initial_trains:
         texts.append(f"trains on the line at the start: {len(entry.initial_trains)}")
+    if entry.has_supplement:
+        keys = ("supplement_percent", "supplement_min_per_100km")
+        given = {key: getattr(entry, key) for key in keys if getattr(entry, key) > 0.0}
+        shares = [f"{value:g} {units.label(key)}" for key, value in given.items()]
+        texts.append(f"supplement {' and '.join(shares)}")
+    if entry.delays is not None:
+        share, mean_min = 100.0 * entry.delays.share, entry.delays.mean_min
+        texts.append(f"{share:g} % delayed by {mean_min:g} min on average")
     if entry.stops:
         stops = [_stop(stop) for stop in entry.stops]
         texts.append(f"stops: {_listed(stops)}")
+    if entry.passes and not entry.via:
+        texts.append(f"passes {_listed([each.station for each in entry.passes])}")
     return ", ".join(texts)
 
 
@@ -193,10 +223,13 @@ def _stop(stop: Stop) -> str:
     return f"{text}, not before {stop.depart_after_min:g} min under way"
 
 
-def _simulation(simulation: Simulation, studied: str) -> str:
+def _simulation(simulation: Simulation, first: Traffic) -> str:
     step, duration = simulation.time_step_min, simulation.duration_min
     steps = "steps of a length to be chosen" if step is None else f"steps of {step:g} min"
-    end = f"until {studied} 1 arrives" if duration is None else f"for {duration:g} min"
+    studied = first.name if first.departure_min is not None else f"{first.name} 1"
+    end = f"until {studied} arrives" if duration is None else f"for {duration:g} min"
+    if simulation.starts_at is not None:
+        end += f" from {simulation.starts_at}"
     choices = [
         f"{key} {getattr(simulation, key)}"
         for key, field in Simulation.model_fields.items()

@@ -41,14 +41,18 @@ def notes(scenario: Scenario) -> list[str]:
         *_voltage_limits(scenario),
         *_trains(scenario),
         *(note for i, entry in enumerate(scenario.traffic) for note in _times(scenario, i, entry)),
-        *(
-            note
-            for i, (entry, route) in enumerate(
-                zip(scenario.traffic, routes_of(scenario), strict=True)
-            )
-            for note in _climb(scenario, i, entry, route)
-        ),
+        *_single_trains(scenario),
+        *(note for each in _routes(scenario) for note in _climb(scenario, *each)),
     ]
+
+
+def _routes(scenario: Scenario) -> list[tuple[int, Traffic, Route]]:
+    """The first service of each route and train."""
+    first: dict[tuple[object, ...], tuple[int, Traffic, Route]] = {}
+    for i, (entry, route) in enumerate(zip(scenario.traffic, routes_of(scenario), strict=True)):
+        way = entry.train, entry.origin, entry.destination, entry.via
+        first.setdefault(way, (i, entry, route))
+    return list(first.values())
 
 
 def _lines(scenario: Scenario) -> list[tuple[str, Line]]:
@@ -187,17 +191,40 @@ def _idle_current(name: str, train: Train) -> Iterator[str]:
     )
 
 
+def _single_trains(scenario: Scenario) -> Iterator[str]:
+    """Times of single trains, of which a timetable may have many."""
+    duration = scenario.simulation.duration_min
+    times = {e.name: e.departure_min for e in scenario.traffic if e.departure_min is not None}
+    later = [name for name, minute in times.items() if duration is not None and minute >= duration]
+    if later:
+        yield (
+            f"{len(later)} of {len(times)} single trains, first {later[0]}, do not depart before the "
+            f"end of the run, at {duration:g} min"
+        )
+    step = scenario.simulation.time_step_min
+    if step is None or scenario.simulation.how_trains_move == "continuous":
+        return
+    between = [name for name, minute in times.items() if not _is_whole(minute / step)]
+    if between:
+        yield (
+            f"{len(between)} of {len(times)} single trains, first {between[0]}, do not depart at whole "
+            f"time steps of {step:g} min, but at the first step after their time"
+        )
+
+
 def _times(scenario: Scenario, i: int, entry: Traffic) -> Iterator[str]:
+    if entry.departure_min is not None:
+        return
     step, duration = scenario.simulation.time_step_min, scenario.simulation.duration_min
-    departures = entry.departures_min or (entry.first_departure_min,)
+    departures = entry.listed_departures_min or (entry.first_departure_min,)
     key = f"traffic.{i} ({entry.name})"
     if duration is not None and departures[0] >= duration:
         yield (
             f"{key}: its first departure, at {departures[0]:g} min, is not before the end of the "
             f"run, at {duration:g} min"
         )
-    if step is None:  # it will be chosen
-        return
+    if step is None or scenario.simulation.how_trains_move == "continuous":
+        return  # it will be chosen, or does not matter
     if not all(_is_whole(time / step) for time in (*departures, entry.headway_min or 0.0)):
         yield (
             f"{key}: its departures are not all at whole time steps of {step:g} min; a train departs "

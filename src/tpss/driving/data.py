@@ -50,7 +50,7 @@ class Stop(Record):
     dwell_s: float
     """Time that it stands there, if it moves continuously. [s]"""
     leaves_after_s: float
-    """A train does not leave before this time since it departed at its origin; 0: whenever. [s]"""
+    """A train does not leave before this time since it should have departed; 0: whenever. [s]"""
     destination: bool
     """Whether the route ends there."""
 

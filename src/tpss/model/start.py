@@ -1,6 +1,7 @@
 """What a run of a model begins with."""
 
 from tpss.model.build import steps_of
+from tpss.model.supplements import with_supplements
 from tpss.model.traffic import build_services
 from tpss.run.run import Start, begin
 from tpss.scenario.scenario import Scenario
@@ -18,7 +19,7 @@ def start_of(scenario: Scenario, model: Model) -> Start:
     TooLargeError
         The recording would not fit into memory.
     """
-    services = build_services(scenario, model)
+    model, services = with_supplements(scenario, model, build_services(scenario, model))
     steps = None
     if scenario.simulation.duration_min is not None:
         steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)

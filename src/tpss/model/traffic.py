@@ -9,6 +9,7 @@ from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.numerics.staircase import index_at
+from tpss.run.delays import Delays
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
@@ -41,6 +42,7 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
                     for t in entry.initial_trains
                 ),
                 already_running=entry.already_running,
+                delays=_delays(entry),
                 **_departures(entry),
             )
         )
@@ -55,9 +57,15 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
     return services
 
 
+def _delays(entry: Traffic) -> Delays | None:
+    given = entry.delays
+    return None if given is None else Delays(si(given, "mean_min"), given.share, given.seed)
+
+
 def _departures(entry: Traffic) -> dict[str, Any]:
-    if entry.departures_min is not None:
-        return {"departures_s": tuple(60.0 * minute for minute in entry.departures_min)}
+    if (listed := entry.listed_departures_min) is not None:
+        departures_s = tuple(60.0 * minute for minute in listed)
+        return {"departures_s": departures_s, "is_one_train": entry.departure_min is not None}
     return {"headway_s": si(entry, "headway_min"), "first_s": si(entry, "first_departure_min")}
 
 

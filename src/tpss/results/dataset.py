@@ -184,6 +184,11 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "train": ("train", [train.name for train in trains], of("", "train")),
         "service": ("train", [train.service for train in trains], of("", "service of the train")),
         "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
+        "departure_delay": (
+            "train",
+            np.where(placed, np.nan, [train.delay_s for train in trains]),
+            of("s", "departure later than scheduled, where scheduled times do not follow it"),
+        ),
         "arrival_time": ("train", outcome.arrival_s, of("s", "arrival")),
         "node": ("node", plan.nodes, of("", "node")),
         "node_kind": ("node", plan.node_kinds, NODE_KIND),

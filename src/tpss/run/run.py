@@ -194,12 +194,12 @@ def trains_already_running(model: Model, service: Service) -> list[ScheduledTrai
     train departs so that the start is one of its instants.
     """
     found: list[ScheduledTrain] = []
-    lone, number = _lone_run(model, service, 0.0), 1
+    lone, number = lone_run(model, service, 0.0), 1
     while True:
         since_s = number * service.headway_s - service.first_s
         step, wait_s = _instant_after(since_s, model.options)
         if wait_s != lone.trains[0].departure_wait_s:
-            lone = _lone_run(model, service, wait_s)
+            lone = lone_run(model, service, wait_s)
         if step > (lone.step - 1 if lone.status == Status.FINISHED else lone.step):
             return found
         if step >= 1:
@@ -217,11 +217,12 @@ def _instant_after(since_s: float, options: Options) -> tuple[int, float]:
     return step, wait_s if wait_s > DEPARTURE_ROUNDING_S else 0.0
 
 
-def _lone_run(model: Model, service: Service, wait_s: float) -> Run:
+def lone_run(model: Model, service: Service, wait_s: float) -> Run:
     """Run of a lone train at nominal voltage, which departs after a wait in the first step."""
     h = model.options.step_s
     control = RunControl(model.network.system.nominal_voltage_v, studied_train=0)
-    lone = departing_trains([replace(service, first_s=wait_s)], model.options, 0, 1)[:1]
+    on_time = replace(service, first_s=wait_s, delays=None)
+    lone = departing_trains([on_time], model.options, 0, 1)[:1]
     capacity = foreseen_steps(model, service)
     run = Run(model._replace(control=control), lone, capacity, with_journeys=True)
     run.advance_to(capacity)
@@ -293,13 +294,13 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     """
     h = model.options.step_s
     on_line = trains_on_line(model, services)
-    first_s = next(services[0].departure_times_s(math.inf))
+    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
     capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
     departures = sum(service.departures_before(capacity * h) for service in services)
     demand_room(model, capacity, len(on_line) + departures)
     trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
     names = [train.name for train in trains]
-    studied_name = f"{services[0].name} 1"
+    studied_name = services[0].name_of(1)
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
     model = model._replace(control=RunControl(studied_train=ends_with))

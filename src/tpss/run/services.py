@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from tpss.driving.data import MotionModel, Options
 from tpss.record import Records
+from tpss.run.delays import Delays
 from tpss.vehicle.train import Motion, Phase, Plan, Train
 
 DEPARTURE_ROUNDING_S = 1e-6
@@ -28,12 +29,19 @@ class Service:
     headway_s: float = math.inf
     first_s: float = 0.0
     departures_s: tuple[float, ...] = ()
+    is_one_train: bool = False
+    """Whether it is a single train, which has its name."""
+    delays: Delays | None = None
     already_running: bool = False
     initial: tuple[tuple[float, float], ...] = ()
     """Position [m] and speed [m/s] of each train on the line at the start."""
 
+    def delay_s(self, number: int) -> float:
+        """How much later than scheduled the n-th train departs, counted from 1. [s]"""
+        return 0.0 if self.delays is None else self.delays.of(self.name_of(number))
+
     def departure_times_s(self, until_s: float) -> Iterator[float]:
-        """Times of departure before `until_s`, ascending. [s]"""
+        """Scheduled times of departure before `until_s`, ascending. [s]"""
         if self.departures_s:
             yield from (time for time in self.departures_s if time < until_s)
             return
@@ -42,8 +50,17 @@ class Service:
             yield time
             count += 1
 
+    @property
+    def departs_by_schedule(self) -> bool:
+        """Whether scheduled times stay where a departure is late; they follow it otherwise."""
+        return self.is_one_train or self.delays is not None
+
+    def name_of(self, number: int) -> str:
+        """Name of the train that departs as the n-th, counted from 1."""
+        return self.name if self.is_one_train else f"{self.name} {number}"
+
     def departures_before(self, until_s: float) -> int:
-        """Number of departures before `until_s`."""
+        """Number of departures scheduled before `until_s`."""
         if self.departures_s:
             return sum(time < until_s for time in self.departures_s)
         return max(0, math.ceil((until_s - self.first_s) / self.headway_s))
@@ -59,6 +76,8 @@ class ScheduledTrain(NamedTuple):
     departure_step: int
     departure_wait_s: float = 0.0
     """Time in that step until it departs. [s]"""
+    delay_s: float = 0.0
+    """How much later than scheduled that is, where the schedule does not follow the departure. [s]"""
     phase: Phase = Phase.PENDING
     position_m: float = 0.0
     speed_m_s: float = 0.0
@@ -93,16 +112,20 @@ def departing_trains(
     trains = []
     for service in services:
         for number, time_s in enumerate(service.departure_times_s(last * options.step_s), 1):
-            step, wait_s = departure(time_s, options)
+            delay_s = service.delay_s(number)
+            step, wait_s = departure(time_s + delay_s, options)
             if first <= step < last:
+                if service.departs_by_schedule and options.motion == MotionModel.STEPPED:
+                    delay_s = step * options.step_s - time_s
                 trains.append(
                     ScheduledTrain(
-                        name=f"{service.name} {number}",
+                        name=service.name_of(number),
                         service=service.name,
                         train_type=service.train_type,
                         route=service.route,
                         departure_step=step,
                         departure_wait_s=wait_s,
+                        delay_s=delay_s,
                         position_m=service.start_m,
                     )
                 )
@@ -134,6 +157,7 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     parts = {"motion": Motion, "plan": Plan}
     fields: list[tuple[str, ...]] = [("train_type",), ("route",)]
     fields += [("timetable", "departure_step"), ("timetable", "departure_wait_s")]
+    fields += [("timetable", "delay_s")]
     fields += [(name, field) for name, part in parts.items() for field in part.dtype.names or ()]
     for (*part, field), column in zip(fields, list(zip(*trains, strict=True))[2:], strict=False):
         if any(column):  # most of them are zero
@@ -148,5 +172,5 @@ def train_at(journey: Any, train: ScheduledTrain, number: int) -> ScheduledTrain
     """A train where it once was, a row of `Journey`, ready to enter another run at its start."""
     name, (motion, plan) = f"{train.service} initial {number}", journey.tolist()
     return ScheduledTrain(
-        name, train.service, train.train_type, train.route, 0, 0.0, *motion, *plan
+        name, train.service, train.train_type, train.route, 0, 0.0, 0.0, *motion, *plan
     )

@@ -53,13 +53,14 @@ ABSENCES = (
     ),
     Absence(
         r"time_?table|schedule|arrivals?(_min|_s)?$|arrive",
-        "scheduled times of arrival",
-        "give departures_min and stops with dwell_min; times of arrival are a result",
+        "a timetable at this place",
+        'write [[timetables]] with a file, such as file = "timetable.csv"; or give arrive_after_min and '
+        "depart_after_min of the stops of a service",
     ),
     Absence(
         r"supplement|(time_)?margin|recovery|allowance|buffer",
-        "supplements to running times",
-        "lower max_speed_kmh or the speed limits, or lengthen the stops",
+        "a supplement to running times at this place",
+        "give supplement_percent or supplement_min_per_100km of a service",
     ),
     Absence(
         r"elevation|altitude|height|heights$",
@@ -82,7 +83,7 @@ ABSENCES = (
     ),
     Absence(
         r"(limits|speed_limits|stations|timetable)_file",
-        "CSV files of anything but gradients",
+        "CSV files of anything but gradients and timetables",
         'write the list here, or name a file that ends in .toml, such as line = "line.toml"',
     ),
     Absence(

@@ -129,10 +129,11 @@ def fault(problem: str, remedy: str) -> PydanticCustomError:
     return PydanticCustomError("fault", "{problem}", {"problem": problem, "remedy": remedy})
 
 
-def either_or(first: str, second: str) -> PydanticCustomError:
-    """The fault that both of two keys are given, or neither."""
-    remedy = "leave one of them out, or add the one that is missing"
-    return fault(f"give either {first} or {second}", remedy)
+def either_or(*keys: str) -> PydanticCustomError:
+    """The fault that several of some keys are given, or none."""
+    too_many = "leave one of them out" if len(keys) == 2 else "leave all but one of them out"
+    remedy = f"{too_many}, or add the one that is missing"
+    return fault(f"give either {', '.join(keys[:-1])} or {keys[-1]}", remedy)
 
 
 def demand_entry(kind: str, name: str) -> str:
@@ -186,12 +187,12 @@ class FromLibrary:
         return library.values(self.kind, demand_entry(self.kind, value))
 
 
-def one_of(first: str, second: str) -> Callable[[JsonSchemaValue], None]:
-    """For the JSON Schema of a part: demand exactly one of two keys."""
+def one_of(*keys: str) -> Callable[[JsonSchemaValue], None]:
+    """For the JSON Schema of a part: demand exactly one of some keys."""
 
     def demand(schema: JsonSchemaValue) -> None:
-        schema["required"] = [key for key in schema["required"] if key not in (first, second)]
-        schema["oneOf"] = [{"required": [first]}, {"required": [second]}]
+        schema["required"] = [key for key in schema["required"] if key not in keys]
+        schema["oneOf"] = [{"required": [key]} for key in keys]
 
     return demand
 

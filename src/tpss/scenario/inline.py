@@ -2,8 +2,8 @@
 
 A name that ends in ``.toml`` stands for the table in that file, next to the scenario: of a train's
 model, of the line, of anything that the library has entries for.  ``gradients_file`` stands for a
-profile in CSV.  A scenario then holds everything that it says, and its faults are traced back to the
-files that contain them.
+profile in CSV, and ``timetables`` for entries of the traffic.  A scenario then holds everything that it
+says, and its faults are traced back to the files that contain them.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,9 +13,11 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
+from tpss.scenario.clock import start_of
 from tpss.scenario.files import Profile, read_gradients, read_toml
 from tpss.scenario.override import copy_of
 from tpss.scenario.rolling_stock import completed
+from tpss.scenario.timetable import Defaults, TimetabledTrain, read_timetable
 
 Location = tuple[int | str, ...]
 
@@ -50,12 +52,20 @@ class Inlined:
     profiles: dict[Location, Profile] = field(default_factory=dict)
     """Gradients that came from CSV files, by their lines."""
 
+    timetabled: dict[int, TimetabledTrain] = field(default_factory=dict)
+    """Trains that came from timetables, by the numbers of their entries of the traffic."""
+
     def origin(self, location: Location) -> tuple[Path, Location]:
         """File that holds a value, and the value's place in it."""
         for line, profile in self.profiles.items():
             if location[: len(line) + 1] == (*line, "gradients") and len(location) > len(line) + 2:
                 row, key = location[len(line) + 1 : len(line) + 3]
                 return profile.path, (profile.place(int(row), str(key)),)
+        if location[:1] == ("traffic",) and location[1:]:
+            train = self.timetabled.get(int(location[1]))
+            if train is not None:
+                path, place = train.origin(location[2:])
+                return path or self.source, place
         for table, file in self.files.items():
             below = location[len(table) :]
             if below and location[: len(table)] == table and below[0] not in self.own[table]:
@@ -81,12 +91,15 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
                 _insert_table(container, key, location, inlined)
     for line in lines_of(document):
         _insert_profile(line, inlined)
+    _insert_timetables(inlined)
     return inlined
 
 
 def _names_files(document: dict[str, Any]) -> bool:
-    return any("gradients_file" in line for line in lines_of(document).values()) or any(
-        True for place in PLACES for _ in _named_files(document, place, ())
+    return (
+        any("gradients_file" in line for line in lines_of(document).values())
+        or bool(document.get("timetables"))
+        or any(True for place in PLACES for _ in _named_files(document, place, ()))
     )
 
 
@@ -182,3 +195,34 @@ def _insert_profile(place: Location, inlined: Inlined) -> None:
         # A level line allows the rest of the document to be checked.
         line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]
         inlined.findings += error.findings
+
+
+def _insert_timetables(inlined: Inlined) -> None:
+    """Add the trains of timetables to the traffic, behind its own entries."""
+    document, source = inlined.document, inlined.source
+    own = document.get("traffic", [])
+    if "timetables" not in document or not isinstance(own, list | tuple):
+        return
+    document["traffic"] = traffic = list(own)
+    names = {entry.get("name") for entry in own if isinstance(entry, dict)}
+    for i, table in _tables(document["timetables"]):
+        if not isinstance(table.get("file"), str):
+            continue
+        path, defaults = source.parent / table["file"], Defaults.of(i, table)
+        try:
+            trains = read_timetable(path, start_of(document), defaults, inlined.findings)
+        except ScenarioError as error:
+            inlined.findings += error.findings
+            continue
+        for train in trains:
+            if train.entry["name"] in names:
+                inlined.findings.append(train.named_twice)
+                continue
+            names.add(train.entry["name"])
+            inlined.timetabled[len(traffic)] = train
+            traffic.append(train.entry)
+
+
+def _tables(value: Any) -> list[tuple[int, dict[str, Any]]]:
+    items = value if isinstance(value, list | tuple) else []
+    return [(i, item) for i, item in enumerate(items) if isinstance(item, dict)]

@@ -12,10 +12,14 @@ from tpss.scenario.routes import (
     Hop,
     NoWayError,
     Way,
+    calls_on,
     find_way,
     hops_of,
 )
 from tpss.units import kilometres
+
+CALLS = ("stops", "passes")
+"""Lists of a service's stations on its way."""
 
 
 def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
@@ -36,12 +40,21 @@ def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _service_names(document: Mapping[str, Any]) -> Iterator[Fault]:
-    """The n-th train of a service is called "<service> n" or "<service> initial n"."""
-    entries = [(i, entry.get("name")) for i, entry in items(document, "traffic")]
-    names = {i: name for i, name in entries if isinstance(name, str)}
+    """The n-th train of a service is called "<service> n" or "<service> initial n".
+
+    A single train has the name of its service.
+    """
+    entries = list(items(document, "traffic"))
+    names = {i: entry["name"] for i, entry in entries if isinstance(entry.get("name"), str)}
+    known = set(names.values())
+    single = {i for i, entry in entries if "departure_min" in entry}
     for i, name in names.items():
-        if name.endswith(" initial") and name.removesuffix(" initial") in names.values():
+        service, _, which = name.rpartition(" ")
+        if which == "initial" and service in known:
             problem = "its trains would have the names of another service's initial trains"
+            yield f"traffic.{i}.name", repr(name), problem, "give it another name"
+        if i in single and which.isdecimal() and service.removesuffix(" initial") in known:
+            problem = "a single train, whose name a train of another service has"
             yield f"traffic.{i}.name", repr(name), problem, "give it another name"
 
 
@@ -60,8 +73,10 @@ def _names(
     begin, end = _ends_of(entry)
     yield from _unknown(f"{key}.from", begin, stations, "station")
     yield from _unknown(f"{key}.to", end, stations, "station")
-    for i, stop in items(entry, "stops"):
-        yield from _unknown(f"{key}.stops.{i}.station", stop.get("station"), stations, "station")
+    for calls in CALLS:
+        for i, call in items(entry, calls):
+            place = f"{key}.{calls}.{i}.station"
+            yield from _unknown(place, call.get("station"), stations, "station")
     for i, name in enumerate(_via(entry)):
         yield from _unknown(f"{key}.via.{i}", name, stations, "station")
 
@@ -80,7 +95,7 @@ def _calls(entry: Mapping[str, Any]) -> list[object]:
     """Names of all stations that a service names."""
     return [
         *_ends_of(entry),
-        *(stop.get("station") for _, stop in items(entry, "stops")),
+        *(call.get("station") for calls in CALLS for _, call in items(entry, calls)),
         *_via(entry),
     ]
 
@@ -99,6 +114,7 @@ def _over_network(
     names = [str(stop["station"]) for stop in stops]
     try:
         way = find_way(network, str(begin), names, str(end), via)
+        calls_on(way.hops, [str(each["station"]) for _, each in items(entry, "passes")], "passes")
     except NoWayError as error:
         yield f"{key}.{error.key}", repr(error.name), str(error), error.remedy
         return
@@ -150,7 +166,8 @@ def _along_line(key: str, entry: Mapping[str, Any], places: dict[str, float]) ->
         yield f"{key}.to", repr(end), problem, "name another station"
         return
     sign = 1.0 if end_km > start_km else -1.0
-    yield from _stops(key, entry, places, route)
+    for calls in CALLS:
+        yield from _in_order(f"{key}.{calls}", items(entry, calls), places, route)
     for i, train in items(entry, "initial_trains"):
         position = number(train, "position_km")
         if position is not None and not sign * start_km <= sign * position < sign * end_km:
@@ -159,18 +176,18 @@ def _along_line(key: str, entry: Mapping[str, Any], places: dict[str, float]) ->
             yield place, kilometres(position), problem, "place it on the route of its trains"
 
 
-def _stops(
-    key: str, entry: Mapping[str, Any], places: dict[str, float], route: Ends
+def _in_order(
+    key: str, calls: Iterator[tuple[int, Mapping[str, Any]]], places: dict[str, float], route: Ends
 ) -> Iterator[Fault]:
     before_km, end_km = route
     sign = 1.0 if end_km > before_km else -1.0
-    for i, stop in items(entry, "stops"):
-        name = stop.get("station")
+    for i, call in calls:
+        name = call.get("station")
         if not isinstance(name, str) or name not in places:
             continue
         if not sign * before_km < sign * places[name] < sign * end_km:
             here, before, end = map(kilometres, (places[name], before_km, end_km))
             problem = f"at {here} km, not between {before} and {end} km"
-            remedy = "list the stops in the order of travel, without the first and last station"
-            yield f"{key}.stops.{i}.station", repr(name), problem, remedy
+            remedy = "list them in the order of travel, without the first and last station"
+            yield f"{key}.{i}.station", repr(name), problem, remedy
         before_km = sign * max(sign * before_km, sign * places[name])

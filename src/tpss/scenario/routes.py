@@ -131,7 +131,7 @@ def find_way(
             raise NoWayError(key, end, f"its trains are at {end} already", "name another station")
         way += _shortest(hops, begin, end, key)
         begin = end
-    return Way(tuple(way), _calls_on(way, stops))
+    return Way(tuple(way), calls_on(way, stops))
 
 
 def _shortest(hops: Mapping[str, Sequence[Hop]], begin: str, end: str, key: str) -> list[Hop]:
@@ -172,15 +172,21 @@ def _distances(hops: Mapping[str, Sequence[Hop]], begin: str) -> dict[str, float
     return found
 
 
-def _calls_on(way: Sequence[Hop], stops: Sequence[str]) -> tuple[int, ...]:
-    """Numbers of the hops at whose ends a way reaches its stops, in order."""
+def calls_on(way: Sequence[Hop], stops: Sequence[str], key: str = "stops") -> tuple[int, ...]:
+    """Numbers of the hops at whose ends a way reaches its stops, or other stations, in order.
+
+    Raises
+    ------
+    NoWayError
+        It does not; of which key the stations are is said.
+    """
     found: list[int] = []
     for k, name in enumerate(stops):
         first = found[-1] + 1 if found else 0
         here = next((i for i in range(first, len(way) - 1) if way[i].end == name), None)
         if here is None:
             problem = f"the way of its trains does not lead over {name}, or not in this order"
-            remedy = "list the stops in the order of travel, or correct via"
-            raise NoWayError(f"stops.{k}.station", name, problem, remedy)
+            remedy = f"list the {key} in the order of travel, or correct via"
+            raise NoWayError(f"{key}.{k}.station", name, problem, remedy)
         found.append(here)
     return tuple(found)

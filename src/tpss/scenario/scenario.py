@@ -20,9 +20,13 @@ from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import Supply
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS
+from tpss.scenario.timetable import Timetable
 from tpss.scenario.traffic import Traffic
 from tpss.scenario.validate import validate
 from tpss.scenario.variants import Variants, apply_variant
+
+READ_IN = ("timetables",)
+"""Keys whose files have been read into others."""
 
 
 class Scenario(Part):
@@ -53,6 +57,10 @@ class Scenario(Part):
     )
     traffic: Annotated[tuple[Traffic, ...], Field(min_length=1), unique("name")] = Field(
         description="Services, at least one; the first train of the first one is studied."
+    )
+    timetables: tuple[Timetable, ...] = Field(
+        default=(),
+        description="Files of trains that run too, each at its own times.",
     )
     signalling: Signalling = Field(
         default={}, validate_default=True, description="What keeps trains apart."
@@ -209,11 +217,11 @@ class Scenario(Part):
     def digest(self) -> str:
         """Digest of all that the scenario says, wherever it was read from, its name left out."""
         text = self.model_dump_json(
-            by_alias=True, exclude_none=True, exclude={"name", "description", "variants"}
+            by_alias=True, exclude_none=True, exclude={"name", "description", "variants", *READ_IN}
         )
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def as_document(self) -> dict[str, Any]:
         """The scenario as run, with everything it took from files, library and defaults."""
-        unused = set() if self.variants else {"variants"}
+        unused = set(READ_IN) if self.variants else {"variants", *READ_IN}
         return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)

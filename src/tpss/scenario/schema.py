@@ -45,7 +45,11 @@ def scenario_schema() -> dict[str, Any]:
     schema["properties"]["line"] = {"description": "The line.", "anyOf": [OWN_FILE, line]}
     lines = schema["properties"]["lines"]
     lines["additionalProperties"] = {"anyOf": [OWN_FILE, lines["additionalProperties"]]}
-    schema["anyOf"] = [{"required": ["line"]}, {"required": ["lines"]}]
+    schema["required"].remove("traffic")
+    schema["allOf"] = [
+        {"anyOf": [{"required": ["line"]}, {"required": ["lines"]}]},
+        {"anyOf": [{"required": ["traffic"]}, {"required": ["timetables"]}]},
+    ]
     for station in ("ConverterStation", "TransformerStation"):
         _stand_at_a_station(parts[station])
     schema["description"] = "A line, its power supply, its trains and its traffic."

@@ -5,6 +5,7 @@ from typing import Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from tpss.scenario.clock import ClockTime, seconds_of
 from tpss.scenario.fields import Part, Real, either_or, fault
 
 OF_STEPPED_MOTION = (
@@ -38,6 +39,11 @@ class Simulation(Part):
         le=10,
         description="Length of a time step; by default the longest of 1, 0.5, 0.2, 0.1, 0.05, 0.02 and "
         "0.01 min that keeps within 0.3 % of a run at half of it.",
+    )
+    starts_at: ClockTime | None = Field(
+        default=None,
+        description="What the clock shows at minute 0, HH:MM or HH:MM:SS; departures may then be given "
+        "by the clock too, and times at stops are shown by it.",
     )
     until: Literal["first-departure-arrives"] | None = Field(
         default=None, description="End with the arrival of the studied train (the default)."
@@ -83,6 +89,11 @@ class Simulation(Part):
         "forces at its start, with departures and dwells in whole steps (the thesis). Left out: "
         "continuous, unless another choice here is one of stepped motion.",
     )
+
+    @property
+    def start_s(self) -> float | None:
+        """What the clock shows at minute 0, counted from midnight; None if it is not said. [s]"""
+        return None if self.starts_at is None else seconds_of(self.starts_at)
 
     @property
     def choices_of_stepped_motion(self) -> list[str]:

@@ -5,12 +5,14 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from tpss.scenario.clock import Moment
 from tpss.scenario.fields import (
     Flag,
     Name,
     Part,
     Position,
     Real,
+    Whole,
     ascending,
     either_or,
     fault,
@@ -19,10 +21,17 @@ from tpss.scenario.fields import (
 )
 
 Times = Annotated[
-    tuple[Annotated[Real, Field(ge=0, le=100_000)], ...],
+    tuple[Moment, ...],
     Field(min_length=1),
     ascending("departures_min"),
 ]
+
+
+Supplement = Annotated[Real, Field(ge=0, le=200)]
+"""A supplement to running times."""
+
+DEPARTURES = ("headway_min", "departures_min", "departure_min")
+"""Keys that say when trains depart, of which a service has one."""
 
 
 class Stop(Part):
@@ -67,6 +76,39 @@ class Stop(Part):
         return self
 
 
+class Pass(Part):
+    """A station where a train does not stop, for the time at which it passes."""
+
+    station: Name = Field(description="Station of the line.")
+    after_min: Real | None = Field(
+        default=None,
+        ge=0,
+        le=100_000,
+        description="Scheduled time, counted from the train's own departure at its origin; its lateness "
+        "is judged by it, and no train waits for it.",
+    )
+
+
+class Delays(Part):
+    """Departures that are later than scheduled, drawn for each train; its other times stay scheduled.
+
+    A delay depends on seed and name of its train only. Trains that run already at the start have none.
+    """
+
+    mean_min: Real = Field(
+        gt=0,
+        le=1_000,
+        description="Mean delay of the trains that are delayed, distributed exponentially.",
+    )
+    share: Real = Field(default=1.0, gt=0, le=1, description="Share of trains that are delayed.")
+    seed: Whole = Field(
+        default=0,
+        ge=0,
+        le=2**53,
+        description="Number that decides which trains are delayed, and by what.",
+    )
+
+
 class InitialTrain(Part):
     """A train that is on its way when the simulation begins, heading for its next stop."""
 
@@ -78,9 +120,11 @@ class InitialTrain(Part):
 class Traffic(Part):
     """A service: trains of one type from one station to another."""
 
-    model_config = ConfigDict(json_schema_extra=one_of("headway_min", "departures_min"))
+    model_config = ConfigDict(json_schema_extra=one_of(*DEPARTURES))
 
-    name: Name = Field(description="Name, from which the names of its trains are derived.")
+    name: Name = Field(
+        description="Name, from which the names of its trains are derived, or that of a single train."
+    )
     train: Name = Field(description="One of the scenario's trains.")
     origin: Name = Field(alias="from", description="Station where the trains begin.")
     destination: Name = Field(alias="to", description="Station where they leave the line.")
@@ -94,18 +138,37 @@ class Traffic(Part):
     departures_min: Times | None = Field(
         default=None, description="Times of departure, in place of a headway."
     )
-    first_departure_min: Real = Field(
-        default=0.0, ge=0, le=100_000, description="Time of the first departure, with a headway."
+    departure_min: Moment | None = Field(
+        default=None,
+        description="Time of departure of a single train, in place of a headway; its name is that of "
+        "the service.",
+    )
+    first_departure_min: Moment = Field(
+        default=0.0, description="Time of the first departure, with a headway."
     )
     already_running: Flag = Field(
         default=False,
         description="Whether trains are distributed along the line at the start, as if the "
         "service had always run.",
     )
+    delays: Delays | None = Field(
+        default=None, description="Delays of departures; leave it out: none."
+    )
+    supplement_percent: Supplement = Field(
+        default=0.0,
+        description="Supplement to the technical running time between stops: trains hold less speed.",
+    )
+    supplement_min_per_100km: Supplement = Field(
+        default=0.0, description="Supplement for each 100 km, alone or in addition."
+    )
     initial_trains: tuple[InitialTrain, ...] = Field(
         default=(), description="Trains on the line at the start."
     )
     stops: tuple[Stop, ...] = Field(default=(), description="Intermediate stops, in order.")
+    passes: tuple[Pass, ...] = Field(
+        default=(),
+        description="Stations on the way without a stop whose times are wanted, in order.",
+    )
     arrive_after_min: Real | None = Field(
         default=None,
         gt=0,
@@ -114,12 +177,31 @@ class Traffic(Part):
     )
 
     @property
+    def listed_departures_min(self) -> tuple[float, ...] | None:
+        """Departures, if they are listed or that of a single train; None with a headway. [min]"""
+        return self.departures_min if self.departure_min is None else (self.departure_min,)
+
+    @property
+    def departs_by_schedule(self) -> bool:
+        """Whether its trains have a scheduled departure, from which their other times count.
+
+        Without it they count from each train's departure, whenever that is.
+        """
+        return self.departure_min is not None or self.delays is not None
+
+    @property
+    def has_supplement(self) -> bool:
+        """Whether its trains take longer than they might."""
+        return self.supplement_percent > 0.0 or self.supplement_min_per_100km > 0.0
+
+    @property
     def is_scheduled(self) -> bool:
-        """Whether times are scheduled on the way or at the destination."""
-        times = [(stop.arrive_after_min, stop.depart_after_min) for stop in self.stops]
-        return any(time is not None for pair in times for time in pair) or (
-            self.arrive_after_min is not None
-        )
+        """Whether lateness is judged: with delays, or times on the way or at the destination."""
+        if self.delays is not None:
+            return True
+        times = [self.arrive_after_min, *(each.after_min for each in self.passes)]
+        times += [time for s in self.stops for time in (s.arrive_after_min, s.depart_after_min)]
+        return any(time is not None for time in times)
 
     @model_validator(mode="after")
     def _scheduled_times_grow(self) -> Self:
@@ -141,16 +223,21 @@ class Traffic(Part):
 
     @model_validator(mode="after")
     def _departures_are_given_once(self) -> Self:
-        if (self.headway_min is None) == (self.departures_min is None):
-            raise either_or("headway_min", "departures_min")
-        if self.already_running and (self.departures_min is not None or self.initial_trains):
+        if sum(getattr(self, key) is not None for key in DEPARTURES) != 1:
+            raise either_or(*DEPARTURES)
+        if self.already_running and (self.headway_min is None or self.initial_trains):
             raise fault(
                 "already_running needs headway_min, and replaces initial_trains",
                 "leave already_running out, or use it with headway_min alone",
             )
-        if self.departures_min is not None and self.first_departure_min:
+        if self.has_supplement and self.initial_trains:
             raise fault(
-                "first_departure_min belongs to headway_min; departures_min lists every departure",
+                "initial_trains may be faster than trains that take a supplement hold",
+                "leave initial_trains out, or the supplement",
+            )
+        if self.headway_min is None and self.first_departure_min:
+            raise fault(
+                "first_departure_min belongs to headway_min; the departures are given",
                 "leave first_departure_min out",
             )
         return self

@@ -9,6 +9,7 @@ from pydantic import BaseModel, Tag, ValidationError
 from tpss import units
 from tpss.errors import Finding, ScenarioError, closest, shortened, suggest
 from tpss.scenario.absences import absence_of
+from tpss.scenario.clock import START_S, start_of
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
 from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files, lines_of
@@ -70,7 +71,8 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
     findings = inlined.findings
     scenario = None
     try:
-        scenario = model.model_validate(inlined.document)
+        context = {START_S: start_of(inlined.document)}
+        scenario = model.model_validate(inlined.document, context=context)
     except ValidationError as error:
         details: list[dict[str, Any]] = [dict(d) for d in error.errors(include_url=False)]
         locations: set[Location] = {detail["loc"] for detail in details}
@@ -85,7 +87,7 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
             _traced(finding, inlined) for finding in cross_check(inlined.document, str(source))
         ]
     if findings or scenario is None:
-        raise ScenarioError(findings)
+        raise ScenarioError(list(dict.fromkeys(findings)))
     return scenario
 
 
@@ -97,6 +99,8 @@ def _follows_from_another(
     if inlined.is_unread(location):
         return True
     if detail["type"] == "too_short":
+        if location == ("traffic",) and inlined.document.get("timetables"):
+            return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.

@@ -21,7 +21,7 @@ def depart(step: int, trains: Records[Train]) -> None:
         if train.motion.phase == Phase.PENDING and train.timetable.departure_step <= step:
             train.motion.phase = Phase.DRIVING
             train.motion.wait_s = train.timetable.departure_wait_s
-            train.motion.under_way_s = -train.timetable.departure_wait_s
+            train.motion.under_way_s = train.timetable.delay_s - train.timetable.departure_wait_s
 
 
 @kernel

@@ -10,6 +10,7 @@ from tpss.scenario.fields import AlongLine, marked
 from tpss.scenario.line import end_of_line
 from tpss.scenario.override import copy_of, put_in
 from tpss.scenario.paths import NoSuchPlaceError, places_of
+from tpss.scenario.traffic import DEPARTURES
 
 Settings = dict[str, Any]
 """Values by the key paths of a scenario, see `tpss.scenario.paths`."""
@@ -23,15 +24,14 @@ PLACES = tuple(place for place in marked(Scenario, AlongLine) if not place.start
 """Positions whose distances from its beginning scale with the length of the line; gradients do not."""
 
 INSTEAD_OF = {
-    "transformers": "transformers_km",
-    "transformers_km": "transformers",
-    "headway_min": "departures_min",
-    "departures_min": "headway_min",
-    "duration_min": "until",
-    "until": "duration_min",
-    "gradients": "gradients_file",
+    "transformers": ("transformers_km",),
+    "transformers_km": ("transformers",),
+    **{key: tuple(other for other in DEPARTURES if other != key) for key in DEPARTURES},
+    "duration_min": ("until",),
+    "until": ("duration_min",),
+    "gradients": ("gradients_file",),
 }
-"""Keys that replace another one."""
+"""Keys that replace others."""
 
 
 def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -> None:
@@ -66,8 +66,8 @@ def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
         changes: dict[str, Any] = {}
         for place in places:
             above, _, key = place.rpartition(".")
-            if key in INSTEAD_OF and value is not None:
-                changes[f"{above}.{INSTEAD_OF[key]}"] = None
+            if value is not None:
+                changes |= {f"{above}.{other}": None for other in INSTEAD_OF.get(key, ())}
             changes[place] = value
         put_in(document, changes, source)
 

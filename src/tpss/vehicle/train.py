@@ -54,6 +54,8 @@ class Timetable(Record):
     """Step at which it departs, or in which, if it moves continuously."""
     departure_wait_s: float
     """Time in that step until it departs. [s]"""
+    delay_s: float
+    """By what it departs later than scheduled. [s]"""
     arrival_step: int
     """Instant at which it stands at its destination; -1 until then."""
     stood_s: float
@@ -77,7 +79,7 @@ class Motion(Record):
     wait_s: float
     """Time until it departs, if it moves continuously. [s]"""
     under_way_s: float
-    """Time since it departed at its origin, for its scheduled times; infinite: not known. [s]"""
+    """Time since it departed at its origin, or should have; infinite: not known. [s]"""
     authority_m: float
     """Position that it may not pass in this step, because of others; infinite: any. [m]"""
     ceiling_m_s: float

@@ -51,7 +51,7 @@ class Supply(Part):
     tracks_tied: Tied | None = Field(
         default=None,
         description="Where the contact lines of several tracks are tied: `everywhere`, at `posts` "
-        "(those below, feeding points, stations where lines meet), or `no` (there, but at no posts).  "
+        "(those below, feeding points, stations where lines meet), or `no` (there, but at no posts). "
         "Needed where a line has several tracks.",
     )
     contact_lines: tuple[ContactLine, ...] = Field(
