@@ -52,6 +52,55 @@ def solve_with_pandapower(scenario: tpss.Scenario, moment: xr.Dataset) -> Net:
     return net
 
 
+def solve_network_with_pandapower(scenario: tpss.Scenario, moment: xr.Dataset) -> Net:
+    """The same of a network of lines without high-voltage line, of one or two tracks tied at posts."""
+    net = pp.create_empty_network(f_hz=scenario.supply.frequency_hz, sn_mva=BASE_MVA)
+    supply, line_kv = scenario.supply, LINE_KV[scenario.supply.system]
+    meeting: dict[str, int] = {}
+    feeding: Buses = {}
+    for number, (name, line) in enumerate(scenario.lines.items()):
+        others = [each.stations for key, each in scenario.lines.items() if key != name]
+        shared = {
+            station.position_km: station.name
+            for station in line.stations
+            if any(station.name == each.name for stations in others for each in stations)
+        }
+        fed = [station.position_km for station in supply.stations if station.line == name]
+        posts = [post.position_km for post in supply.posts if post.line == name and post.closed]
+        contact: Buses = {}
+        for km in sorted({*shared, *fed, *posts}):
+            known = meeting.get(shared.get(km, ""))
+            contact[km] = add_line_bus(net, name, km, line_kv) if known is None else known
+            if km in shared:
+                meeting[shared[km]] = contact[km]
+        own = [each.catenary for each in supply.contact_lines if each.line == name]
+        catenary = own[0] if own else supply.catenary
+        for track in range(1, line.tracks + 1):
+            words = f", track {track}" if line.tracks > 1 else ""
+            ends = {
+                km: add_line_bus(net, name, km, line_kv, words)
+                for km in (line.begins_at_km, line.end_km)
+                if km not in contact
+            }
+            here = (moment.train_line == number) & (moment.get("train_track", 1) == track)
+            trains = add_trains(net, moment.where(here), line_kv)
+            lay_contact_line(net, catenary, dict(sorted({**contact, **ends}.items())), trains)
+        connection = complex(catenary.connection_r_ohm, catenary.connection_x_ohm)
+        for km in fed:
+            feeding[km] = contact[km]
+            if connection:
+                feeder = f"AT feeder at {name} {km:g} km"
+                feeding[km] = int(pp.create_bus(net, vn_kv=line_kv, name=feeder))
+                add_impedance(net, feeding[km], contact[km], connection)
+    add_sources(net, supply, feeding, moment)
+    pp.runpp(net, init="flat", calculate_voltage_angles=True, tolerance_mva=1e-9, numba=False)
+    return net
+
+
+def add_line_bus(net: Net, line: str, km: float, kv: float, words: str = "") -> int:
+    return int(pp.create_bus(net, vn_kv=kv, name=f"contact line at {line} {km:g} km{words}"))
+
+
 def positions_of_transformers(supply: Supply) -> list[float]:
     """Transformers between stations: as listed, or as many between neighbouring stations."""
     line = supply.high_voltage_line

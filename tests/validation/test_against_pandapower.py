@@ -10,7 +10,11 @@ import pytest
 import tpss
 
 from conftest import EXAMPLES
-from pandapower_net import solve_with_pandapower, worst_differences
+from pandapower_net import (
+    solve_network_with_pandapower,
+    solve_with_pandapower,
+    worst_differences,
+)
 
 NAMES = [
     "thesis_160km", "thesis_3_3", "thesis_3_7_2", "at_headway_3", "at_hv_headway_3", "emu_25kv",
@@ -57,13 +61,13 @@ def telling_moments(result):
     }
 
 
-def assert_agreement(scenario):
+def assert_agreement(scenario, solve=solve_with_pandapower):
     result = tpss.simulate(scenario)
     assert result.status == "finished"
     worst = dict.fromkeys(("voltage", "angle", "P", "Q"), 0.0)
     for when, step in telling_moments(result).items():
         moment = result.dataset.isel(time=step)
-        differences = worst_differences(solve_with_pandapower(scenario, moment), moment)
+        differences = worst_differences(solve(scenario, moment), moment)
         assert max(differences.values()) < TOLERANCE, (when, differences)
         worst = {what: max(worst[what], value) for what, value in differences.items()}
     print(scenario.name, *(f"{what} {value:.1e}" for what, value in worst.items()), sep=" | ")
@@ -73,6 +77,12 @@ def assert_agreement(scenario):
 def test_an_example_agrees(name):
     """Every pantograph's and node's voltage and angle, every station's active and reactive power."""
     assert_agreement(tpss.load_scenario(EXAMPLES / f"{name}.toml"))
+
+
+def test_the_network_agrees():
+    """Two lines that meet, of two tracks tied at a post and of one, each with a catenary of its own."""
+    scenario = tpss.load_scenario(EXAMPLES / "network.toml")
+    assert_agreement(scenario, solve_network_with_pandapower)
 
 
 def test_a_line_with_open_ends_and_trains_less_than_a_metre_apart_agrees():

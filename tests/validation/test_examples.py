@@ -79,8 +79,19 @@ def test_the_example_of_both_ways_keeps_its_schedule_until_the_voltage_sags():
     assert len(scenario.variant("third-station").supply.stations) == 3
 
 
+def test_the_network_s_forty_trains_keep_their_timetable():
+    """All on time and within the limits; fed from one end, trains lose time and some are late."""
+    scenario = tpss.load_scenario(EXAMPLES / "network.toml")
+    result = tpss.simulate(scenario)
+    assert (result.status, len(result.trips)) == ("finished", 40)
+    assert result.trips.arrival_min.notna().all()
+    assert result.stops.late_min.max() < 0.1
+    assert result.standards.violations.empty
+    assert (result.trips.distance_km.round(6) == 96.0).sum() == 4  # those over both lines
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
-    others = {"both_ways", "emu_25kv", "overloaded", "own_trains", "thesis_original"}
+    others = {"both_ways", "emu_25kv", "network", "overloaded", "own_trains", "thesis_original"}
     assert names == {*REFERENCE, *others}
