@@ -27,6 +27,7 @@ def keep_the_rules(result: Result) -> None:
     judge_values(result)
     judge_departures(result)
     judge_converters(result)
+    judge_separation(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
 
@@ -49,6 +50,36 @@ def judge_values(result: Result) -> None:
             assert (np.isfinite(values) == expected).all(), f"{name} is not where the trains are"
         else:
             assert np.isfinite(values).all(), f"{name} is not finite"
+
+
+def judge_separation(result: Result) -> None:
+    """On a line alone, nobody is nearer than the margin behind the rear of a train of his direction.
+
+    Trains that were placed too near each other are counted, and nothing is said of the run then.
+    """
+    signalling, data = result.scenario.signalling, result.dataset
+    if signalling.separation == "none" or len(result.scenario.lines_by_name) > 1:
+        return
+    if result.summary["limited"]["too_near"] or data.sizes["train"] < 2:
+        return
+    trains, services = result.scenario.trains_by_service(), data.service.to_numpy()
+    length_m = np.array([trains[str(service)].length_m for service in services])
+    place_m, along_m = data.position.to_numpy(), data.route_position.to_numpy()
+    moving = data.speed.to_numpy() > 0.0
+    for sign in (1.0, -1.0):
+        with np.errstate(invalid="ignore"):
+            own = np.isfinite(along_m) & (
+                np.abs(along_m - sign * place_m) <= 1e-6 * np.abs(along_m)
+            )
+        for step in range(len(along_m)):
+            here = np.flatnonzero(own[step])
+            order = here[np.argsort(along_m[step, here], kind="stable")]
+            for behind, ahead in zip(order, order[1:], strict=False):
+                room_m = along_m[step, ahead] - length_m[ahead] - along_m[step, behind]
+                if moving[step, behind]:
+                    assert room_m >= signalling.margin_m - 0.01, (
+                        f"{data.train.to_numpy()[behind]} is {room_m} m behind another at step {step}"
+                    )
 
 
 def knows_its_current(result: Result) -> np.ndarray:
@@ -141,6 +172,7 @@ class Journey:
         self.name = name
         self.step_s = float(data.attrs["time_step_s"])
         self.driver = result.scenario.simulation.driver
+        self.kept_apart = result.scenario.signalling.separation != "none"
         self.continuous = result.scenario.simulation.how_trains_move == "continuous"
         calls = data.isel(train=i)
         self.arrived_s = calls.call_arrival_time.to_numpy()
@@ -197,6 +229,7 @@ class Journey:
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
         free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
+        free &= not self.kept_apart
         if regulated and free and self.continuous:
             self.gives_all_it_can_between_two_speeds()
         elif regulated and free:
@@ -337,7 +370,7 @@ class Journey:
             assert stood_s == pytest.approx(dwell_s, rel=1e-9, abs=1e-6), (
                 f"{self.name} dwells {stood_s} s at {place} m"
             )
-        dwelling = self.state == TrainState.DWELLING
+        dwelling = (self.state == TrainState.DWELLING) & (not self.kept_apart)
         places = np.array(self.stops_m)
         for x in self.x[dwelling]:
             assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, (

@@ -220,6 +220,23 @@ def on_25_kv(draw: Draw, document: Document) -> Document:
     }
 
 
+SIGNALLING = st.one_of(
+    st.fixed_dictionaries(
+        {"separation": st.just("moving-block")},
+        optional={"margin_m": numbers(0.0, 500.0), "reaction_s": numbers(0.0, 30.0)},
+    ),
+    st.fixed_dictionaries(
+        {"separation": st.just("fixed-block"), "block_m": numbers(100.0, 5000.0)},
+        optional={"margin_m": numbers(0.0, 500.0)},
+    ),
+)
+
+
+def moves_continuously(simulation: Document) -> bool:
+    """Whether trains move continuously, which separation goes with."""
+    return simulation.get("motion", "continuous") == "continuous"
+
+
 BEGINNINGS_KM = st.sampled_from([False, False, False, False, True]).flatmap(
     lambda elsewhere: numbers(-300.0, 1500.0) if elsewhere else st.none()
 )
@@ -267,6 +284,8 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
+    if moves_continuously(document["simulation"]) and draw(st.integers(0, 4)) == 4:
+        document["signalling"] = draw(SIGNALLING)
     document = document if begin_km is None else moved(document, begin_km)
     return into_network(draw, document, lines()) if draw(st.integers(0, 3)) == 3 else document
 
