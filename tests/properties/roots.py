@@ -10,11 +10,12 @@ import numpy.typing as npt
 from tpss import Scenario
 from tpss.kernel import plain
 from tpss.model import build_model
+from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
-from tpss.run.run import Run, trains_on_line
+from tpss.run.run import Run, switch, trains_on_line
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide
@@ -40,6 +41,7 @@ class Replay:
     def __init__(self, scenario: Scenario, steps: int) -> None:
         model, _ = build_model(scenario)
         services = build_services(scenario, model)
+        self.switchings = service_of(scenario).switchings
         trains = trains_on_line(model, services)
         trains += departing_trains(services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
@@ -51,7 +53,8 @@ class Replay:
         others; a train that would depart later is not on the line.
         """
         run = self.run
-        run.advance_to(step)
+        while (until := switch(run, self.switchings, step)) > run.step:
+            run.advance_to(until)
         untouched = copy.deepcopy(run.state)
         clock = run.state.clock[0]
         clock.on_line = begin_step(step, run.model, run.state, run.recording)

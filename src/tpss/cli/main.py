@@ -100,6 +100,13 @@ def run(
             "its variants. Several are compared, each in a folder of its own, in that of --out.",
         ),
     ] = None,
+    outage: Annotated[
+        str | None,
+        option(
+            metavar="NAME",
+            help="Run with an outage of the scenario's [[outages]], which otherwise do not apply.",
+        ),
+    ] = None,
 ) -> None:
     """Simulate a scenario, print the key figures, and save the result.
 
@@ -122,6 +129,7 @@ def run(
         report,
         step_check=not no_step_check,
         variants=variant or [],
+        outage=outage,
     )
     raise typer.Exit(code)
 

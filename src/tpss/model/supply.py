@@ -20,6 +20,7 @@ from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
 from tpss.scenario.supply import Catenary, HighVoltageLine, Station, Supply
 from tpss.scenario.supply.system import system_named
+from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.units import kilometres, si
 
 CONTACT_LINE = "contact line"
@@ -219,25 +220,6 @@ def _lay_line(
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)
     return laid.node
-
-
-def transformer_positions_km(supply: Supply) -> list[float]:
-    """Positions of the transformers between stations, given or equally spaced. [km]"""
-    high_voltage = supply.high_voltage_line
-    if high_voltage is None:
-        return []
-    if high_voltage.transformers_km is not None:
-        return list(high_voltage.transformers_km)
-    line = high_voltage.line
-    stations = sorted(
-        s.position_km for s in supply.stations if None in (line, s.line) or s.line == line
-    )
-    count = high_voltage.transformers or 0
-    return [
-        start + (end - start) * (i + 1) / (count + 1)
-        for start, end in zip(stations, stations[1:], strict=False)
-        for i in range(count)
-    ]
 
 
 def _connection_impedance(catenary: Catenary) -> complex:

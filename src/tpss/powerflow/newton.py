@@ -310,10 +310,12 @@ def voltages_are_plausible(network: Network, flow: Flow) -> bool:
 
 @inlined
 def sources_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether every source is in a state that its law admits."""
+    """Whether every source in service is in a state that its law admits."""
     for s in range(network.sources.size):
         source = network.sources[at(s)]
         node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
+        if running == 0.0:
+            continue
         if not is_plausible(node.voltage_v, node.leaving_current_a, running, source):
             return False
     return True

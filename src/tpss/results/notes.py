@@ -33,8 +33,9 @@ FEW = 3
 def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
     if result.dataset.sizes["time"] < 2:
-        return [*step_warnings(result.summary), *warnings(result.summary)]
+        return [*_outage(result), *step_warnings(result.summary), *warnings(result.summary)]
     return [
+        *_outage(result),
         *step_warnings(result.summary),
         *_overloads(result),
         *_circulation(result),
@@ -43,6 +44,13 @@ def notes(result: Result) -> list[str]:
         *_passing(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
+
+
+def _outage(result: Result) -> Iterator[str]:
+    """The outage with which it was run."""
+    outage = result.scenario.outage
+    if outage is not None:
+        yield f"outage {outage.name}: {outage.in_words}"
 
 
 def _overloads(result: Result) -> Iterator[str]:

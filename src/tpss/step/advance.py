@@ -132,7 +132,7 @@ def end_step(
         return Status.COLLAPSED
     if find_stalled(count, state):
         return Status.STALLED
-    remember(step == 0, state.flow)
+    remember(step == state.clock[0].fresh_step, state.flow)
     record_trains(
         step, count, state.clock[0].begin_s, model.options.step_s, model.types, model.points,
         state.flow.standing, state.trains, recording.trains, recording.train_state, recording.calls,
@@ -204,7 +204,8 @@ def solve_lengths(
         now = with_step(model, clock.last_step_s)
         if not goes_on:
             prepare_step(clock.on_line, now, state)
-        share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
+        warm = step + clock.lengths_tried > clock.fresh_step
+        share, passes = solve_step(clock.on_line, warm, now, state)
         clock.passes += passes
         if share < 1.0:
             return share
@@ -246,7 +247,7 @@ def run_steps(
         if not goes_on:
             clock.on_line = begin_step(step, model, state, recording)
             clock.lengths_tried, clock.passes = 0, 0
-            if step > 0:
+            if step > clock.fresh_step:
                 predict(state.flow)
         share = solve_lengths(step, goes_on, model, state, recording)
         if share == ASKS:

@@ -1,0 +1,73 @@
+"""What of a scenario's supply is in service, and when."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tpss.errors import Finding, ScenarioError
+from tpss.model.supply import TRANSFORMER, SupplyPlan, build_supply, layouts_of
+from tpss.powerflow.in_service import in_service, unfed_nodes
+from tpss.powerflow.network import Network
+from tpss.run.switching import Switching
+from tpss.scenario.outages import SAME_PLACE_KM, Outage
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import Supply
+
+
+class Service(NamedTuple):
+    """The network with which a run begins, and those that take its place, in the order of time."""
+
+    network: Network
+    switchings: tuple[Switching, ...] = ()
+
+
+def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
+    """Networks of a run with an outage; by default with the one that the scenario asks for, if any.
+
+    Raises
+    ------
+    ScenarioError
+        The outage leaves a part of the line without a feeding station.
+    """
+    intact, plan = build_supply(scenario.supply, layouts_of(scenario.lines_by_name))
+    outage = outage or scenario.outage
+    if outage is None:
+        return Service(intact)
+    reduced = reduced_network(intact, plan, scenario.supply, outage)
+    _demand_feeding(reduced, plan, outage, scenario)
+    ending = () if outage.to_min is None else (Switching(60.0 * outage.to_min, intact),)
+    if outage.from_min == 0.0:
+        return Service(reduced, ending)
+    return Service(intact, (Switching(60.0 * outage.from_min, reduced), *ending))
+
+
+def reduced_network(intact: Network, plan: SupplyPlan, supply: Supply, outage: Outage) -> Network:
+    """The network with all that an outage names out of service."""
+    units = {
+        s: station.installed - out
+        for s, station in enumerate(supply.stations)
+        if (out := outage.units_of(station))
+    }
+    opened = [
+        b
+        for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True))
+        if kind == TRANSFORMER and _is_at(plan.node_km[branch.start_node], outage)
+    ]
+    return in_service(intact, units, opened)
+
+
+def _is_at(position_km: float, outage: Outage) -> bool:
+    """Whether a transformer stands where the outage says one is out."""
+    return any(abs(position_km - km) <= SAME_PLACE_KM for km in outage.transformers_km)
+
+
+def _demand_feeding(network: Network, plan: SupplyPlan, outage: Outage, scenario: Scenario) -> None:
+    """Refuse an outage that leaves something without a feeding station."""
+    unfed = np.flatnonzero(unfed_nodes(network))
+    if unfed.size == 0:
+        return
+    names = [each.name for each in scenario.outages]
+    key = f"outages.{names.index(outage.name)}" if outage.name in names else "outages"
+    problem = f"it leaves {plan.nodes[unfed[0]]} without a feeding station"
+    remedy = "leave a station or a transformer in service"
+    raise ScenarioError([Finding(str(scenario.source), key, repr(outage.name), problem, remedy)])
