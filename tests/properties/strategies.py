@@ -15,6 +15,7 @@ from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transf
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
 from .networks import into_network
+from .outages import outages
 from .ranges import numbers
 
 Draw = Any
@@ -267,6 +268,9 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
+    if draw(st.integers(0, 3)) == 3:
+        document["outages"] = [draw(outages(document["supply"], span_min))]
+        document["simulation"]["outage"] = "random"
     document = document if begin_km is None else moved(document, begin_km)
     return into_network(draw, document, lines()) if draw(st.integers(0, 3)) == 3 else document
 

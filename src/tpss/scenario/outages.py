@@ -17,8 +17,8 @@ from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
 
-SAME_PLACE_KM = 0.001
-"""A transformer that is no further away is the one that is meant. [km]"""
+SAME_PLACE_KM = 0.0004
+"""A transformer no further away is the one that is meant; no two are closer than a metre. [km]"""
 
 
 class Outage(Part):
