@@ -129,6 +129,9 @@ def judge_converters(result: Result) -> None:
 def judge_outage(result: Result) -> None:
     """What is out of service feeds nothing and carries nothing, and all that is not runs."""
     data, supply, outage = result.dataset, result.scenario.supply, result.scenario.outage
+    unfed = data.pantograph_voltage.to_numpy()[:-1] == 0.0
+    for name in ("tractive_force", "active_power", "reactive_power", "motor_power"):
+        assert (data[name].to_numpy()[:-1][unfed] == 0.0).all(), f"{name} without power"
     fed = np.hypot(data.station_active_power, data.station_reactive_power).to_numpy()[:-1]
     for s, station in enumerate(supply.stations):
         units = [units_in_service(result, station, k) for k in range(len(fed))]
@@ -367,7 +370,7 @@ class Journey:
             assert stood_s == pytest.approx(dwell_s, rel=1e-9, abs=1e-6), (
                 f"{self.name} dwells {stood_s} s at {place} m"
             )
-        dwelling = self.state == TrainState.DWELLING
+        dwelling = (self.state == TrainState.DWELLING) & (self.volts != 0.0)
         places = np.array(self.stops_m)
         for x in self.x[dwelling]:
             assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, (

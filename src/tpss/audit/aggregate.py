@@ -214,7 +214,7 @@ def _gather_trains(
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.route_position, train)
-        if math.isnan(voltage):
+        if math.isnan(voltage) or voltage == 0.0:  # it is not fed, and draws nothing
             continue
         train.energy_j += row.active_power * h
         train.steps += 1
@@ -276,6 +276,8 @@ def _gather_network(
         if at_line_level[n]:
             node = recording.nodes[step, n]
             voltage = magnitude(complex(node.node_real, node.node_imag))
+            if voltage == 0.0:  # it is not fed
+                continue
             run.lowest_node_v = min(run.lowest_node_v, voltage)
             run.highest_voltage_v = max(run.highest_voltage_v, voltage)
 

@@ -11,7 +11,7 @@ import math
 from tpss.audit.balances import Balances, Scratch, worst
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
-from tpss.powerflow.network import SHORTEST_PIECE_M
+from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
 from tpss.powerflow.placing import section_at
 from tpss.record import Records
 from tpss.sources.kinds import residual
@@ -59,6 +59,9 @@ def audit_network(
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
+        if s == UNFED:
+            off = magnitude(scratch.node_v[n]) / network.system.base_voltage_v
+            figures.converter_residual = worst(figures.converter_residual, off)
         if s >= 0:
             fed = recording.stations[step, s]
             power -= complex(fed.station_active_power, fed.station_reactive_power)

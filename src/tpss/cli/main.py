@@ -336,8 +336,8 @@ def outages(
     their mean useful voltage. In brackets stands what differs from the intact supply; late and lost
     count against it too. The CSV file holds more: trains, times, windows of loading, differences.
 
-    Exit codes: 0 done, 2 bad input, 3 a run did not solve, or a part of the line was not fed, 4 the
-    audit of a run failed, 130 interrupted (the table holds the runs that were done).
+    Exit codes: 0 done, 2 bad input, 3 a run did not solve or a train stalled, 4 the audit of a run
+    failed, 130 interrupted (the table holds the runs that were done).
     """
     from tpss.cli.outages import run_outages
 

@@ -81,7 +81,7 @@ def _exit_code(found: "Comparison") -> int:
     verdicts = [row.verdict for row in found.rows]
     if Verdict.AUDIT_FAILED in verdicts:
         return AUDIT_FAILED
-    return DONE if min(verdicts) >= Verdict.VOLTAGE else NO_SOLUTION
+    return DONE if min(verdicts) >= Verdict.STRANDED else NO_SOLUTION
 
 
 def _save(found: "Comparison", name: str, out: Path | None, force: bool) -> Path:

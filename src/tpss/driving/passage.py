@@ -22,6 +22,9 @@ the work F v_m δ.  The machine gives at v_m what it can at v_m: its power is ne
 A driver who wants less acceleration than the machine can give (his limit of acceleration, a speed that
 is held, braking) gets it: then a is what he wants, and the force follows.
 
+Without voltage a train has no force and draws nothing.  It coasts and brakes, and once it stands it
+stays, also on a gradient.
+
 The powers that the train draws are means over the step.  Where the voltage decides about a force, their
 slopes over it are found by a second passage at a voltage close by; else those of the phases add up.
 """
@@ -415,7 +418,7 @@ def _drive(
     pull, end = _choose_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
     a = pull.acceleration_m_s2
-    if end == End.STANDSTILL or (v == 0.0 and a <= 0.0):
+    if voltage_v > 0.0 and (end == End.STANDSTILL or (v == 0.0 and a <= 0.0)):
         passage.stalled = True
         passage.needed_n = pull.running_n + pull.gradient_n
         passage.available_n = pull.traction_n
@@ -489,6 +492,8 @@ def pass_through(
             return
         if passage.motion.wait_s > 0.0:
             _stand(voltage_v, passage, train, kind, data.options.step_s)
+        elif voltage_v <= 0.0 and passage.motion.speed_m_s <= 0.0:
+            passage.left_s = 0.0  # without power a train that stands is held by its brakes
         elif _is_held(passage.motion):
             _hold(voltage_v, passage, kind)
         else:

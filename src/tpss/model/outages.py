@@ -6,8 +6,8 @@ import numpy as np
 
 from tpss.errors import Finding, ScenarioError
 from tpss.model.supply import TRANSFORMER, SupplyPlan, build_supply, layouts_of
-from tpss.powerflow.in_service import in_service, unfed_nodes
-from tpss.powerflow.network import Network
+from tpss.powerflow.in_service import in_service
+from tpss.powerflow.network import UNFED, Network
 from tpss.run.switching import Switching
 from tpss.scenario.outages import SAME_PLACE_KM, Outage
 from tpss.scenario.scenario import Scenario
@@ -27,14 +27,14 @@ def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
     Raises
     ------
     ScenarioError
-        The outage leaves a part of the line without a feeding station.
+        The outage leaves a part of the line without a feeding station, and trains move in steps.
     """
     intact, plan = build_supply(scenario.supply, layouts_of(scenario.lines_by_name))
     outage = outage or scenario.outage
     if outage is None:
         return Service(intact)
     reduced = reduced_network(intact, plan, scenario.supply, outage)
-    _demand_feeding(reduced, plan, outage, scenario)
+    _demand_continuous_motion(reduced, plan, outage, scenario)
     ending = () if outage.to_min is None else (Switching(60.0 * outage.to_min, intact),)
     if outage.from_min == 0.0:
         return Service(reduced, ending)
@@ -61,13 +61,21 @@ def _is_at(position_km: float, outage: Outage) -> bool:
     return any(abs(position_km - km) <= SAME_PLACE_KM for km in outage.transformers_km)
 
 
-def _demand_feeding(network: Network, plan: SupplyPlan, outage: Outage, scenario: Scenario) -> None:
-    """Refuse an outage that leaves something without a feeding station."""
-    unfed = np.flatnonzero(unfed_nodes(network))
-    if unfed.size == 0:
+def _demand_continuous_motion(
+    network: Network, plan: SupplyPlan, outage: Outage, scenario: Scenario
+) -> None:
+    """Refuse an outage that leaves something without a feeding station, where trains move in steps.
+
+    A train without power comes to stand anywhere within a step, which stepped motion does not know.
+    """
+    unfed = np.flatnonzero(network.source_of_node == UNFED)
+    if unfed.size == 0 or scenario.simulation.how_trains_move == "continuous":
         return
     names = [each.name for each in scenario.outages]
     key = f"outages.{names.index(outage.name)}" if outage.name in names else "outages"
-    problem = f"it leaves {plan.nodes[unfed[0]]} without a feeding station"
-    remedy = "leave a station or a transformer in service"
+    problem = (
+        f"it leaves {plan.nodes[unfed[0]]} without a feeding station, which stepped motion does not "
+        "know"
+    )
+    remedy = 'use motion = "continuous", or leave a station or a transformer in service'
     raise ScenarioError([Finding(str(scenario.source), key, repr(outage.name), problem, remedy)])

@@ -12,6 +12,7 @@ import pandas as pd
 from tpss.results.result import Result
 from tpss.results.standards.windows import WINDOWS_MIN, highest_means, step_values
 from tpss.results.stops import LATE_MIN
+from tpss.results.stranded import stranded_trains
 from tpss.results.tables import step_s
 
 OVERLOAD_MIN = 3.0
@@ -25,10 +26,11 @@ class Verdict(IntEnum):
     NO_SOLUTION = 1
     STALLED = 2
     NOT_FED = 3
-    VOLTAGE = 4
-    USEFUL_VOLTAGE = 5
-    OVERLOAD = 6
-    KEPT = 7
+    STRANDED = 4
+    VOLTAGE = 5
+    USEFUL_VOLTAGE = 6
+    OVERLOAD = 7
+    KEPT = 8
 
     @property
     def words(self) -> str:
@@ -37,7 +39,8 @@ class Verdict(IntEnum):
             Verdict.AUDIT_FAILED: "audit failed",
             Verdict.NO_SOLUTION: "did not solve",
             Verdict.STALLED: "train stalled",
-            Verdict.NOT_FED: "not fed",
+            Verdict.NOT_FED: "not fed, not run",
+            Verdict.STRANDED: "trains stranded",
             Verdict.VOLTAGE: "voltage limit violated",
             Verdict.USEFUL_VOLTAGE: "useful voltage too low",
             Verdict.OVERLOAD: "station overloaded",
@@ -87,6 +90,7 @@ def row_of(outage: str, out: str, result: Result) -> Row:
     """Row of a run that has ended."""
     figures = {**_voltages(result), **_loadings(result)}
     figures["energy_mwh"] = result.summary["total_energy_mwh"]
+    figures["stranded"] = len({each.train for each in stranded_trains(result.dataset)})
     arrived = result.trips.dropna(subset=["arrival_min"])
     return Row(
         outage=outage,
@@ -101,6 +105,8 @@ def row_of(outage: str, out: str, result: Result) -> Row:
 def _verdict(result: Result, figures: Mapping[str, Any]) -> Verdict:
     if not result.audit["passed"]:
         return Verdict.AUDIT_FAILED
+    if figures["stranded"] and result.status != "collapsed":
+        return Verdict.STRANDED
     if result.status in ENDINGS:
         return ENDINGS[result.status]
     violated = set(result.standards.violations.standard)

@@ -6,6 +6,8 @@ network to the other.  Out of service are
     a source      it has no units, and no node is its own: that is one without a source
     some units    the source has fewer
     a branch      its admittance is 0
+
+Nodes that no source reaches by what is left are marked as `UNFED`.
 """
 
 from collections.abc import Collection, Mapping
@@ -14,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
-from tpss.powerflow.network import Network
+from tpss.powerflow.network import UNFED, Network
 from tpss.record import copy_of_records
 
 
@@ -39,6 +41,7 @@ def in_service(network: Network, units: Mapping[int, int], opened: Collection[in
     for number in opened:
         branches[number].admittance_s = 0.0
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
+    source_of_node[unfed_nodes(changed)] = UNFED
     return changed._replace(admittance_s=_admittance_of_branches(changed))
 
 

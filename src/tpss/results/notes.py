@@ -13,6 +13,7 @@ from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
+from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
 from tpss.units import on_line
 
@@ -26,6 +27,9 @@ CLOSE_M = SHORTEST_PIECE_M
 APART_M = 1e8
 """What lies between the places on one line and those on the next; no line is so long. [m]"""
 
+MOST_STRANDED = 5
+"""Trains without power that are listed."""
+
 FEW = 3
 """Train-steps that closeness may take without a note, as of a train that passes."""
 
@@ -37,6 +41,7 @@ def notes(result: Result) -> list[str]:
     return [
         *_outage(result),
         *step_warnings(result.summary),
+        *_stranded(result),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),
@@ -51,6 +56,15 @@ def _outage(result: Result) -> Iterator[str]:
     outage = result.scenario.outage
     if outage is not None:
         yield f"outage {outage.name}: {outage.in_words}"
+
+
+def _stranded(result: Result) -> Iterator[str]:
+    """Trains that stood without power."""
+    stood = stranded_trains(result.dataset)
+    if stood:
+        more = f", and {len(stood) - MOST_STRANDED} more" if len(stood) > MOST_STRANDED else ""
+        listed = "; ".join(each.in_words for each in stood[:MOST_STRANDED])
+        yield f"stranded without power: {listed}{more}; voltages are those of trains that are fed"
 
 
 def _overloads(result: Result) -> Iterator[str]:

@@ -359,8 +359,11 @@ def advance_to_end(
     last = steps if steps is not None else int(LONGEST_RUN_S / h)
     watched = report is not None or interrupted is not None
     stretch = 32 if watched else last
+    until = 0
     while run.step < last:
         if run.step == run.capacity:
+            if steps is None and until == last and _is_stranded(run):
+                break
             more = min(last, run.capacity + run.capacity // 2 + 1)
             departing = departing_trains(start.services, run.model.options, run.capacity, more)
             trains = len(run.trains) + len(departing)
@@ -380,6 +383,12 @@ def advance_to_end(
         if interrupted:
             return INTERRUPTED
     return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
+
+
+def _is_stranded(run: Run) -> bool:
+    """Whether the studied train stands without power."""
+    row = run.recording.trains[run.step - 1, run.model.control.studied_train]
+    return bool(row.speed == 0.0 and row.pantograph_real == 0.0 and row.pantograph_imag == 0.0)
 
 
 def switch(run: Run, switchings: Sequence[Switching], last: int) -> int:

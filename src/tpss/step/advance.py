@@ -6,7 +6,7 @@ from tpss.driving.passage import SLACK_M
 from tpss.kernel import at, inlined, kernel, plain
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Request, Standing
-from tpss.powerflow.placing import locate_trains, measure_pieces
+from tpss.powerflow.placing import locate_trains, measure_pieces, set_unfed_aside
 from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
@@ -75,6 +75,8 @@ def place_trains(model: Model, state: State) -> int:
     count = list_trains(state.trains, state.flow)
     locate_trains(count, state.trains, model.legs, model.network, state.flow)
     state.clock[0].short_pieces = measure_pieces(count, model.network, state.flow)
+    if model.control.fixed_voltage_v <= 0.0:
+        state.clock[0].unfed = set_unfed_aside(model.network, state.flow)
     return count
 
 
