@@ -145,7 +145,7 @@ def _cells(row: "Row", intact: "Row") -> list[str]:
         escape(str(own.get("peak_loading_station", ""))),
         str(row.lost["arrived"]),
         str(row.lost["late"] + row.lost["missing"]),
-        "" if row is intact else f"{row.lost['lost_min']:.2f}",
+        "" if row is intact else f"{round(row.lost['lost_min'], 2) + 0.0:.2f}",
     ]
 
 
