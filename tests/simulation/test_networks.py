@@ -228,3 +228,27 @@ def test_a_mirrored_line_among_others_gives_the_same():
     back["supply"]["converter_stations"][0]["position_km"] = 60.0
     found = run(back)
     assert_same_energies(found, there)
+
+
+def test_of_lines_apart_only_the_one_that_no_station_reaches_is_without_power():
+    """Two lines that do not meet, each with its station; that of the second is out from 5 to 10 min."""
+    lines = {
+        "north": line(60.0, {"A": 0.0, "B": 60.0}),
+        "south": line(60.0, {"C": 0.0, "D": 60.0}),
+    }
+    document = network(lines, [service("n", "A", "B"), service("s", "C", "D")])
+    (feeder,) = document["supply"]["converter_stations"]
+    document["supply"]["converter_stations"] += [{**feeder, "name": "other", "line": "south"}]
+    document["simulation"]["outage"] = "other out"
+    document["outages"] = [
+        {"name": "other out", "stations": ["other"], "from_min": 5.0, "to_min": 10.0}
+    ]
+    result = run(document)
+    volts = result.dataset.pantograph_voltage.isel(time=slice(50, 100))
+    assert (volts.sel(train="s 1") == 0.0).all()
+    assert (volts.sel(train="n 1") > 14e3).all()
+    calm = run({**document, "simulation": {"duration_min": 90.0, "time_step_min": 0.1}})
+    np.testing.assert_allclose(
+        result.dataset.speed.sel(train="n 1"), calm.dataset.speed.sel(train="n 1"), rtol=SAME
+    )
+    assert result.trips.arrival_min[1] > calm.trips.arrival_min[1]

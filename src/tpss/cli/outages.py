@@ -17,6 +17,7 @@ from tpss.errors import ResultError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.store import PARENT
+from tpss.units import on_line
 
 if TYPE_CHECKING:
     from tpss.outages.row import Row
@@ -136,7 +137,7 @@ def _cells(row: "Row", intact: "Row") -> list[str]:
     own, base = row.figures, {} if row is intact else intact.figures
     return [
         _compared("lowest_voltage_kv", own, base),
-        _number(own, "lowest_voltage_km", 1),
+        escape(on_line(own.get("lowest_voltage_line", ""), _number(own, "lowest_voltage_km", 1))),
         _number(own, "lowest_voltage_min", 1),
         _compared("useful_voltage_kv", own, base),
         escape(str(own.get("useful_voltage_zone", ""))),

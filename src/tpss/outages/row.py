@@ -129,6 +129,7 @@ def _voltages(result: Result) -> dict[str, Any]:
     return {
         "lowest_voltage_kv": lowest.get("voltage_kv", math.nan),
         "lowest_voltage_train": lowest.get("train", ""),
+        "lowest_voltage_line": lowest.get("line", ""),
         "lowest_voltage_km": lowest.get("position_km", math.nan),
         "lowest_voltage_min": lowest.get("time_min", math.nan),
         "useful_voltage_kv": zone_kv,
