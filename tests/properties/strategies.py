@@ -268,11 +268,13 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
+    document = document if begin_km is None else moved(document, begin_km)
+    if draw(st.integers(0, 3)) == 3:
+        document = into_network(draw, document, lines())
     if draw(st.integers(0, 3)) == 3:
         document["outages"] = [draw(outages(document["supply"], span_min))]
         document["simulation"]["outage"] = "random"
-    document = document if begin_km is None else moved(document, begin_km)
-    return into_network(draw, document, lines()) if draw(st.integers(0, 3)) == 3 else document
+    return document
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]

@@ -133,3 +133,16 @@ def test_a_row_of_the_table_counts_stranded_trains():
     found = tpss.compare_outages(scenario)
     assert found.rows[1].verdict == Verdict.STRANDED
     assert found.rows[1].figures["stranded"] == 1
+
+
+def test_beyond_an_open_break_there_is_no_power_and_behind_it_there_is():
+    """The middle of the line is cut out: a train coasts through it, and pulls again in the east."""
+    breaks = [{"name": f"B{km:g}", "position_km": km, "closed": False} for km in (9.0, 11.0)]
+    plain = {"simulation.motion": None, "simulation.braking": None}
+    result = run({**plain, "supply.section_breaks": breaks})
+    assert result.status == "finished"
+    at_m, volts = of_train(result, "position"), of_train(result, "pantograph_voltage")
+    inside = (at_m > 9.0e3) & (at_m < 11.0e3)
+    np.testing.assert_array_equal(volts[inside], 0.0)
+    assert (volts[~inside] > 14e3).all()
+    assert of_train(result, "tractive_force")[at_m > 11.1e3].max() > 0.0

@@ -27,11 +27,12 @@ def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
     Raises
     ------
     ScenarioError
-        The outage leaves a part of the line without a feeding station, and trains move in steps.
+        A part of the line is left without a feeding station, and trains move in steps.
     """
     intact, plan = build_supply(scenario.supply, layouts_of(scenario.lines_by_name))
     outage = outage or scenario.outage
     if outage is None:
+        _demand_continuous_motion(intact, plan, None, scenario)
         return Service(intact)
     reduced = reduced_network(intact, plan, scenario.supply, outage)
     _demand_continuous_motion(reduced, plan, outage, scenario)
@@ -62,9 +63,9 @@ def _is_at(position_km: float, outage: Outage) -> bool:
 
 
 def _demand_continuous_motion(
-    network: Network, plan: SupplyPlan, outage: Outage, scenario: Scenario
+    network: Network, plan: SupplyPlan, outage: Outage | None, scenario: Scenario
 ) -> None:
-    """Refuse an outage that leaves something without a feeding station, where trains move in steps.
+    """Refuse to leave something without a feeding station where trains move in steps.
 
     A train without power comes to stand anywhere within a step, which stepped motion does not know.
     """
@@ -72,10 +73,12 @@ def _demand_continuous_motion(
     if unfed.size == 0 or scenario.simulation.how_trains_move == "continuous":
         return
     names = [each.name for each in scenario.outages]
-    key = f"outages.{names.index(outage.name)}" if outage.name in names else "outages"
+    key = "supply" if outage is None else "outages"
+    if outage is not None and outage.name in names:
+        key = f"outages.{names.index(outage.name)}"
     problem = (
-        f"it leaves {plan.nodes[unfed[0]]} without a feeding station, which stepped motion does not "
-        "know"
+        f"no feeding station reaches {plan.nodes[unfed[0]]}, which stepped motion does not know"
     )
-    remedy = 'use motion = "continuous", or leave a station or a transformer in service'
-    raise ScenarioError([Finding(str(scenario.source), key, repr(outage.name), problem, remedy)])
+    remedy = 'use motion = "continuous", or let a station or a transformer feed it'
+    value = "" if outage is None else repr(outage.name)
+    raise ScenarioError([Finding(str(scenario.source), key, value, problem, remedy)])

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.sources import build_sources
+from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
@@ -105,7 +106,7 @@ def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network
     plan = plan_supply(supply, lines)
     sources = build_sources(plan.sources, supply.stations)
     network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
-    return network, plan
+    return mark_unfed(network), plan
 
 
 def system_of(supply: Supply) -> System:

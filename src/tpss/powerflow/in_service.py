@@ -40,9 +40,18 @@ def in_service(network: Network, units: Mapping[int, int], opened: Collection[in
             source_of_node[sources[number].node] = -1
     for number in opened:
         branches[number].admittance_s = 0.0
+    source_of_node[source_of_node == UNFED] = -1
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
-    source_of_node[unfed_nodes(changed)] = UNFED
-    return changed._replace(admittance_s=_admittance_of_branches(changed))
+    return mark_unfed(changed._replace(admittance_s=_admittance_of_branches(changed)))
+
+
+def mark_unfed(network: Network) -> Network:
+    """The network with those nodes marked that no source reaches."""
+    unfed = unfed_nodes(network)
+    if not unfed.any():
+        return network
+    source_of_node = np.where(unfed, UNFED, network.source_of_node)
+    return network._replace(source_of_node=source_of_node)
 
 
 def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
