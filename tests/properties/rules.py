@@ -144,7 +144,7 @@ def judge_outage(result: Result) -> None:
     current = data.branch_current.to_numpy()[:-1]
     out = np.array([is_out(outage, k, result) for k in range(len(fed))], dtype=bool)
     transformers = np.flatnonzero(data.branch_kind.to_numpy() == "transformer")
-    places_km = np.array([float(name.split()[1]) for name in data.branch.to_numpy()[transformers]])
+    places_km = np.array([float(name.split()[-2]) for name in data.branch.to_numpy()[transformers]])
     for km in outage.transformers_km if outage is not None else ():
         nearest = transformers[np.abs(places_km - km).argmin()]
         assert (current[out, nearest] == 0.0).all(), f"the one at {km} km carries a current"
