@@ -272,14 +272,15 @@ def _stand(
 
 
 @inlined
-def _is_held(motion: Motion) -> bool:
-    """Whether a train stands at the end of its authority."""
-    return motion.speed_m_s <= 0.0 and motion.authority_m - motion.position_m <= SLACK_M
+def _is_held(voltage_v: float, motion: Motion) -> bool:
+    """Whether a train that stands is held: at the end of its authority, or without power."""
+    at_end = motion.authority_m - motion.position_m <= SLACK_M
+    return motion.speed_m_s <= 0.0 and (at_end or voltage_v <= 0.0)
 
 
 @inlined
 def _hold(voltage_v: float, passage: Passage, kind: TrainType) -> None:
-    """Let a train stand for the rest of the step, as others are in its way."""
+    """Let a train stand for the rest of the step."""
     _draw_standing(voltage_v, passage.left_s, passage, kind)
     passage.left_s, passage.acceleration_m_s2 = 0.0, 0.0
 
@@ -492,9 +493,7 @@ def pass_through(
             return
         if passage.motion.wait_s > 0.0:
             _stand(voltage_v, passage, train, kind, data.options.step_s)
-        elif voltage_v <= 0.0 and passage.motion.speed_m_s <= 0.0:
-            passage.left_s = 0.0  # without power a train that stands is held by its brakes
-        elif _is_held(passage.motion):
+        elif _is_held(voltage_v, passage.motion):
             _hold(voltage_v, passage, kind)
         else:
             _drive(voltage_v, passage, train, kind, data, points, scratch)
