@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.errors import StudyError as StudyError
     from tpss.errors import TpssError as TpssError
     from tpss.many import simulate_many as simulate_many
+    from tpss.outages.run import compare_outages as compare_outages
     from tpss.report.html import write_report as write_report
     from tpss.results.key_figures import KeyFigures as KeyFigures
     from tpss.results.result import Result as Result
@@ -52,6 +53,7 @@ _HOME = {
     "Study": "tpss.sweep.study",
     "StudyError": "tpss.errors",
     "TpssError": "tpss.errors",
+    "compare_outages": "tpss.outages.run",
     "load_approximator": "tpss.approximator.approximator",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",

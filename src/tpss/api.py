@@ -143,12 +143,12 @@ class Prepared:
         step_check, lost_time : bool
             As of `simulate`.
         """
-        start, model = self.start, self.start.model
+        start = self.start
         run = run_of(start, self.clock)
         started = time.perf_counter()
         status = advance_to_end(run, start, progress, interrupted)
         elapsed_s = time.perf_counter() - started
-        outcome = outcome_of(run, status, start.studied)
+        outcome, model = outcome_of(run, status, start.studied), run.model
         key_figures = key_figures_of(run, status, start, self.frame)
         check = self.check_step(key_figures, interrupted, progress) if step_check else None
         lost = self.find_lost_time(run, interrupted, progress) if lost_time else None

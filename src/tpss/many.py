@@ -3,8 +3,9 @@
 import os
 import threading
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from tpss.api import Prepared, build
 from tpss.results.key_figures import KeyFigures, run_for_figures
 from tpss.scenario.scenario import Scenario
 from tpss.step.state import Floats
+
+_Item = TypeVar("_Item")
+_Outcome = TypeVar("_Outcome")
 
 AHEAD = 4
 """Highest number of scenarios per thread that are running or waiting."""
@@ -44,14 +48,30 @@ def simulate_many(
     TooLargeError
         A run would not fit into memory.
     """
+    return in_threads(key_figures, scenarios, threads)
+
+
+def in_threads(
+    work: Callable[[_Item], _Outcome], items: Iterable[_Item], threads: int | None = None
+) -> Iterator[_Outcome]:
+    """What comes of items, worked on in threads, in their order; items are drawn as they are needed.
+
+    Parameters
+    ----------
+    work : callable
+        What is done with each.
+    items : iterable
+    threads : int, optional
+        Number of threads; by default one for each core.
+    """
     count = threads or os.cpu_count() or 1
-    waiting: deque[Future[KeyFigures]] = deque()
+    waiting: deque[Future[_Outcome]] = deque()
     with ThreadPoolExecutor(count, thread_name_prefix="tpss") as pool:
         try:
-            for scenario in scenarios:
+            for item in items:
                 if len(waiting) == AHEAD * count:
                     yield waiting.popleft().result()
-                waiting.append(pool.submit(key_figures, scenario))
+                waiting.append(pool.submit(work, item))
             while waiting:
                 yield waiting.popleft().result()
         finally:

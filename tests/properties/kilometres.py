@@ -57,6 +57,8 @@ def mirrored(document: Document) -> Document:
         high_voltage["transformers_km"] = [
             length_km - km for km in reversed(high_voltage["transformers_km"])
         ]
+    for outage in document.get("outages", []):
+        outage["transformers_km"] = [length_km - km for km in outage["transformers_km"]]
     return document
 
 

@@ -10,14 +10,16 @@ import numpy.typing as npt
 from tpss import Scenario
 from tpss.kernel import plain
 from tpss.model import build_model
+from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
 from tpss.powerflow.chain import FLAT, WARM
+from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
-from tpss.run.run import Run, trains_on_line
+from tpss.run.run import Run, switch, trains_on_line
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
-from tpss.step.coupling import apply_solutions, decide
+from tpss.step.coupling import apply_solutions, decide, pass_unfed, prepare_unfed
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.state import State, loads_of
 
@@ -31,7 +33,8 @@ FINEST = 2e-4
 """Where not even this much more can be carried, the branch has ended. [1]"""
 
 MOST_TRAINS = 200
-"""On more, another load flow's paths are not followed: its matrices are dense."""
+"""On more, another load flow's paths are not followed: its matrices are dense.  Nor does it know nodes
+without a source."""
 
 
 class Replay:
@@ -40,6 +43,7 @@ class Replay:
     def __init__(self, scenario: Scenario, steps: int) -> None:
         model, _ = build_model(scenario)
         services = build_services(scenario, model)
+        self.switchings = service_of(scenario).switchings
         trains = trains_on_line(model, services)
         trains += departing_trains(services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
@@ -51,7 +55,8 @@ class Replay:
         others; a train that would depart later is not on the line.
         """
         run = self.run
-        run.advance_to(step)
+        while (until := switch(run, self.switchings, step)) > run.step:
+            run.advance_to(until)
         untouched = copy.deepcopy(run.state)
         clock = run.state.clock[0]
         clock.on_line = begin_step(step, run.model, run.state, run.recording)
@@ -68,6 +73,8 @@ class Replay:
 
 def solve_step_slowly(count: int, model: Model, state: State) -> float:
     """As the clock does it, but every load flow begins without load; return the share carried."""
+    if state.clock[0].unfed > 0:
+        prepare_unfed(count, model, state)
     while True:
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share = raise_loads(model, state)
@@ -75,6 +82,8 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
             return share
         for place in state.flow.standing[:count]:
             state.trains[place.train].demand.voltage_v = abs(place.voltage_v)
+        if state.clock[0].unfed > 0:
+            pass_unfed(count, model, state)
         if apply_solutions(count, model, state):
             return share
 
@@ -93,7 +102,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
     Return NaN where these have lost their way, and so know nothing, or would take minutes.
     """
     standing = state.flow.standing[: state.flow.sections.end[-1]]
-    if standing.size > MOST_TRAINS:
+    if standing.size > MOST_TRAINS or (model.network.source_of_node == UNFED).any():
         return math.nan
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)

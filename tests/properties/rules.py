@@ -28,6 +28,7 @@ def keep_the_rules(result: Result) -> None:
     judge_departures(result)
     judge_converters(result)
     judge_separation(result)
+    judge_outage(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
 
@@ -154,13 +155,61 @@ def judge_converters(result: Result) -> None:
     for s, station in enumerate(result.scenario.supply.converter_stations):
         loading = data.converter_loading.to_numpy()[:steps, s]
         recorded = data.active_converters.to_numpy()[:, s]
-        running, since, period = station.converters, 0, 1
+        controlled = station.control == "loading"
+        there = units_in_service(result, station, 0)
+        running, carried, since, period = there, 0.0, 0, 1
         for k in range(steps):
-            if station.control == "loading" and k * h >= 180.0 * period - 1e-6:
-                needed = math.ceil(loading[since:k].mean() * running / 0.85 - 1e-9)
-                running = min(station.converters, max(1, needed))
-                since, period = k, math.floor((k * h + 1e-6) / 180.0) + 1
+            if there != (there := units_in_service(result, station, k)):
+                was, running = running, min(running, there) if controlled and running else there
+                carried *= was / running if running else 0.0
+                if was == 0:
+                    carried = 0.85 * (k - since)
+            if controlled and k * h >= 180.0 * period - 1e-6:
+                needed = math.ceil(carried / (k - since) * running / 0.85 - 1e-9)
+                running = min(there, max(1, needed))
+                carried, since, period = 0.0, k, math.floor((k * h + 1e-6) / 180.0) + 1
             assert recorded[k] == running, f"{station.name}, step {k}"
+            carried += loading[k]
+
+
+def judge_outage(result: Result) -> None:
+    """What is out of service feeds nothing and carries nothing, and all that is not runs."""
+    data, supply, outage = result.dataset, result.scenario.supply, result.scenario.outage
+    unfed = data.pantograph_voltage.to_numpy()[:-1] == 0.0
+    for name in ("tractive_force", "active_power", "reactive_power", "motor_power"):
+        assert (data[name].to_numpy()[:-1][unfed] == 0.0).all(), f"{name} without power"
+    fed = np.hypot(data.station_active_power, data.station_reactive_power).to_numpy()[:-1]
+    for s, station in enumerate(supply.stations):
+        units = [units_in_service(result, station, k) for k in range(len(fed))]
+        out, recorded = np.array(units) == 0, data.active_converters.to_numpy()[:-1, s]
+        assert (fed[out, s] == 0.0).all(), f"{station.name} is out, and feeds"
+        assert (data.converter_loading.to_numpy()[:-1][out, s] == 0.0).all(), station.name
+        assert ((recorded > 0) == ~out).all(), f"{station.name} runs where it is out, or does not"
+        if station in supply.transformer_stations:
+            assert recorded.tolist() == units, station.name
+    current = data.branch_current.to_numpy()[:-1]
+    out = np.array([is_out(outage, k, result) for k in range(len(fed))], dtype=bool)
+    transformers = np.flatnonzero(data.branch_kind.to_numpy() == "transformer")
+    places_km = np.array([float(name.split()[-2]) for name in data.branch.to_numpy()[transformers]])
+    for km in outage.transformers_km if outage is not None else ():
+        nearest = transformers[np.abs(places_km - km).argmin()]
+        assert (current[out, nearest] == 0.0).all(), f"the one at {km} km carries a current"
+
+
+def is_out(outage: Any, step: int, result: Result) -> bool:
+    """Whether an outage holds in a step: from the first instant at or after its time."""
+    if outage is None:
+        return False
+    time_min = step * result.dataset.attrs["time_step_s"] / 60.0 + 1e-9
+    end_min = math.inf if outage.to_min is None else outage.to_min
+    return bool(outage.from_min <= time_min < end_min)
+
+
+def units_in_service(result: Result, station: Any, step: int) -> int:
+    """Units of a station that are in service in a step."""
+    outage = result.scenario.outage
+    out = outage.units_of(station) if is_out(outage, step, result) else 0
+    return int(station.installed - out)
 
 
 class Journey:
@@ -371,6 +420,7 @@ class Journey:
                 f"{self.name} dwells {stood_s} s at {place} m"
             )
         dwelling = (self.state == TrainState.DWELLING) & (not self.kept_apart)
+        dwelling &= self.volts != 0.0
         places = np.array(self.stops_m)
         for x in self.x[dwelling]:
             assert np.abs(places - x).min(initial=math.inf) < STOP_ERROR_M, (

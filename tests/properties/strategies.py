@@ -15,6 +15,7 @@ from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transf
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
 from .networks import into_network
+from .outages import outages
 from .ranges import numbers
 
 Draw = Any
@@ -287,7 +288,12 @@ def sound_scenarios(draw: Draw) -> Document:
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 4)) == 4:
         document["signalling"] = draw(SIGNALLING)
     document = document if begin_km is None else moved(document, begin_km)
-    return into_network(draw, document, lines()) if draw(st.integers(0, 3)) == 3 else document
+    if draw(st.integers(0, 3)) == 3:
+        document = into_network(draw, document, lines())
+    if draw(st.integers(0, 3)) == 3:
+        document["outages"] = [draw(outages(document["supply"], span_min))]
+        document["simulation"]["outage"] = "random"
+    return document
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]

@@ -8,9 +8,9 @@ import pytest
 from pydantic import ValidationError
 
 from tpss import Scenario, ScenarioError, load_scenario
-from tpss.model.supply import transformer_positions_km
 from tpss.scenario.files import read_toml
 from tpss.scenario.override import parse_assignment
+from tpss.scenario.supply.transformers import transformer_positions_km
 
 from conftest import EXAMPLE_SCENARIOS, EXAMPLES
 from scenarios import SHORT_LINE, short_line

@@ -85,6 +85,19 @@ def test_the_nearer_of_two_ways_is_taken_unless_via_names_the_other():
     assert run(network(ring, traffic)).trips.distance_km.tolist() == pytest.approx([20.0, 35.0])
 
 
+def test_a_train_passes_from_line_to_line_where_its_position_is_nought():
+    """Down a line to its kilometre 0, and on along another: 10 and 20 km at the limit."""
+    lines = {
+        "first": line(10.0, {"B": 0.0, "A": 10.0}),
+        "second": line(20.0, {"B": 0.0, "C": 20.0}),
+    }
+    for step_min in (0.05, 0.1, 0.2, 0.5, 1.0, 2.0):
+        document = network(lines, [service("through", "A", "C")])
+        document["simulation"]["time_step_min"] = step_min
+        (trip,) = run(document).trips.itertuples()
+        assert trip.distance_km == pytest.approx(30.0, abs=1e-6)
+
+
 # The supply
 
 
@@ -228,3 +241,27 @@ def test_a_mirrored_line_among_others_gives_the_same():
     back["supply"]["converter_stations"][0]["position_km"] = 60.0
     found = run(back)
     assert_same_energies(found, there)
+
+
+def test_of_lines_apart_only_the_one_that_no_station_reaches_is_without_power():
+    """Two lines that do not meet, each with its station; that of the second is out from 5 to 10 min."""
+    lines = {
+        "north": line(60.0, {"A": 0.0, "B": 60.0}),
+        "south": line(60.0, {"C": 0.0, "D": 60.0}),
+    }
+    document = network(lines, [service("n", "A", "B"), service("s", "C", "D")])
+    (feeder,) = document["supply"]["converter_stations"]
+    document["supply"]["converter_stations"] += [{**feeder, "name": "other", "line": "south"}]
+    document["simulation"]["outage"] = "other out"
+    document["outages"] = [
+        {"name": "other out", "stations": ["other"], "from_min": 5.0, "to_min": 10.0}
+    ]
+    result = run(document)
+    volts = result.dataset.pantograph_voltage.isel(time=slice(50, 100))
+    assert (volts.sel(train="s 1") == 0.0).all()
+    assert (volts.sel(train="n 1") > 14e3).all()
+    calm = run({**document, "simulation": {"duration_min": 90.0, "time_step_min": 0.1}})
+    np.testing.assert_allclose(
+        result.dataset.speed.sel(train="n 1"), calm.dataset.speed.sel(train="n 1"), rtol=SAME
+    )
+    assert result.trips.arrival_min[1] > calm.trips.arrival_min[1]

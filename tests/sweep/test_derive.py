@@ -198,6 +198,7 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.converter_stations.*.position_km",
         "supply.transformer_stations.*.position_km",
         "supply.high_voltage_line.transformers_km.*",
+        "outages.*.transformers_km.*",
         "traffic.*.initial_trains.*.position_km",
         "standards.zones.*.from_km",
         "standards.zones.*.to_km",

@@ -111,7 +111,7 @@ def power_follows_inclination(result: tpss.Result, from_km: float, to_km: float)
     where = data.position.to_numpy()
     within = (where >= from_km * 1e3) & (where <= to_km * 1e3)
     power = data.active_power.to_numpy()[within]
-    return float(np.corrcoef(power, inclination(result, where[within]))[0, 1])
+    return float(np.corrcoef(power, inclination(result.scenario.only_line, where[within]))[0, 1])
 
 
 @measure

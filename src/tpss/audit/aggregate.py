@@ -122,6 +122,8 @@ def new_figures(model: Model, trains: int, zones: list[tuple[int, float, float]]
 
 @kernel
 def gather(
+    first: int,
+    last: int,
     steps: int,
     last_step_s: float,
     peak_from: int,
@@ -132,12 +134,14 @@ def gather(
     recording: Recording,
     figures: Figures,
 ) -> None:
-    """Gather the figures of a recording, and audit it.
+    """Gather the figures of steps of a recording, and audit them; all of them, a stretch at a time.
 
     Parameters
     ----------
+    first, last : int
+        The first step, and the one after the last, of a stretch with one network: that of the model.
     steps : int
-        Steps carried out.
+        Steps carried out in all.
     last_step_s : float
         Length of the last one. [s]
     peak_from, peak_to : int
@@ -151,6 +155,33 @@ def gather(
         As from `new_figures`; filled.
     """
     run, h = figures.run[0], model.options.step_s
+    if first == 0:
+        _begin(figures)
+    for step in range(first, last):
+        in_window = peak_from <= step and step < peak_to
+        duration = h if step + 1 < steps else last_step_s
+        _gather_trains(step, in_window, duration, trains, model.legs, recording, figures)
+        _gather_network(step, duration, at_line_level, recording, figures)
+    _audit(first, last, steps, last_step_s, trains, model, recording, figures.audit)
+    if last < steps:
+        return
+    for i in range(figures.trains.size):
+        _note_place(recording.trains[steps, i].route_position, figures.trains[i])
+    for s in range(figures.stations.size):  # at last, as the tables of a dataset do
+        station, row = figures.stations[s], recording.stations[max(steps, 1) - 1, s]
+        station.energy_j *= h
+        station.reactive_j *= h
+        if last_step_s != h and steps > 0:
+            station.energy_j -= row.station_active_power * (h - last_step_s)
+            station.reactive_j -= row.station_reactive_power * (h - last_step_s)
+    _gather_passes(steps, recording, run)
+    _conclude_audit(steps, model, figures.audit)
+
+
+@inlined
+def _begin(figures: Figures) -> None:
+    """Extremes of nothing."""
+    run = figures.run[0]
     run.lowest_voltage_v = math.inf
     run.lowest_node_v = math.inf
     run.highest_voltage_v = -math.inf
@@ -161,22 +192,6 @@ def gather(
     for s in range(figures.stations.size):
         figures.stations[s].peak_w = -math.inf
         figures.stations[s].peak_loading = -math.inf
-    for step in range(steps):
-        in_window = peak_from <= step and step < peak_to
-        duration = h if step + 1 < steps else last_step_s
-        _gather_trains(step, in_window, duration, trains, model.legs, recording, figures)
-        _gather_network(step, duration, at_line_level, recording, figures)
-    for i in range(figures.trains.size):
-        _note_place(recording.trains[steps, i].route_position, figures.trains[i])
-    for s in range(figures.stations.size):  # at last, as the tables of a dataset do
-        station, last = figures.stations[s], recording.stations[max(steps, 1) - 1, s]
-        station.energy_j *= h
-        station.reactive_j *= h
-        if last_step_s != h and steps > 0:
-            station.energy_j -= last.station_active_power * (h - last_step_s)
-            station.reactive_j -= last.station_reactive_power * (h - last_step_s)
-    _gather_passes(steps, recording, run)
-    _audit(steps, last_step_s, trains, model, recording, figures.audit)
 
 
 @inlined
@@ -199,7 +214,7 @@ def _gather_trains(
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.route_position, train)
-        if math.isnan(voltage):
+        if math.isnan(voltage) or voltage == 0.0:  # it is not fed, and draws nothing
             continue
         train.energy_j += row.active_power * h
         train.steps += 1
@@ -261,6 +276,8 @@ def _gather_network(
         if at_line_level[n]:
             node = recording.nodes[step, n]
             voltage = magnitude(complex(node.node_real, node.node_imag))
+            if voltage == 0.0:  # it is not fed
+                continue
             run.lowest_node_v = min(run.lowest_node_v, voltage)
             run.highest_voltage_v = max(run.highest_voltage_v, voltage)
 
@@ -276,15 +293,15 @@ def _gather_passes(steps: int, recording: Recording, run: RunFigures) -> None:
 
 @inlined
 def _audit(
-    steps: int, last_step_s: float, trains: Records[Train], model: Model, recording: Recording,
-    scratch: Scratch,
+    first: int, last: int, steps: int, last_step_s: float, trains: Records[Train], model: Model,
+    recording: Recording, scratch: Scratch,
 ) -> None:  # fmt: skip
-    """Audit a recording; the figures are left in ``scratch.balances``.
+    """Audit a stretch of a recording; the figures are left in ``scratch.balances``.
 
     Parameters
     ----------
-    steps : int
-        Steps carried out.
+    first, last, steps : int
+        As of `gather`.
     last_step_s : float
         Length of the last one. [s]
     trains : records of Train
@@ -294,7 +311,7 @@ def _audit(
         As from `new_scratch`, with as many trains as count.
     """
     figures, h = scratch.balances[0], model.options.step_s
-    for step in range(steps):
+    for step in range(first, last):
         duration = h if step + 1 < steps else last_step_s
         audit_network(step, trains, model, recording, scratch)
         audit_sources(step, duration, model, recording, scratch)
@@ -302,6 +319,12 @@ def _audit(
         for i in range(scratch.order.size):
             if draws_power(recording.train_state[step, i]):
                 audit_train(step, i, duration, trains[i], model, recording, figures)
+
+
+@inlined
+def _conclude_audit(steps: int, model: Model, scratch: Scratch) -> None:
+    """Find the balances of a whole recording."""
+    figures, h = scratch.balances[0], model.options.step_s
     least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)
     gap = abs(figures.fed_j - figures.drawn_j - figures.lost_j)
     figures.network_balance = gap / max(abs(figures.fed_j), least)

@@ -48,7 +48,9 @@ def _audit_continuous(
     if step + 1 == train.timetable.arrival_step:
         present_s -= train.timetable.stood_s
     low, high = extremes(kind.efficiency, model.points)
-    for_motors_j = before.active_power * h - kind.auxiliary_power_w * present_s
+    fed = before.pantograph_real != 0.0 or before.pantograph_imag != 0.0
+    auxiliary_w = kind.auxiliary_power_w if fed else 0.0
+    for_motors_j = before.active_power * h - auxiliary_w * present_s
     motor_j = min(max(before.motor_power * h, low * for_motors_j), high * for_motors_j)
     traction_j = before.traction_power * h
     spent_j = (before.resistance_power + before.gradient_power + before.braking_power) * h

@@ -6,10 +6,12 @@ equations), and compares the powers that this asks for with the recorded ones.  
 right is the business of its own tests; that the solution obeys it is the audit's.
 """
 
+import math
+
 from tpss.audit.balances import Balances, Scratch, worst
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
-from tpss.powerflow.network import SHORTEST_PIECE_M
+from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
 from tpss.powerflow.placing import section_at
 from tpss.record import Records
 from tpss.sources.kinds import residual
@@ -44,6 +46,8 @@ def audit_network(
         scratch.leaving_a[n] = 0.0
     for b in range(network.branches.size):
         branch = network.branches[b]
+        if branch.admittance_s == 0.0:  # out of service
+            continue
         drop = scratch.node_v[branch.start_node] - scratch.node_v[branch.end_node]
         current = drop / branch.impedance_ohm
         scratch.leaving_a[branch.start_node] += current
@@ -55,6 +59,9 @@ def audit_network(
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
+        if s == UNFED:
+            off = magnitude(scratch.node_v[n]) / network.system.base_voltage_v
+            figures.converter_residual = worst(figures.converter_residual, off)
         if s >= 0:
             fed = recording.stations[step, s]
             power -= complex(fed.station_active_power, fed.station_reactive_power)
@@ -155,11 +162,18 @@ def _audit_demand(
 def audit_sources(
     step: int, step_s: float, model: Model, recording: Recording, scratch: Scratch
 ) -> None:
-    """Residual of the sources' laws, and the energy that they feed in a step of this length. [s]"""
+    """Residual of the sources' laws, and the energy that they feed in a step of this length. [s]
+
+    That one that is out of service feeds nothing shows in the balance of its node, and in the energy.
+    """
     network, figures = model.network, scratch.balances[0]
     for s in range(network.sources.size):
         source, row = network.sources[s], recording.stations[step, s]
         figures.fed_j += row.station_active_power * step_s
+        if row.active_converters > source.installed:
+            figures.converter_residual = math.inf
+        if source.installed == 0:
+            continue
         node = recording.nodes[step, source.node]
         voltage = complex(node.node_real, node.node_imag)
         power = complex(row.station_active_power, row.station_reactive_power)

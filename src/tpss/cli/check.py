@@ -14,7 +14,7 @@ from tpss.cli.library import KINDS
 from tpss.cli.notes import notes
 from tpss.cli.terminal import say
 from tpss.model.build import build_model
-from tpss.model.supply import transformer_positions_km
+from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
@@ -27,6 +27,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
 from tpss.scenario.supply import HighVoltageLine, Supply
+from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.scenario.traffic import Stop, Traffic
 from tpss.units import kilometres, on_line
 
@@ -46,6 +47,8 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     model, _ = build_model(with_step(scenario))
     build_services(scenario, model)
     clock_of(scenario.simulation.load_flow, scenario.source)
+    for outage in scenario.outages:
+        service_of(scenario, outage)
     for name in scenario.variants:
         varied = with_step(scenario.variant(name))
         build_services(varied, build_model(varied)[0])
@@ -73,6 +76,8 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield "traffic", text
     yield "standards", _standards(scenario.standards)
     yield "simulation", _simulation(scenario.simulation, scenario.traffic[0])
+    for outage in scenario.outages:
+        yield "outage", f"{outage.name}: {outage.in_words}"
     for name, variant in scenario.variants.items():
         yield "variant", f"{name}: {variant.description or 'changes ' + ', '.join(variant.paths)}"
 

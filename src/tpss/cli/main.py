@@ -100,6 +100,13 @@ def run(
             "its variants. Several are compared, each in a folder of its own, in that of --out.",
         ),
     ] = None,
+    outage: Annotated[
+        str | None,
+        option(
+            metavar="NAME",
+            help="Run with an outage of the scenario's [[outages]], which otherwise do not apply.",
+        ),
+    ] = None,
 ) -> None:
     """Simulate a scenario, print the key figures, and save the result.
 
@@ -122,6 +129,7 @@ def run(
         report,
         step_check=not no_step_check,
         variants=variant or [],
+        outage=outage,
     )
     raise typer.Exit(code)
 
@@ -293,6 +301,47 @@ def sweep(
         study, out, scheduler, workers, dry_run, quiet, step_check=not no_step_check
     )
     raise typer.Exit(code)
+
+
+@app.command(
+    epilog="Examples:  tpss outages examples/thesis_160km.toml --n-1, then tpss run "
+    "examples/thesis_160km.toml --outage NAME for one of the scenario's own in full"
+)
+def outages(
+    file: ScenarioFile,
+    n_1: Annotated[
+        bool,
+        typer.Option(
+            "--n-1",
+            help="Also take out each single element: every station, every station with one unit fewer, "
+            "every transformer of the high-voltage line.",
+        ),
+    ] = False,
+    set_: Assignments = None,
+    jobs: Annotated[
+        int | None, option(min=1, help="Runs at a time; by default one per core.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        option(help="CSV file to write; by default results/NAME-outages-NNN.csv."),
+    ] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a scenario with each of its outages, and rank what they do in one table.
+
+    An outage is a table `[[outages]]` of the scenario: stations, units or transformers that are out of
+    service, throughout the run or from `from_min` to `to_min`. The first row is the intact supply;
+    the outages follow, those that do not solve first, then by the limits that they violate, then by
+    their mean useful voltage. In brackets stands what differs from the intact supply; late and lost
+    count against it too. The CSV file holds more: trains, times, windows of loading, differences.
+
+    Exit codes: 0 done, 2 bad input, 3 a run did not solve or a train stalled, 4 the audit of a run
+    failed, 130 interrupted (the table holds the runs that were done).
+    """
+    from tpss.cli.outages import run_outages
+
+    raise typer.Exit(run_outages(file, n_1, set_ or [], jobs, out, force, quiet))
 
 
 @app.command(epilog="Example:  tpss new my-line")

@@ -37,6 +37,7 @@ def run_scenario(
     report: bool,
     step_check: bool,
     variants: Sequence[str] = (),
+    outage: str | None = None,
 ) -> int:
     """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
     from tpss.cli.variants import chosen, folders, print_side_by_side, row_of
@@ -46,6 +47,8 @@ def run_scenario(
 
     changes = dict(parse_assignment(text) for text in assignments)
     scenarios = chosen(load_scenario(file, changes), variants)
+    if outage is not None:
+        scenarios = {name: each.with_outage(outage) for name, each in scenarios.items()}
     targets = folders(out, scenarios)
     for name, scenario in scenarios.items():
         store.check_target(scenario, targets[name], force)

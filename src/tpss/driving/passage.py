@@ -22,6 +22,9 @@ the work F v_m δ.  The machine gives at v_m what it can at v_m: its power is ne
 A driver who wants less acceleration than the machine can give (his limit of acceleration, a speed that
 is held, braking) gets it: then a is what he wants, and the force follows.
 
+Without voltage a train has no force and draws nothing.  It coasts and brakes, and once it stands it
+stays, also on a gradient.
+
 The powers that the train draws are means over the step.  Where the voltage decides about a force, their
 slopes over it are found by a second passage at a voltage close by; else those of the phases add up.
 """
@@ -61,6 +64,10 @@ ROUNDING = 1e-10
 
 SLACK_M = 1e-6
 """Distance that is a rounding: braking that ends so close to its place ends there. [m]"""
+
+LEAST_WAY_M = 1e-12
+"""Before a change of limit or gradient a moving train goes no less in a phase: near position 0, where
+numbers are dense, rounding may leave the place of the change just ahead of it, again and again. [m]"""
 
 ACCURACY = 1e-13
 """Of an acceleration, relative to the larger of it and 1 m/s²."""
@@ -269,14 +276,15 @@ def _stand(
 
 
 @inlined
-def _is_held(motion: Motion) -> bool:
-    """Whether a train stands at the end of its authority."""
-    return motion.speed_m_s <= 0.0 and motion.authority_m - motion.position_m <= SLACK_M
+def _is_held(voltage_v: float, motion: Motion) -> bool:
+    """Whether a train that stands is held: at the end of its authority, or without power."""
+    at_end = motion.authority_m - motion.position_m <= SLACK_M
+    return motion.speed_m_s <= 0.0 and (at_end or voltage_v <= 0.0)
 
 
 @inlined
 def _hold(voltage_v: float, passage: Passage, kind: TrainType) -> None:
-    """Let a train stand for the rest of the step, as others are in its way."""
+    """Let a train stand for the rest of the step."""
     _draw_standing(voltage_v, passage.left_s, passage, kind)
     passage.left_s, passage.acceleration_m_s2 = 0.0, 0.0
 
@@ -397,6 +405,14 @@ def _choose_pull(
 
 
 @inlined
+def _is_caught(pull: Pull, end: int, aim: Aim) -> bool:
+    """Whether a moving train is left just before a change of limit or gradient, again and again."""
+    v, way_m = pull.mean_speed_m_s, pull.mean_speed_m_s * pull.duration_s
+    at_a_limit = end == End.BRAKING and aim.room_m < LEAST_WAY_M
+    return v > 0.0 and way_m < LEAST_WAY_M and (at_a_limit or end == End.TIME)
+
+
+@inlined
 def _drive(
     voltage_v: float, passage: Passage, train: Train, kind: TrainType, data: DrivingData,
     points: Points, scratch: Floats,
@@ -415,7 +431,7 @@ def _drive(
     pull, end = _choose_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
     a = pull.acceleration_m_s2
-    if end == End.STANDSTILL or (v == 0.0 and a <= 0.0):
+    if voltage_v > 0.0 and (end == End.STANDSTILL or (v == 0.0 and a <= 0.0)):
         passage.stalled = True
         passage.needed_n = pull.running_n + pull.gradient_n
         passage.available_n = pull.traction_n
@@ -433,6 +449,8 @@ def _drive(
     motion.speed_m_s = max(0.0, v + a * pull.duration_s)
     if end == End.PLACE:
         motion.position_m = position_m + aim.room_m
+    elif _is_caught(pull, end, aim):
+        motion.position_m = position_m + LEAST_WAY_M
     elif end == End.SPEED:
         motion.speed_m_s = aim.until_m_s
         if a == aim.acceleration_m_s2 and aim.target_m < math.inf:
@@ -489,7 +507,7 @@ def pass_through(
             return
         if passage.motion.wait_s > 0.0:
             _stand(voltage_v, passage, train, kind, data.options.step_s)
-        elif _is_held(passage.motion):
+        elif _is_held(voltage_v, passage.motion):
             _hold(voltage_v, passage, kind)
         else:
             _drive(voltage_v, passage, train, kind, data, points, scratch)

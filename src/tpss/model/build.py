@@ -9,6 +9,7 @@ import numpy as np
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.legs import build_legs
+from tpss.model.outages import service_of
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
 from tpss.model.supply import SupplyPlan, build_supply, layouts_of
@@ -44,7 +45,7 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     lines = scenario.lines_by_name
-    network, plan = build_supply(scenario.supply, layouts_of(lines))
+    _, plan = build_supply(scenario.supply, layouts_of(lines))
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
     types, points = build_train_types(running)
@@ -57,7 +58,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         stops=_stops(scenario, routes, si(scenario.simulation, "time_step_min")),
         types=types,
         points=points,
-        network=network,
+        network=service_of(scenario).network,
         legs=build_legs(routes, lines, plan.runs),
         signalling=_signalling(scenario),
     )

@@ -1,6 +1,7 @@
 """What a run of a model begins with."""
 
 from tpss.model.build import steps_of
+from tpss.model.outages import service_of
 from tpss.model.supplements import with_supplements
 from tpss.model.traffic import build_services
 from tpss.run.run import Start, begin
@@ -23,4 +24,4 @@ def start_of(scenario: Scenario, model: Model) -> Start:
     steps = None
     if scenario.simulation.duration_min is not None:
         steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    return begin(model, services, steps)
+    return begin(model, services, steps, service_of(scenario).switchings)

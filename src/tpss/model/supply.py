@@ -15,11 +15,13 @@ from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.sources import build_sources
+from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
 from tpss.scenario.supply import Catenary, HighVoltageLine, Station, Supply
 from tpss.scenario.supply.system import system_named
+from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.units import kilometres, si
 
 CONTACT_LINE = "contact line"
@@ -104,7 +106,7 @@ def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network
     plan = plan_supply(supply, lines)
     sources = build_sources(plan.sources, supply.stations)
     network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
-    return network, plan
+    return mark_unfed(network), plan
 
 
 def system_of(supply: Supply) -> System:
@@ -219,25 +221,6 @@ def _lay_line(
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)
     return laid.node
-
-
-def transformer_positions_km(supply: Supply) -> list[float]:
-    """Positions of the transformers between stations, given or equally spaced. [km]"""
-    high_voltage = supply.high_voltage_line
-    if high_voltage is None:
-        return []
-    if high_voltage.transformers_km is not None:
-        return list(high_voltage.transformers_km)
-    line = high_voltage.line
-    stations = sorted(
-        s.position_km for s in supply.stations if None in (line, s.line) or s.line == line
-    )
-    count = high_voltage.transformers or 0
-    return [
-        start + (end - start) * (i + 1) / (count + 1)
-        for start, end in zip(stations, stations[1:], strict=False)
-        for i in range(count)
-    ]
 
 
 def _connection_impedance(catenary: Catenary) -> complex:

@@ -42,6 +42,9 @@ TOLERANCE = 1e-10
 SHORTEST_PIECE_M = 1.0
 """Trains closer than this to each other or to a node count as this far away. [m]"""
 
+UNFED = -2
+"""In `Network.source_of_node`: a node that no source reaches; its voltage is 0."""
+
 EPSILON = float(np.finfo(float).eps)
 
 
@@ -231,7 +234,7 @@ class Network(NamedTuple):
     branches: Records[Branch]
     sources: Records[Source]
     source_of_node: Indices
-    """Index of the source at each node, or -1."""
+    """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to."""
     pattern: Pattern
     admittance_s: Complexes
     """What the branches put into each block of the linear system. [S]"""

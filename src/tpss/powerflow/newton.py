@@ -1,11 +1,12 @@
 r"""Newton's method for the coupled load flow.
 
-Unknowns are the voltages V of the fixed nodes and the current I_s that enters each section.  Three
+Unknowns are the voltages V of the fixed nodes and the current I_s that enters each section.  Four
 kinds of equation, all complex:
 
     section s from a to b:  E_s(V_a, I_s) = V_b            (`chain` pushes V_a, I_s to the end E_s)
     node without source:    Σ leaving currents = 0
     node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
+    node that is not fed:   V = 0
 
 f is the converter law (2.1)-(2.4).  The trains' equations stand inside the chains, so forces,
 accelerations and powers are solved together with the voltages.
@@ -58,7 +59,7 @@ from tpss.powerflow.chain import (
     Pass,
     run_chain,
 )
-from tpss.powerflow.network import Flow, Loads, Network
+from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
 
 CLOSE = 1e-4
@@ -150,6 +151,16 @@ def _turn_source_row(
     node.right_side = apply(c_p, c_q, node.right_side) - value
 
 
+@kernel
+def hold_at_zero(n: int, derivatives: bool, network: Network, flow: Flow) -> float:
+    """`evaluate_node` of one that no source reaches: V = 0."""
+    voltage_v = flow.nodes[at(n)].voltage_v
+    if derivatives:
+        nothing, itself = (0j, 0j), (complex(1.0, 0.0), 0j)
+        _turn_source_row(n, voltage_v, itself, nothing, network, flow)
+    return squared(voltage_v) * network.system.per_square_volt
+
+
 @inlined
 def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> float:
     """Square of the residual of node `n` [p.u.], and its row of the linear system.
@@ -160,6 +171,8 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
     """
     node, s = flow.nodes[at(n)], network.source_of_node[at(n)]
     if s < 0:
+        if s == UNFED:
+            return hold_at_zero(n, derivatives, network, flow)
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
     running = flow.sources[at(s)].running
@@ -295,11 +308,12 @@ def _close_gaps(flow: Flow) -> None:
 
 @inlined
 def voltages_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether every node and train lies in the band that a sound line never leaves."""
+    """Whether every node and train that is fed lies in the band that a sound line never leaves."""
     low = network.system.lowest_voltage_v**2
     high = network.system.highest_voltage_v**2
     for n in range(flow.nodes.size):
-        if not low <= squared(flow.nodes[at(n)].voltage_v) <= high:
+        plausible = low <= squared(flow.nodes[at(n)].voltage_v) <= high
+        if not plausible and network.source_of_node[at(n)] != UNFED:
             return False
     for s in range(flow.sections.size):
         for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):
@@ -310,10 +324,12 @@ def voltages_are_plausible(network: Network, flow: Flow) -> bool:
 
 @inlined
 def sources_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether every source is in a state that its law admits."""
+    """Whether every source in service is in a state that its law admits."""
     for s in range(network.sources.size):
         source = network.sources[at(s)]
         node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
+        if running == 0.0:
+            continue
         if not is_plausible(node.voltage_v, node.leaving_current_a, running, source):
             return False
     return True

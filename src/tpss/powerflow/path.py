@@ -160,13 +160,16 @@ def distance(ahead: float, flow: Flow) -> float:
 @kernel
 def mean_unloaded(network: Network) -> tuple[float, float]:
     """Mean magnitude of the sources' voltages without load, and the angle of their sum. [V], [rad]"""
-    total_v, real, imaginary = 0.0, 0.0, 0.0
+    total_v, real, imaginary, count = 0.0, 0.0, 0.0, 0
     for s in range(network.sources.size):
+        if network.sources[at(s)].installed == 0:
+            continue
+        count += 1
         magnitude_v, angle = unloaded(network.sources[at(s)])
         total_v += magnitude_v
         real += math.cos(angle)
         imaginary += math.sin(angle)
-    return total_v / network.sources.size, math.atan2(imaginary, real)
+    return total_v / count, math.atan2(imaginary, real)
 
 
 @kernel
@@ -298,6 +301,8 @@ def is_out_of_reserve(way: Way, share: float, network: Network, flow: Flow, load
         # The law that holds there, as sources that differ less are on a way.
         source, running = flow.laws[at(s)], flow.sources[at(s)].running
         node = flow.nodes[at(source.node)]
+        if running == 0.0:
+            continue
         if reserve(node.voltage_v, node.leaving_current_a, running, source) < NO_RESERVE:
             return True
     return False

@@ -1,7 +1,7 @@
 """Where the trains stand under the sections of the contact line, in order, and how far apart."""
 
 from tpss.kernel import at, inlined, kernel
-from tpss.powerflow.network import SHORTEST_PIECE_M, Flow, Network, Section, Standing
+from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED, Flow, Network, Section, Standing
 from tpss.record import Records
 from tpss.track.leg import Leg, leg_at, place_on_line
 from tpss.vehicle.train import Train
@@ -77,6 +77,31 @@ def _move_forward(k: int, standing: Records[Standing]) -> None:
         k -= 1
     here = standing[at(k)]
     here.train, here.section, here.place_m = train, section, place_m
+
+
+@inlined
+def is_unfed(section: int, network: Network) -> bool:
+    """Whether no source reaches a section."""
+    node = network.sections[at(section)].start_node
+    return network.source_of_node[at(node)] == UNFED
+
+
+@inlined
+def set_unfed_aside(network: Network, flow: Flow) -> int:
+    """Leave the sections that no source reaches without their trains; return the number of these.
+
+    Their chains are line only then, on which nothing flows.
+    """
+    count = 0
+    for s in range(network.sections.size):
+        if is_unfed(s, network):
+            section, solution = network.sections[at(s)], flow.sections[at(s)]
+            for k in range(solution.first, solution.end):
+                flow.standing[at(k)].voltage_v = 0.0
+            count += solution.end - solution.first
+            solution.first = solution.end
+            solution.closing_m = max(SHORTEST_PIECE_M, section.end_m - section.start_m)
+    return count
 
 
 @inlined

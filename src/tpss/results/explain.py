@@ -211,7 +211,13 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
     clock = outcome.state.clock[0]
     if clock.stalled_train < 0:
         problem = f"The studied train has not arrived after {time_min:.0f} min."
-        return {"problem": problem, "advice": "Give simulation.duration_min, or check the traffic."}
+        advice = "Give simulation.duration_min, or check the traffic."
+        if outcome.state.clock[0].unfed > 0:
+            problem += " It stands without power, and no outage ends later."
+            advice = (
+                "Give simulation.duration_min, let the outage end, or leave a station in service."
+            )
+        return {"problem": problem, "advice": advice}
     train = outcome.state.trains[clock.stalled_train]
     scheduled = outcome.trains[clock.stalled_train]
     motion, demand, kind = train.motion, train.demand, model.types[train.train_type]

@@ -229,10 +229,11 @@ def _gather(run: Run, frame: Frame) -> Figures:
     begin, end = (0, 0) if window is None else (window.start, window.stop)
     figures = new_figures(model, run.departed, frame.zones)
     trains = run.state.trains
-    gather(
-        run.step, run.last_step_s, begin, end, frame.at_line_level,
-        trains, model, run.recording, figures,
-    )  # fmt: skip
+    for first, last, network in run.stretches:
+        gather(
+            first, last, run.step, run.last_step_s, begin, end, frame.at_line_level,
+            trains, model._replace(network=network), run.recording, figures,
+        )  # fmt: skip
     return figures
 
 

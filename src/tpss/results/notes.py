@@ -13,6 +13,7 @@ from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
+from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
 from tpss.units import on_line
 
@@ -26,6 +27,9 @@ CLOSE_M = SHORTEST_PIECE_M
 APART_M = 1e8
 """What lies between the places on one line and those on the next; no line is so long. [m]"""
 
+MOST_STRANDED = 5
+"""Trains without power that are listed."""
+
 FEW = 3
 """Train-steps that closeness may take without a note, as of a train that passes."""
 
@@ -33,9 +37,11 @@ FEW = 3
 def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
     if result.dataset.sizes["time"] < 2:
-        return [*step_warnings(result.summary), *warnings(result.summary)]
+        return [*_outage(result), *step_warnings(result.summary), *warnings(result.summary)]
     return [
+        *_outage(result),
         *step_warnings(result.summary),
+        *_stranded(result),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),
@@ -43,6 +49,22 @@ def notes(result: Result) -> list[str]:
         *_passing(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
+
+
+def _outage(result: Result) -> Iterator[str]:
+    """The outage with which it was run."""
+    outage = result.scenario.outage
+    if outage is not None:
+        yield f"outage {outage.name}: {outage.in_words}"
+
+
+def _stranded(result: Result) -> Iterator[str]:
+    """Trains that stood without power."""
+    stood = stranded_trains(result.dataset)
+    if stood:
+        more = f", and {len(stood) - MOST_STRANDED} more" if len(stood) > MOST_STRANDED else ""
+        listed = "; ".join(each.in_words for each in stood[:MOST_STRANDED])
+        yield f"stranded without power: {listed}{more}; voltages are those of trains that are fed"
 
 
 def _overloads(result: Result) -> Iterator[str]:

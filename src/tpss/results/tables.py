@@ -20,18 +20,19 @@ J_PER_MWH = 3.6e9
 
 
 def trips(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row per train: times, distance, energy, and where its voltage was lowest.
+    """One row per train: times, distance, energy, and where its voltage was lowest, if it was fed.
 
     Trains that were on the line at the start have no departure, those still on it no arrival.
     """
     time_min = dataset.time.to_numpy() / 60.0
     position_km, travelled_km = dataset.position.to_numpy() / 1e3, distance_km(dataset)
     voltage_kv = dataset.pantograph_voltage.to_numpy() / 1e3
-    lowest = np.argmin(np.where(np.isfinite(voltage_kv), voltage_kv, np.inf), axis=0)
+    fed = voltage_kv > 0.0
+    lowest = np.argmin(np.where(fed, voltage_kv, np.inf), axis=0)
     each = np.arange(dataset.sizes["train"])
     names = line_names(dataset)
     line = np.array(names, dtype=object)
-    drawn = np.isfinite(voltage_kv).any(axis=0)
+    drawn = fed.any(axis=0)
     departure_min = dataset.departure_time.to_numpy() / 60.0
     arrival_min = dataset.arrival_time.to_numpy() / 60.0
     # A train that braked within a step has arrived before the first instant at which it stands.

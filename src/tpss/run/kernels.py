@@ -121,7 +121,7 @@ def figures_calls(model: Model) -> list[Call]:
     trains = _start(model).trains
     recording, blank = new_recording(model, 0, trains.size), new_figures(model, trains.size, [])
     at_line_level = np.zeros(model.network.source_of_node.size, dtype=bool)
-    return [(gather, (0, 0.0, 0, 0, at_line_level, trains, model, recording, blank))]
+    return [(gather, (0, 0, 0, 0.0, 0, 0, at_line_level, trains, model, recording, blank))]
 
 
 def _start(model: Model) -> State:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from tpss.driving.data import MotionModel, Options
 from tpss.errors import TooLargeError
+from tpss.powerflow.network import Network
 from tpss.record import Records, copy_of_records
 from tpss.run.services import (
     DEPARTURE_ROUNDING_S,
@@ -24,6 +25,7 @@ from tpss.run.services import (
     train_at,
     train_records,
 )
+from tpss.run.switching import Switching, take_over
 from tpss.step.advance import advance
 from tpss.step.model import Model, RunControl
 from tpss.step.recording import Memory, Recording, new_recording, recording_bytes
@@ -122,11 +124,30 @@ class Run:
         self.state = new_state(model, copy_of_records(records))
         self.with_journeys = with_journeys
         self.recording = new_recording(model, capacity, len(trains), memory, with_journeys)
+        self.networks = [(0, model.network)]
+        """Steps from which networks hold, and these."""
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""
         status, self.step = self.clock(self.step, step, self.model, self.state, self.recording)
         self.status = Status(status)
+
+    def switch_to(self, network: Network) -> None:
+        """Go on from this step with another network of the same shapes."""
+        take_over(self.model.network, network, self.step, self.state)
+        self.model = self.model._replace(network=network)
+        self.networks.append((self.step, network))
+
+    @property
+    def stretches(self) -> list[tuple[int, int, Network]]:
+        """Steps from the first to the one before the second that had a network, and that."""
+        ends = [*(step for step, _ in self.networks[1:]), self.step]
+        found = [
+            (first, last, network)
+            for (first, network), last in zip(self.networks, ends, strict=True)
+            if first < last
+        ]
+        return found or [(0, 0, self.model.network)]
 
     @property
     def departed(self) -> int:
@@ -274,9 +295,16 @@ class Start:
     """Their state at the start."""
     studied: int
     """Place of the studied train among them, or -1."""
+    switchings: tuple[Switching, ...] = ()
+    """Networks that take the place of the model's, in the order of time."""
 
 
-def begin(model: Model, services: list[Service], steps: int | None) -> Start:
+def begin(
+    model: Model,
+    services: list[Service],
+    steps: int | None,
+    switchings: tuple[Switching, ...] = (),
+) -> Start:
     """Find out which trains stand on the line at the start, and which depart.
 
     Parameters
@@ -286,6 +314,8 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
         The first departure of the first one is the studied train.
     steps : int or None
         Number of steps; None: until the studied train arrives.
+    switchings : tuple of Switching, optional
+        Networks that take the place of the model's, in the order of time.
 
     Raises
     ------
@@ -305,7 +335,7 @@ def begin(model: Model, services: list[Service], steps: int | None) -> Start:
     ends_with = studied if steps is None else -1
     model = model._replace(control=RunControl(studied_train=ends_with))
     records = train_records(trains, model.network.system.nominal_voltage_v)
-    return Start(model, services, steps, capacity, trains, records, studied)
+    return Start(model, services, steps, capacity, trains, records, studied, switchings)
 
 
 def run_of(start: Start, clock: Clock = advance, memory: Memory = np.empty) -> Run:
@@ -330,8 +360,11 @@ def advance_to_end(
     last = steps if steps is not None else int(LONGEST_RUN_S / h)
     watched = report is not None or interrupted is not None
     stretch = 32 if watched else last
+    until = 0
     while run.step < last:
         if run.step == run.capacity:
+            if steps is None and until == last and _is_stranded(run):
+                break
             more = min(last, run.capacity + run.capacity // 2 + 1)
             departing = departing_trains(start.services, run.model.options, run.capacity, more)
             trains = len(run.trains) + len(departing)
@@ -339,7 +372,8 @@ def advance_to_end(
                 break
             run.grow(more, departing)
         started = time.perf_counter()
-        run.advance_to(min(run.step + stretch, run.capacity, last))
+        until = switch(run, start.switchings, last)
+        run.advance_to(min(run.step + stretch, run.capacity, until))
         elapsed = time.perf_counter() - started
         if watched:
             stretch = int(np.clip(stretch * STRETCH_S / max(elapsed, 1e-4), 1, 4096))
@@ -350,6 +384,21 @@ def advance_to_end(
         if interrupted:
             return INTERRUPTED
     return STATUS_NAME[Status.FINISHED if steps is not None else Status.STALLED]
+
+
+def _is_stranded(run: Run) -> bool:
+    """Whether the studied train stands without power."""
+    row = run.recording.trains[run.step - 1, run.model.control.studied_train]
+    return bool(row.speed == 0.0 and row.pantograph_real == 0.0 and row.pantograph_imag == 0.0)
+
+
+def switch(run: Run, switchings: Sequence[Switching], last: int) -> int:
+    """Give a run the network that holds from its step on; return the step until which it does."""
+    h = run.model.options.step_s
+    due = [each.network for each in switchings if each.step(h) <= run.step]
+    if due and due[-1] is not run.model.network:
+        run.switch_to(due[-1])
+    return min([last, *(step for each in switchings if (step := each.step(h)) > run.step)])
 
 
 def arrivals_s(run: Run) -> npt.NDArray[np.float64]:

@@ -68,7 +68,7 @@ def lost_to_voltage(
     if run.step == 0 or not np.isfinite(arrivals_s(run)).any():
         return None
     model = start.model._replace(control=RunControl(fixed_voltage_v=voltage_v))
-    stiff = replace(start, model=model, steps=run.step)
+    stiff = replace(start, model=model, steps=run.step, switchings=())
     other = run_of(stiff)
     if advance_to_end(other, stiff, report, interrupted) == INTERRUPTED:
         return None

@@ -88,8 +88,8 @@ ABSENCES = (
     ),
     Absence(
         r"out_of_service|outage|disabled|failed",
-        "equipment that is out of service",
-        "take it out of the scenario, for a run without it",
+        "a key for it here",
+        "list what is out of service in [[outages]]",
     ),
     Absence(r"storage|battery|accumulator", "stores of energy"),
     Absence(

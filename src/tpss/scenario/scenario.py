@@ -13,6 +13,7 @@ from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
+from tpss.scenario.outages import Outage, Outages, outage_faults, unknown
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
@@ -67,6 +68,10 @@ class Scenario(Part):
     )
     standards: Standards = Field(
         default={}, validate_default=True, description="Criteria by which the result is judged."
+    )
+    outages: Outages = Field(
+        default=(),
+        description="Outages of the supply; one applies if `simulation.outage` names it.",
     )
     variants: Variants = Field(
         default={}, description="Variants by name: the scenario with some changes."
@@ -129,6 +134,9 @@ class Scenario(Part):
             As `from_document`.
         """
         scenario = validate(cls, document, Path(source))
+        faults = outage_faults(scenario.outages, scenario.simulation, scenario.supply, str(source))
+        if faults:
+            raise ScenarioError(faults)
         scenario._document = document
         # A change of the working folder must not lead to other files.
         scenario._source = Path(source).absolute()
@@ -203,6 +211,28 @@ class Scenario(Part):
         """Name of the line on which something stands."""
         return part.line or next(iter(self.lines_by_name))
 
+    def with_outage(self, name: str) -> Self:
+        """The scenario with one of its outages: a scenario of its own, named after both.
+
+        Raises
+        ------
+        ScenarioError
+            There is no such outage.
+        """
+        outage = next((each for each in self.outages if each.name == name), None)
+        if outage is None:
+            problem, remedy = unknown("outage", name, [each.name for each in self.outages])
+            raise ScenarioError(
+                [Finding(str(self._source), "outages", repr(name), problem, remedy)]
+            )
+        return self.with_({"simulation.outage": name, "name": f"{self.name}-{outage.slug}"})
+
+    @property
+    def outage(self) -> Outage | None:
+        """The outage that applies, if any."""
+        chosen = self.simulation.outage
+        return next((each for each in self.outages if each.name == chosen), None)
+
     def trains_by_service(self) -> dict[str, Train]:
         """Type of train of each service, by its name."""
         return {entry.name: self.trains[entry.train] for entry in self.traffic}
@@ -216,12 +246,16 @@ class Scenario(Part):
 
     def digest(self) -> str:
         """Digest of all that the scenario says, wherever it was read from, its name left out."""
-        text = self.model_dump_json(
-            by_alias=True, exclude_none=True, exclude={"name", "description", "variants", *READ_IN}
-        )
+        apart = {"name", "description", "variants"} | self._without_effect | set(READ_IN)
+        text = self.model_dump_json(by_alias=True, exclude_none=True, exclude=apart)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def _without_effect(self) -> set[str]:
+        """Outages, where none applies."""
+        return {"outages"} if self.simulation.outage is None else set()
 
     def as_document(self) -> dict[str, Any]:
         """The scenario as run, with everything it took from files, library and defaults."""
-        unused = set(READ_IN) if self.variants else {"variants", *READ_IN}
+        unused = {key for key in ("variants", "outages") if not getattr(self, key)} | set(READ_IN)
         return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)

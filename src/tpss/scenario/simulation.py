@@ -6,7 +6,7 @@ from typing import Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from tpss.scenario.clock import ClockTime, seconds_of
-from tpss.scenario.fields import Part, Real, either_or, fault
+from tpss.scenario.fields import Name, Part, Real, either_or, fault
 
 OF_STEPPED_MOTION = (
     ("power_sampling", "start"),
@@ -88,6 +88,10 @@ class Simulation(Part):
         "departures, limits and stops met at their instants; or one acceleration a step, from the "
         "forces at its start, with departures and dwells in whole steps (the thesis). Left out: "
         "continuous, unless another choice here is one of stepped motion.",
+    )
+
+    outage: Name | None = Field(
+        default=None, description="Name of the outage that applies; leave it out: none does."
     )
 
     @property

@@ -42,7 +42,7 @@ class Source(Record):
     kind: SourceKind
     """Which of the kinds holds."""
     installed: int
-    """Number of equal units (converters, transformers) installed."""
+    """Number of equal units (converters, transformers) installed and in service; 0: it is out."""
     controlled: bool
     """Whether the number of running units follows the loading."""
     rating_va: float
@@ -116,18 +116,18 @@ def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
 
 @inlined
 def losses(current: complex, running: float, source: Source) -> float:
-    """Losses within a source, none of a converter. [W]
+    """Losses within a source, none of a converter or of one that is out of service. [W]
 
     Those of converters are not described.
     """
-    if source.kind == SourceKind.GRID:
+    if source.kind == SourceKind.GRID and running > 0.0:
         return grid_losses(current, running, source.grid)
     return 0.0
 
 
 @kernel
 def loading(power: complex, running: float, rating_va: float) -> float:
-    r"""Apparent power of a source over the rating of its running units. [1]
+    r"""Apparent power of a source over the rating of its running units, 0 if none runs. [1]
 
     .. math:: Ld = \sqrt{P_G^2 + Q_G^2} / (NoC_{used} \, S_{nom})
 
@@ -144,4 +144,4 @@ def loading(power: complex, running: float, rating_va: float) -> float:
     ----------
     [Boullanger2009]_, eq. (3.6).
     """
-    return magnitude(power) / (running * rating_va)
+    return magnitude(power) / (running * rating_va) if running > 0.0 else 0.0

@@ -6,7 +6,7 @@ from tpss.driving.passage import SLACK_M
 from tpss.kernel import at, inlined, kernel, plain
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Request, Standing
-from tpss.powerflow.placing import locate_trains, measure_pieces
+from tpss.powerflow.placing import locate_trains, measure_pieces, set_unfed_aside
 from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
@@ -75,6 +75,8 @@ def place_trains(model: Model, state: State) -> int:
     count = list_trains(state.trains, state.flow)
     locate_trains(count, state.trains, model.legs, model.network, state.flow)
     state.clock[0].short_pieces = measure_pieces(count, model.network, state.flow)
+    if model.control.fixed_voltage_v <= 0.0:
+        state.clock[0].unfed = set_unfed_aside(model.network, state.flow)
     return count
 
 
@@ -132,7 +134,7 @@ def end_step(
         return Status.COLLAPSED
     if find_stalled(count, state):
         return Status.STALLED
-    remember(step == 0, state.flow)
+    remember(step == state.clock[0].fresh_step, state.flow)
     record_trains(
         step, count, state.clock[0].begin_s, model.options.step_s, model.types, model.points,
         state.flow.standing, state.trains, recording.trains, recording.train_state, recording.calls,
@@ -204,7 +206,8 @@ def solve_lengths(
         now = with_step(model, clock.last_step_s)
         if not goes_on:
             prepare_step(clock.on_line, now, state)
-        share, passes = solve_step(clock.on_line, step + clock.lengths_tried > 0, now, state)
+        warm = step + clock.lengths_tried > clock.fresh_step
+        share, passes = solve_step(clock.on_line, warm, now, state)
         clock.passes += passes
         if share < 1.0:
             return share
@@ -246,7 +249,7 @@ def run_steps(
         if not goes_on:
             clock.on_line = begin_step(step, model, state, recording)
             clock.lengths_tried, clock.passes = 0, 0
-            if step > 0:
+            if step > clock.fresh_step:
                 predict(state.flow)
         share = solve_lengths(step, goes_on, model, state, recording)
         if share == ASKS:

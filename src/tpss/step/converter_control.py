@@ -54,8 +54,10 @@ def control_converters(time_s: float, model: Model, state: State) -> None:
 
 
 @fused
-def station_power(node: NodeFlow) -> complex:
-    """Power P + jQ that the station at a node feeds into the railway. [VA]"""
+def station_power(node: NodeFlow, running: float) -> complex:
+    """Power P + jQ that the units of a station that run feed into the railway at a node. [VA]"""
+    if running == 0.0:  # what leaves a node without a source is a rounding
+        return 0j
     return node.voltage_v * node.leaving_current_a.conjugate()
 
 
@@ -64,6 +66,6 @@ def note_loading(model: Model, state: State) -> None:
     """Add this step's loading of each station to the mean that decides the next action."""
     for s in range(model.network.sources.size):
         source, units = model.network.sources[at(s)], state.flow.sources[at(s)]
-        power = station_power(state.flow.nodes[at(source.node)])
+        power = station_power(state.flow.nodes[at(source.node)], units.running)
         units.loading_sum += loading(power, units.running, source.rating_va)
     state.clock[0].loading_steps += 1

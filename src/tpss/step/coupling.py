@@ -13,6 +13,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
 from tpss.powerflow.network import Loads, Standing
+from tpss.powerflow.placing import is_unfed
 from tpss.powerflow.solve import ASKS, solve_or_ask
 from tpss.record import Records
 from tpss.step.model import Model, driving_data
@@ -41,13 +42,42 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
         Evaluations of the network.
     """
     passes = 0
+    if state.clock[0].unfed > 0:
+        prepare_unfed(count, model, state)
     while True:
         decide(count, state.flow.standing, state.trains, driving_data(model))
         share, more = solve_network(count, warm, model, state)
         passes += more
+        if share == 1.0 and state.clock[0].unfed > 0:
+            pass_unfed(count, model, state)
         if share < 1.0 or apply_solutions(count, model, state):
             return share, passes
         warm = True
+
+
+@kernel
+def prepare_unfed(count: int, model: Model, state: State) -> None:
+    """Let trains that no station reaches pass through the step: they coast, brake, and stand."""
+    for k in range(count):
+        place = state.flow.standing[at(k)]
+        if is_unfed(place.section, model.network):
+            pass_instead(state.trains[at(place.train)])
+
+
+@kernel
+def pass_unfed(count: int, model: Model, state: State) -> None:
+    """Find the ways of the trains that no station reaches, at no voltage.
+
+    What is kept as their voltage for the next step, where they may be fed again, is the nominal one.
+    """
+    nominal_v = model.network.system.nominal_voltage_v
+    for k in range(count):
+        place = state.flow.standing[at(k)]
+        if is_unfed(place.section, model.network):
+            train = state.trains[at(place.train)]
+            find_demand(0.0, WITHOUT_SLOPES, train, loads_of(model, state))
+            train.line_voltage_v = nominal_v
+            train.demand.voltage_v = nominal_v
 
 
 @kernel

@@ -199,7 +199,7 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         row = recording.stations[at(step), at(s)]
         source = network.sources[at(s)]
         node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
-        power = station_power(node)
+        power = station_power(node, running)
         row.station_active_power = power.real
         row.station_reactive_power = power.imag
         row.active_converters = running

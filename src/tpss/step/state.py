@@ -85,6 +85,10 @@ class Clock(Record):
     """Evaluations of the network in a step so far."""
     on_line: int
     """Trains on the line in it."""
+    fresh_step: int
+    """Step whose load flow knows of none before it: the first one, or that of a switching."""
+    unfed: int
+    """Trains on the line that no station reaches."""
     carried_share: float
     """Share of the load that the line carries, where it cannot carry all of it. [1]"""
 

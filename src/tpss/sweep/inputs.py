@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tpss.model.supply import transformer_positions_km
 from tpss.scenario.fields import library_name
 from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.sweep.gradients import gradient_statistics
 
 

@@ -59,6 +59,8 @@ def force_of_phase(
     ----------
     [Boullanger2009]_, eq. (2.7), (F.20) and (F.21).
     """
+    if voltage_v <= 0.0:
+        return 0.0
     _settle(speed_m_s, resistance_n, demand)
     network = kind.networks.tractive_effort
     force = effort_at(voltage_v, speed_m_s, kind.effort, demand.effort, network, points, scratch)
@@ -95,6 +97,8 @@ def demand_of_phase(
     ----------
     [Boullanger2009]_, eq. (2.14), solved for the motors' power, and (2.18).
     """
+    if voltage_v <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     _settle(speed_m_s, resistance_n, demand)
     # The force is known: the machine is not asked once more.
     demand.force_cap_n = force_n
@@ -122,5 +126,7 @@ def demand_standing(voltage_v: float, kind: TrainType) -> tuple[float, float, fl
     ----------
     [Boullanger2009]_, eq. (2.20) and (2.21).
     """
+    if voltage_v <= 0.0:
+        return 0.0, 0.0, 0.0
     filtered, slope = filter_reactive_power(voltage_v, kind.filter_susceptance_s)
     return kind.auxiliary_power_w, kind.auxiliary_reactive_power_var + filtered, slope

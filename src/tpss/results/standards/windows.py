@@ -24,8 +24,12 @@ TOLERANCE = 1e-9
 
 
 def step_values(dataset: xr.Dataset, name: str) -> Floats:
-    """Values of an interval variable, shape (steps, ...), without the last instant."""
-    return np.asarray(dataset[name].to_numpy()[:-1], dtype=float)
+    """Values of an interval variable, shape (steps, ...), without the last instant.
+
+    A train that no station reaches has no voltage: not 0, which would count as a low one.
+    """
+    values = np.asarray(dataset[name].to_numpy()[:-1], dtype=float)
+    return np.where(values == 0.0, np.nan, values) if name == "pantograph_voltage" else values
 
 
 def table_of(rows: Sequence[tuple[Any, ...]], kind: type[Any]) -> pd.DataFrame:

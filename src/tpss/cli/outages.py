@@ -1,0 +1,161 @@
+"""The command ``tpss outages``: a scenario with each of its outages, in one ranked table."""
+
+import math
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss.cli.run import AUDIT_FAILED, DONE, INTERRUPTED, NO_SOLUTION
+from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.errors import ResultError
+from tpss.files import whole
+from tpss.files.refusals import explained, refuse_to_replace
+from tpss.results.store import PARENT
+from tpss.units import on_line
+
+if TYPE_CHECKING:
+    from tpss.outages.row import Row
+    from tpss.outages.run import Comparison
+
+PROGRESS = "{task.completed}/{task.total} outages"
+
+WIDTH = 150
+"""Least width of the table, so that a row stays on one line. [characters]"""
+
+LEAST_CHANGE = 0.005
+"""A difference below this is not printed."""
+
+
+def run_outages(
+    file: Path,
+    every: bool,
+    assignments: list[str],
+    jobs: int | None,
+    out: Path | None,
+    force: bool,
+    quiet: bool,
+) -> int:
+    """Run a scenario with each of its outages; print and save the table; return the exit code."""
+    from tpss.outages.run import compare_outages
+    from tpss.run.interrupt import interruptible
+    from tpss.scenario import load_scenario
+    from tpss.scenario.override import parse_assignment
+
+    scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
+    if out is not None:
+        refuse_to_replace(out, force, "a file", Path.is_file)
+    console = Console(stderr=True, quiet=quiet)
+    announce_compilation(console)
+    with interruptible() as interrupted:
+        with progress_bar(scenario.name, PROGRESS, _progress, console) as report:
+            found = compare_outages(
+                scenario, every=every, threads=jobs, report=report, interrupted=interrupted
+            )
+        if not found.rows:
+            print("Interrupted; nothing was saved.", file=sys.stderr)
+            return INTERRUPTED
+        place = _save(found, scenario.name, out, force)
+    if not quiet:
+        print_table(found, Console())
+        say(Console(), f"Saved in {place}")
+    if interrupted:
+        done = f"{len(found.rows)} of {found.cases} runs"
+        print(f"Interrupted after {done}; the table holds these.", file=sys.stderr)
+        return INTERRUPTED
+    return _exit_code(found)
+
+
+def _progress(done: int, cases: int) -> dict[str, Any]:
+    return {"completed": done, "total": cases}
+
+
+def _exit_code(found: "Comparison") -> int:
+    """That of the worst run."""
+    from tpss.outages.row import Verdict
+
+    verdicts = [row.verdict for row in found.rows]
+    if Verdict.AUDIT_FAILED in verdicts:
+        return AUDIT_FAILED
+    return DONE if min(verdicts) >= Verdict.STRANDED else NO_SOLUTION
+
+
+def _save(found: "Comparison", name: str, out: Path | None, force: bool) -> Path:
+    """Write the table, whole or not at all; into the first free place if none is named."""
+    content = found.table().to_csv(index=False).encode()
+    try:
+        return _write(content, name, out, force)
+    except ResultError:
+        print(content.decode())  # so that nothing is lost
+        raise
+
+
+def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
+    if out is not None:
+        with explained(out):
+            refuse_to_replace(out, force, "a file", Path.is_file)
+            out.parent.mkdir(parents=True, exist_ok=True)
+            whole.write_file(out, content)
+        return out
+    number = 1
+    while True:
+        place = PARENT / f"{name}-outages-{number:03d}.csv"
+        with explained(place):
+            PARENT.mkdir(exist_ok=True)
+            if not os.path.lexists(place):
+                whole.write_file(place, content)
+                return place
+        number += 1
+
+
+def print_table(found: "Comparison", console: Console) -> None:
+    """Print a row per case, with what differs from the intact supply in brackets."""
+    table = Table(title="Outages", title_justify="left", box=None, pad_edge=False, padding=(0, 1))
+    table.add_column("outage\n", no_wrap=True)
+    table.add_column("verdict\n", no_wrap=True)
+    for heading in (
+        "low U\n[dim]kV[/dim]", "at\n[dim]km[/dim]", "at\n[dim]min[/dim]", "useful U\n[dim]kV[/dim]",
+    ):  # fmt: skip
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("in zone\n", no_wrap=True)
+    for heading in ("peak load\n[dim]%[/dim]", "15 min\n[dim]%[/dim]"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("of\n", no_wrap=True)
+    for heading in ("arrived\n", "late\n", "lost\n[dim]min[/dim]"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in found.rows:
+        table.add_row(escape(row.outage), row.verdict_in_words, *_cells(row, found.intact))
+    Console(file=console.file, width=max(console.width, WIDTH)).print(table)
+
+
+def _cells(row: "Row", intact: "Row") -> list[str]:
+    own, base = row.figures, {} if row is intact else intact.figures
+    return [
+        _compared("lowest_voltage_kv", own, base),
+        escape(on_line(own.get("lowest_voltage_line", ""), _number(own, "lowest_voltage_km", 1))),
+        _number(own, "lowest_voltage_min", 1),
+        _compared("useful_voltage_kv", own, base),
+        escape(str(own.get("useful_voltage_zone", ""))),
+        _number(own, "peak_loading", 0, 100.0),
+        _number(own, "loading_15_min", 0, 100.0),
+        escape(str(own.get("peak_loading_station", ""))),
+        str(row.lost["arrived"]),
+        str(row.lost["late"] + row.lost["missing"]),
+        "" if row is intact else f"{round(row.lost['lost_min'], 2) + 0.0:.2f}",
+    ]
+
+
+def _number(figures: Mapping[str, Any], key: str, digits: int, scale: float = 1.0) -> str:
+    value = figures.get(key, math.nan)
+    return "-" if math.isnan(value) else f"{scale * value:.{digits}f}"
+
+
+def _compared(key: str, own: Mapping[str, Any], base: Mapping[str, Any]) -> str:
+    """A figure, and by how much it differs from that of the intact supply."""
+    text, change = _number(own, key, 2), own.get(key, math.nan) - base.get(key, math.nan)
+    return text if math.isnan(change) or abs(change) < LEAST_CHANGE else f"{text} ({change:+.2f})"

@@ -1,0 +1,1 @@
+"""A scenario with each of its outages in turn, ranked by what they do."""

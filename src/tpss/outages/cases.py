@@ -1,0 +1,47 @@
+"""The cases of a table of outages: the intact supply, the scenario's outages, every single element."""
+
+from collections.abc import Iterator
+
+from tpss.errors import Finding, ScenarioError
+from tpss.scenario.outages import Outage
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply.transformers import feeding_positions_km
+from tpss.units import kilometres
+
+
+def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
+    """Outages of a table: those of the scenario, and if asked for each of a single element.
+
+    A single one that the scenario has already, under a name of its own, is not made again.
+
+    Raises
+    ------
+    ScenarioError
+        There is none.
+    """
+    named = list(scenario.outages)
+    if every:
+        known = [_content(outage) for outage in named]
+        named += [each for each in single_outages(scenario) if _content(each) not in known]
+    if not named:
+        problem = "the scenario has no outages"
+        remedy = "add [[outages]], or take every single element with --n-1"
+        raise ScenarioError([Finding(str(scenario.source), "outages", "", problem, remedy)])
+    return named
+
+
+def single_outages(scenario: Scenario) -> Iterator[Outage]:
+    """Each station, each with one unit fewer if it has several, each transformer, all throughout."""
+    stations = scenario.supply.stations
+    for station in stations:
+        yield Outage(name=f"{station.name} out", stations=(station.name,))
+    for station in stations:
+        if station.installed > 1:
+            yield Outage(name=f"{station.name}, one unit out", units={station.name: 1})
+    for km in feeding_positions_km(scenario.supply):
+        yield Outage(name=f"transformer {kilometres(km)} km out", transformers_km=(km,))
+
+
+def _content(outage: Outage) -> dict[str, object]:
+    """What is out, and when."""
+    return outage.model_dump(exclude={"name"})

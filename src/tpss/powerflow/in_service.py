@@ -1,0 +1,100 @@
+"""A network with some of its elements out of service.
+
+Nodes, branches, sections and sources stay as many and keep their places, so that a run may go from one
+network to the other.  Out of service are
+
+    a source      it has no units, and no node is its own: that is one without a source
+    some units    the source has fewer
+    a branch      its admittance is 0
+
+Nodes that no source reaches by what is left are marked as `UNFED`.
+"""
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.numerics.block_lu import Pattern
+from tpss.powerflow.network import UNFED, Network
+from tpss.record import copy_of_records
+
+
+def in_service(network: Network, units: Mapping[int, int], opened: Collection[int]) -> Network:
+    """The network with fewer units of some sources, and without some branches.
+
+    Parameters
+    ----------
+    network : Network
+        With all in service.
+    units : mapping of int to int
+        Units that are in service, by the number of their source; of others all are.
+    opened : collection of int
+        Numbers of the branches that are out.
+    """
+    sources, branches = copy_of_records(network.sources), copy_of_records(network.branches)
+    source_of_node = network.source_of_node.copy()
+    for number, count in units.items():
+        sources[number].installed = count
+        if count == 0:
+            source_of_node[sources[number].node] = -1
+    for number in opened:
+        branches[number].admittance_s = 0.0
+    source_of_node[source_of_node == UNFED] = -1
+    changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
+    return mark_unfed(changed._replace(admittance_s=_admittance_of_branches(changed)))
+
+
+def mark_unfed(network: Network) -> Network:
+    """The network with those nodes marked that no source reaches."""
+    unfed = unfed_nodes(network)
+    if not unfed.any():
+        return network
+    source_of_node = np.where(unfed, UNFED, network.source_of_node)
+    return network._replace(source_of_node=source_of_node)
+
+
+def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
+    """What the branches in service put into each block of the linear system. [S]
+
+    Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
+    """
+    place = _places(network.pattern)
+    total = np.zeros_like(network.admittance_s)
+    for k in range(network.branches.size):
+        branch = network.branches[k]
+        a, b, admittance = branch.start_node, branch.end_node, branch.admittance_s
+        total[[a, b]] += admittance
+        total[[place[a, b], place[b, a]]] -= admittance
+    return total
+
+
+def _places(pattern: Pattern) -> dict[tuple[int, int], int]:
+    """Places of the blocks between different nodes."""
+    place = {}
+    for k in range(pattern.pivots.size):
+        pivot = pattern.pivots[k]
+        for j in range(pivot.first, pivot.end):
+            neighbour = pattern.neighbours[j]
+            place[int(pivot.node), int(neighbour.node)] = int(neighbour.upper)
+            place[int(neighbour.node), int(pivot.node)] = int(neighbour.lower)
+    return place
+
+
+def unfed_nodes(network: Network) -> npt.NDArray[np.bool_]:
+    """Nodes that no source in service reaches by branches in service and sections, shape (nodes,)."""
+    neighbours: list[list[int]] = [[] for _ in range(network.source_of_node.size)]
+    carrying = network.branches["admittance_s"] != 0.0
+    starts = [*network.branches["start_node"][carrying], *network.sections["start_node"]]
+    ends = [*network.branches["end_node"][carrying], *network.sections["end_node"]]
+    for start, end in zip(starts, ends, strict=True):
+        neighbours[start].append(end)
+        neighbours[end].append(start)
+    unfed = network.source_of_node < 0
+    waiting = np.flatnonzero(~unfed).tolist()
+    while waiting:
+        for node in neighbours[waiting.pop()]:
+            if unfed[node]:
+                unfed[node] = False
+                waiting.append(node)
+    return unfed
