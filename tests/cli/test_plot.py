@@ -18,7 +18,7 @@ def demo(tpss_command, short_file, tmp_path):
 def test_all_figures_go_into_a_folder_of_the_result(tpss_command, demo):
     said = tpss_command("plot", "demo")
     assert (said.code, said.err) == (0, "")
-    assert said.out.startswith("Wrote into demo/figures: time-distance.png, journey.png")
+    assert said.out.startswith("Wrote into demo/figures: network.png, time-distance.png, journey")
     written = {file.name for file in (demo / "figures").iterdir()}
     assert written == {f"{name}.png" for name in FIGURES}
 

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from tpss.report.html import report
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
@@ -229,6 +231,25 @@ def test_a_comparison_draws_its_plots(browser, compared, tmp_path):
     found = open_page(browser, file)
     assert found.tab.locator(".plot svg.main-svg").count() > 0
     assert found.tab.locator(".plot.drawn").count() == 5
+    assert found.faults == []
+    assert found.requests == [file.as_uri()]
+    found.tab.close()
+
+
+def test_the_slider_moves_the_trains_of_a_network_onto_its_branch(browser, star, tmp_path):
+    """At minute 40 both trains have passed Fork: one is on the branch, beside the main line."""
+    file = tmp_path / "network.html"
+    file.write_text(report(star), encoding="utf-8")
+    found = open_page(browser, file)
+    shown = "[...document.getElementById('network').data.at(-1).%s]"
+    assert found.tab.evaluate(shown % "y") == [0.0, 0.0]
+    found.tab.locator("#time").fill("400")  # steps of 0.1 min
+    found.wait_for(f"({shown % 'y'}).some((row) => row !== 0)")
+    x, y = (found.tab.evaluate(shown % axis) for axis in "xy")
+    words = found.tab.evaluate(shown % "text")
+    up = next(k for k, text in enumerate(words) if text.startswith("up 1<br>branch km 1"))
+    assert y[1 - up] == 0.0
+    assert x[1 - up] > 40.0
     assert found.faults == []
     assert found.requests == [file.as_uri()]
     found.tab.close()

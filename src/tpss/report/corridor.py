@@ -12,8 +12,10 @@ import numpy as np
 import xarray as xr
 
 from tpss.errors import ResultError, suggest
+from tpss.model.contact_line import stretches_of
+from tpss.model.supply import layouts_of
 from tpss.report.sampling import Floats
-from tpss.results.places import LINE, lines_of, train_lines
+from tpss.results.places import LINE, lines_of, train_lines, train_tracks
 from tpss.results.result import Result
 from tpss.scenario.routes import Hop, NoWayError, find_way, hops_of
 from tpss.scenario.scenario import Scenario
@@ -105,6 +107,36 @@ def along(result: Result, stations: Sequence[str] = ()) -> Result:
     return replace(result, dataset=data)
 
 
+def on_line(result: Result, name: str, track: int = 1) -> xr.Dataset:
+    """Trains and nodes of a run that are on one of its lines, at its kilometres.
+
+    Where its tracks are not tied to each other everywhere, only those of one track.
+    """
+    line = result.scenario.lines_by_name[name]
+    whole = [Stretch(name, line.begins_at_km, line.end_km, 1.0, 0.0)]
+    data = result.dataset
+    if LINE in data.coords:
+        data = _with_fixed(_with_trains(data, whole), "node", result.scenario, whole)
+    apart = separate_tracks(result.scenario, name)
+    if not apart:
+        return data
+    others = [f", track {k}" for k in range(1, line.most_tracks + 1) if k != track]
+    own = [not any(other in node for other in others) for node in data.node.to_numpy().astype(str)]
+    km, tracks = data.position.to_numpy() / 1e3, train_tracks(data)
+    beside = np.zeros(km.shape, dtype=bool)
+    for begin_km, end_km in apart:
+        beside |= (km >= begin_km) & (km <= end_km) & (tracks != track)
+    there = data.pantograph_voltage.where(~beside)
+    return data.isel(node=np.flatnonzero(own)).assign(pantograph_voltage=there)
+
+
+def separate_tracks(scenario: Scenario, name: str) -> list[tuple[float, float]]:
+    """Ends of the stretches of a line where each track has a contact line of its own. [km]"""
+    layout = next(each for each in layouts_of(scenario.lines_by_name) if each.name == name)
+    stretches = stretches_of(layout, scenario.supply)
+    return [(each.begin_km, each.end_km) for each in stretches if each.conductors > 1]
+
+
 def is_corridor(result: Result) -> bool:
     """Whether a run is seen along a corridor of a network."""
     return LANDMARK in result.dataset.coords
@@ -181,10 +213,12 @@ def _with_fixed(
     places_km = data[f"{what}_position"].to_numpy() / 1e3
     along_km = np.full(places_km.shape, np.nan)
     for stretch in corridor:
+        # Where lines meet that are not tied, each has a node of its own.
+        own = set(places_km[owner == stretch.line].tolist()) if what == "node" else set()
         for line, shift in _shared(scenario, stretch.line):
             here = owner == line
             if line != stretch.line:
-                here &= np.isin(places_km, list(shift))
+                here &= np.isin(places_km, [km for km, there in shift.items() if there not in own])
             own_km = np.array([shift.get(km, km) for km in places_km[here].tolist()])
             along_km[here] = np.where(
                 np.isfinite(along_km[here]), along_km[here], stretch.along_km(own_km)

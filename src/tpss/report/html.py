@@ -22,13 +22,15 @@ from tpss.files.whole import write_file
 from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
-from tpss.report.corridor import along, gradients_along
+from tpss.report.corridor import along, gradients_along, is_corridor
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
+from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
+from tpss.report.moving import network_moving
 from tpss.report.render.interactive import render
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
@@ -101,6 +103,8 @@ def report(result: Result) -> str:
     trusted, seen = bool(result.audit["passed"]), along(result)
     voltage = line_voltage(seen.dataset) if trusted else None
     figures, data = _figures(seen, voltage) if voltage else ({}, {})
+    if voltage and is_corridor(seen):
+        figures["network"], data["network"] = _network(result)
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stops", "Times at stops", result.stops),
@@ -163,6 +167,12 @@ def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], d
     if chosen is not None:
         figures["journey"] = render(journey({chosen: result}, shown=OF_A_JOURNEY), 560)
     return figures, {**_moving({"": result}, "moment"), "chosen": chosen}
+
+
+def _network(result: Result) -> tuple[Figure, dict[str, Any]]:
+    """The plan of a network, and what the page needs to move the trains on it."""
+    drawing = network(result, with_trains=True)
+    return render(drawing, 140 + round(120 * rows_of(drawing))), network_moving(result)
 
 
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:

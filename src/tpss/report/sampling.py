@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from tpss.results.places import LINE
+
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
@@ -63,7 +65,8 @@ class TrainSamples:
     ----------
     trains : list of dict
         For each train its ``name`` and, over the same instants, ``step`` (number of the time step),
-        ``km``, ``kmh`` and ``kv``; the voltage is None where none is recorded.
+        ``km``, ``kmh`` and ``kv``; the voltage is None where none is recorded, and all where a train
+        is off the line for a while.
     thinned : bool
         Whether instants were left out.
     """
@@ -81,9 +84,10 @@ def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> Tra
     most = max(FEWEST, most_of_all // max(len(seen), 1))
     trains, thinned = [], False
     for i in seen:
-        steps = np.flatnonzero(on_line[:, i])
-        few = steps[kept((kmh[steps, i], kv[steps, i]), most)]
-        thinned = thinned or len(few) < len(steps)
+        few, left_out = sampled_steps(on_line[:, i], (kmh[:, i], kv[:, i]), most)
+        thinned = thinned or left_out
+        if LINE in dataset.coords:  # along a corridor, which a train may leave and come back to
+            few = _with_gaps(few, on_line[:, i])
         trains.append(
             {
                 "name": str(dataset.train.to_numpy()[i]),
@@ -94,6 +98,22 @@ def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> Tra
             }
         )
     return TrainSamples(trains, thinned)
+
+
+def sampled_steps(
+    there: npt.NDArray[np.bool_], columns: Sequence[Floats], most: int
+) -> tuple[Indices, bool]:
+    """Steps to draw of a train, and whether some are left out."""
+    steps = np.flatnonzero(there)
+    few = steps[kept([column[steps] for column in columns], most)]
+    return few, len(few) < len(steps)
+
+
+def _with_gaps(few: Indices, there: npt.NDArray[np.bool_]) -> Indices:
+    """The same with the ends of each way of a train, and a step where it is away before the next one."""
+    steps = np.flatnonzero(there)
+    ends = np.flatnonzero(np.diff(steps) > 1)
+    return np.unique(np.concatenate([few, steps[ends], steps[ends] + 1, steps[ends + 1]]))
 
 
 def _rounded(values: Floats, digits: int) -> list[float | None]:

@@ -10,6 +10,7 @@ from tpss.report.corridor import along
 from tpss.report.drawings.effort import effort
 from tpss.report.drawings.energy import energy_flow
 from tpss.report.drawings.journey import journey
+from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
@@ -24,7 +25,8 @@ Against = Literal["time", "distance"]
 
 Describe = Callable[[Result, str | None, Against], Drawing]
 
-FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
+FIGURES: dict[str, tuple[Literal["network", "run", "trains", "train"], Describe]] = {
+    "network": ("network", lambda run, *_: network(run)),
     "time-distance": ("trains", lambda run, *_: time_distance(run)),
     "journey": ("train", lambda run, train, against: journey({"": run}, train, against)),
     "voltage": ("run", lambda run, *_: voltage_envelope(run)),
@@ -35,6 +37,9 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }
 """Figures by their names: what they need, and the function that describes them."""
+
+WITHOUT_TRAINS = ("network", "run")
+"""What figures are of that can be drawn without any train."""
 
 OF_A_TRAIN = [name for name, (of, _) in FIGURES.items() if of == "train"]
 """Figures for which a train can be chosen."""
@@ -83,8 +88,9 @@ def draw(
     if result.dataset.sizes["time"] < 2:
         raise NothingToDrawError("no time step was simulated")
     of, describe = FIGURES[name]
-    chosen = None if train is None and of == "run" else chosen_train(result, train)
-    figure = render(describe(along(result, corridor), chosen, against))
+    chosen = None if train is None and of in WITHOUT_TRAINS else chosen_train(result, train)
+    seen = result if of == "network" else along(result, corridor)
+    figure = render(describe(seen, chosen, against))
     title = result.scenario.name + (f": {as_text(chosen)}" if of == "train" else "")
     figure.suptitle(title, fontsize="large")
     if result.status in ENDED:

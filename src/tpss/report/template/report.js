@@ -115,6 +115,34 @@
   const traces = slider ? plots[run.plot].data.length - run.runs.length : 0;
   const marks = slider ? plots[run.plot].data.slice(traces).map(({ marker }) => ({ ...marker })) : [];
 
+  // Where a kilometre of a line lies in the plan; the points of its path rise.
+  function placeOf({ km, x, y }, at) {
+    let k = km.findIndex((there) => there >= at);
+    k = Math.max(1, k < 0 ? km.length - 1 : k);
+    const part = (at - km[k - 1]) / (km[k] - km[k - 1]);
+    return [x[k - 1] + part * (x[k] - x[k - 1]), y[k - 1] + part * (y[k] - y[k - 1])];
+  }
+
+  // Between two lines a train is at the end of the first: both steps of the change are samples.
+  function showNetwork(step) {
+    const { lines, trains } = run.network;
+    const there = [];
+    for (const train of trains) {
+      const now = trainAt(train, step);
+      if (!now || now.kv === null) continue;
+      const k = sampleAt(train, step), line = lines[train.line[k]];
+      const stays = train.line[k] === train.line[Math.min(k + 1, train.line.length - 1)];
+      const km = stays ? now.km : train.km[k];
+      const [x, y] = placeOf(line, km);
+      there.push({ x, y: y + train.aside[k], kv: now.kv, text:
+        `${now.name}<br>${line.name} km ${km.toFixed(2)}, ${now.kmh.toFixed(1)} km/h<br>${now.kv.toFixed(2)} kV` });
+    }
+    const all = (name) => [there.map((train) => train[name])];
+    Plotly.restyle("network", {
+      x: all("x"), y: all("y"), text: all("text"), "marker.color": all("kv"),
+    }, [plots.network.data.length - 1]);
+  }
+
   function showMoment(step) {
     const minutes = step * run.step_min, single = run.runs.length === 1;
     const moments = run.runs.map((each, k) =>
@@ -124,6 +152,7 @@
       x: all("x"), y: all("y"), text: all("text"),
       "marker.symbol": all("symbol"), "marker.color": all("color"),
     }, moments.map((_, k) => traces + k));
+    if (run.network) showNetwork(step);
     const text = `${minutes.toFixed(2)} min`;
     element("now").textContent = text;
     slider.setAttribute("aria-valuetext", text);
