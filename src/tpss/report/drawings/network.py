@@ -30,6 +30,9 @@ POINTS_A_ROW = 50
 LABELS_ACROSS = 45
 """Names of stations that fit side by side; of closer ones the first is shown."""
 
+WIDTH = 2.6
+"""Of the contact line."""
+
 LABEL = "lowest voltage [kV]"
 
 Paths = Mapping[str, Path]
@@ -53,6 +56,8 @@ def network(result: Result, *, with_trains: bool = False) -> parts.Drawing:
     contact_lines, colours = _contact_lines(result, paths)
     items: list[parts.Item] = [
         *_high_voltage_line(result, paths),
+        # An edge, so that the darkest colours are seen on a dark page too.
+        parts.Curve(contact_lines.x, contact_lines.y, colour=BLACK, width=WIDTH + 0.9),
         contact_lines,
         *_switches(result, paths),
         *_stations(result, paths),
@@ -112,7 +117,7 @@ def _contact_lines(result: Result, paths: Paths) -> tuple[parts.Curve, parts.Col
     )
     words = [word for each in tracks for word in (*each[3], "")]
     colours = parts.Colours(kv, LABEL, *colour_range(kv))
-    return parts.Curve(x, y, width=2.6, words=words, colours=colours), colours
+    return parts.Curve(x, y, width=WIDTH, words=words, colours=colours), colours
 
 
 def _track(

@@ -65,6 +65,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
                 continue
             said = _hover(item, *units, alone, panel.bare)
             trace = _trace(item, len(curves)).update(hovertemplate=said)
+            if panel.bare and said is None:
+                trace.hoverinfo = "skip"
             trace.showlegend = row == 1 and bool(trace.name)
             figure.add_trace(trace, row=row, col=1)
             if isinstance(item, parts.Places):
@@ -146,7 +148,7 @@ def _hover(item: parts.Item, x_unit: str, y_unit: str, alone: bool, bare: bool) 
         case parts.Curve(words=[_, *_]) | parts.Places() if bare:
             return f"%{{text}}{end}"
         case parts.Curve() if bare:
-            return f"{item.name}{end}"
+            return None
         case parts.Curve(words=[_, *_]):
             return f"%{{text}}<br>{at}{end}" if item.joined else f"%{{text}}{end}"
         case parts.Curve():
