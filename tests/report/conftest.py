@@ -22,7 +22,9 @@ def short() -> tpss.Result:
 def star() -> tpss.Result:
     """A branch that leaves a main line; a train runs onto it, and one along."""
     ways = [lines.service("up", "West", "Mine"), lines.service("along", "West", "East")]
-    return lines.run(lines.network(lines.STAR, ways))
+    document = lines.network(lines.STAR, ways)
+    document["supply"]["catenary"] = "AT"
+    return lines.run(document)
 
 
 @pytest.fixture(scope="session")

@@ -8,8 +8,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from tpss.results.places import LINE
-
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
@@ -75,8 +73,13 @@ class TrainSamples:
     thinned: bool
 
 
-def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> TrainSamples:
-    """Samples of all trains of a run that were on the line, about `most_of_all` in total."""
+def sample_trains(
+    dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS, *, with_gaps: bool = False
+) -> TrainSamples:
+    """Samples of all trains of a run that were on the line, about `most_of_all` in total.
+
+    Along a corridor, which a train may leave and come back to, these gaps may be kept.
+    """
     km, kmh = dataset.position.to_numpy() / 1e3, dataset.speed.to_numpy() * 3.6
     kv = dataset.pantograph_voltage.to_numpy() / 1e3
     on_line = np.isfinite(km)
@@ -84,37 +87,29 @@ def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> Tra
     most = max(FEWEST, most_of_all // max(len(seen), 1))
     trains, thinned = [], False
     for i in seen:
-        few, left_out = sampled_steps(on_line[:, i], (kmh[:, i], kv[:, i]), most)
-        thinned = thinned or left_out
-        if LINE in dataset.coords:  # along a corridor, which a train may leave and come back to
-            few = _with_gaps(few, on_line[:, i])
+        steps = np.flatnonzero(on_line[:, i])
+        few = steps[kept((kmh[steps, i], kv[steps, i]), most)]
+        thinned = thinned or len(few) < len(steps)
+        if with_gaps:
+            few = _with_gaps(few, steps)
         trains.append(
             {
                 "name": str(dataset.train.to_numpy()[i]),
                 "step": few.tolist(),
-                "km": _rounded(km[few, i], 3),
-                "kmh": _rounded(kmh[few, i], 1),
-                "kv": _rounded(kv[few, i], 3),
+                "km": rounded(km[few, i], 3),
+                "kmh": rounded(kmh[few, i], 1),
+                "kv": rounded(kv[few, i], 3),
             }
         )
     return TrainSamples(trains, thinned)
 
 
-def sampled_steps(
-    there: npt.NDArray[np.bool_], columns: Sequence[Floats], most: int
-) -> tuple[Indices, bool]:
-    """Steps to draw of a train, and whether some are left out."""
-    steps = np.flatnonzero(there)
-    few = steps[kept([column[steps] for column in columns], most)]
-    return few, len(few) < len(steps)
-
-
-def _with_gaps(few: Indices, there: npt.NDArray[np.bool_]) -> Indices:
-    """The same with the ends of each way of a train, and a step where it is away before the next one."""
-    steps = np.flatnonzero(there)
+def _with_gaps(few: Indices, steps: Indices) -> Indices:
+    """Few of a train's steps, with the ends of each way, and one where it is away before the next."""
     ends = np.flatnonzero(np.diff(steps) > 1)
     return np.unique(np.concatenate([few, steps[ends], steps[ends] + 1, steps[ends + 1]]))
 
 
-def _rounded(values: Floats, digits: int) -> list[float | None]:
+def rounded(values: Floats, digits: int) -> list[float | None]:
+    """Values with so many decimals; None for NaN."""
     return [None if np.isnan(value) else round(value, digits) for value in values.tolist()]
