@@ -40,8 +40,9 @@ FIGURES = "figures"
 """Folder of figures, within that of the result."""
 
 FIGURE_NAMES = (
-    "network", "time-distance", "journey", "voltage", "train-voltage", "stations", "converters",
-    "energy", "effort",
+    "network", "time-distance", "journey", "voltage", "train-voltage",
+    "stations", "converters", "energy",
+    "effort",
 )  # fmt: skip
 
 
