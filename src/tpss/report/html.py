@@ -210,8 +210,10 @@ def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) 
 
 def _moving_run(label: str, seen: Result, whole: Result, most: int) -> dict[str, Any]:
     """Data of a run: trains as they are seen along a line, and those of a network on all lines."""
-    samples = sampling.sample_trains(seen.dataset, most, with_gaps=is_corridor(seen))
-    network = network_moving(whole, most) if LINE in whole.dataset.coords else None
+    several = LINE in whole.dataset.coords  # whose trains are in the page twice
+    share = most // 2 if several else most
+    network = network_moving(whole, share) if several else None
+    samples = sampling.sample_trains(seen.dataset, share, with_gaps=is_corridor(seen))
     limits = whole.scenario.standards.voltage_limits
     return {
         "label": label,

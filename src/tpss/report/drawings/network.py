@@ -16,6 +16,7 @@ from tpss.report.palette import BLACK, COLOURS
 from tpss.report.sampling import Floats
 from tpss.results.result import Result
 from tpss.scenario.line import Line
+from tpss.scenario.scenario import Scenario
 from tpss.units import kilometres
 
 GAP_ROWS = 0.08
@@ -155,10 +156,7 @@ def _has_track(line: Line, place_km: Floats, track: int) -> npt.NDArray[np.bool_
 
 def _stations(result: Result, paths: Paths) -> Iterator[parts.Places]:
     """Passenger stations, each once, and those where lines meet as junctions."""
-    stands: dict[str, list[tuple[str, float]]] = {}
-    for name, line in result.scenario.lines_by_name.items():
-        for station in line.stations:
-            stands.setdefault(station.name, []).append((name, station.position_km))
+    stands = _stands(result.scenario)
     labelled = _labelled(stands, paths)
     kinds = {
         False: ("station", parts.DOT, False),
@@ -174,6 +172,15 @@ def _stations(result: Result, paths: Paths) -> Iterator[parts.Places]:
         yield parts.Places(
             x, y, kind, symbol, COLOURS[BLACK], words, labels=labels, hollow=hollow
         )  # fmt: skip
+
+
+def _stands(scenario: Scenario) -> dict[str, list[tuple[str, float]]]:
+    """Lines and positions of the stations, by their names. [km]"""
+    stands: dict[str, list[tuple[str, float]]] = {}
+    for name, line in scenario.lines_by_name.items():
+        for station in line.stations:
+            stands.setdefault(station.name, []).append((name, station.position_km))
+    return stands
 
 
 def _where(name: str, at: list[tuple[str, float]], several: bool) -> str:
@@ -211,18 +218,20 @@ def _feeding_stations(result: Result, paths: Paths) -> Iterator[parts.Item]:
 
 
 def _names_of_lines(result: Result, paths: Paths) -> Iterator[parts.Places]:
-    """Names of several lines, each below its longest straight part, away from feeding stations."""
+    """Names of several lines, each below its longest straight part, where nothing else is below it."""
     if len(paths) == 1:
         return
-    fed = [(result.scenario.line_of(s), s.position_km) for s in result.scenario.supply.stations]
-    fed_x, fed_y = _spread(paths, fed)
+    scenario = result.scenario
+    below = [(scenario.line_of(each), each.position_km) for each in scenario.supply.stations]
+    below += [at[0] for at in _stands(scenario).values() if len(at) > 1]
+    below_x, below_y = _spread(paths, below)
     shares, places = np.array([0.5, 0.35, 0.65, 0.2, 0.8]), []
     for name, path in paths.items():
         k = int(np.diff(path.km).argmax())
         km = path.km[k] + shares * (path.km[k + 1] - path.km[k])
         x, y = path.at(km)
-        near = np.abs(fed_y - y[:, None]) < 0.5
-        free = np.where(near, np.abs(fed_x - x[:, None]), np.inf).min(axis=1)
+        near = np.abs(below_y - y[:, None]) < 0.5
+        free = np.where(near, np.abs(below_x - x[:, None]), np.inf).min(axis=1)
         places.append((name, float(km[free.argmax()])))
     x, y = _spread(paths, places)
     words = [f"line {name}" for name in paths]
