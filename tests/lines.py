@@ -47,3 +47,10 @@ def run(document: dict[str, Any]) -> tpss.Result:
     result = tpss.simulate(scenario_of(document))
     assert result.audit["passed"], result.audit["failures"]
     return result
+
+
+STAR = {
+    "main": line(60.0, {"West": 0.0, "Fork": 40.0, "East": 60.0}),
+    "branch": line(30.0, {"Fork": 100.0, "Mine": 130.0}, begins_at_km=100.0),
+}
+"""A branch that leaves a main line 20 km before its end."""

@@ -18,7 +18,7 @@ def demo(tpss_command, short_file, tmp_path):
 def test_all_figures_go_into_a_folder_of_the_result(tpss_command, demo):
     said = tpss_command("plot", "demo")
     assert (said.code, said.err) == (0, "")
-    assert said.out.startswith("Wrote into demo/figures: time-distance.png, journey.png")
+    assert said.out.startswith("Wrote into demo/figures: network.png, time-distance.png, journey")
     written = {file.name for file in (demo / "figures").iterdir()}
     assert written == {f"{name}.png" for name in FIGURES}
 
@@ -57,6 +57,7 @@ def test_a_journey_against_time_differs_from_one_against_distance(tpss_command, 
             ("--figure", "journey", "--train", "x"),
             "there is no train 'x' on the line; trains: east",
         ),
+        (("--figure", "energy", "--from", "West", "--to", "East"), "energy shows the whole run; leave"),
         (("--figure", "energy", "--out", "a.jpg"), "a.jpg has an unknown format; use a name that"),
         (("--figure", "energy", "--out", "no/a.png"), "there is no folder no"),
         (("--out", "a.png"), "a.png is one file, and all figures need a folder"),
@@ -68,6 +69,7 @@ def test_a_journey_against_time_differs_from_one_against_distance(tpss_command, 
         "train of all",
         "axis of none",
         "train",
+        "stretch",
         "format",
         "folder",
         "one file",

@@ -112,6 +112,39 @@ def test_a_result_beside_itself_is_told_apart(tpss_command, folder):
     assert tpss_command("report", "a", "a").code == 0
 
 
+def test_compared_results_have_the_labels_that_they_are_given(tpss_command, folder, tmp_path):
+    said = tpss_command("report", "a", "a", "--label", "before", "--label", "after")
+    assert said.code == 0
+    page = Page((tmp_path / "comparison.html").read_text("utf-8"))
+    assert "figure before after" in page.text
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (("a", "--label", "x"), "leave --label out for a single one"),
+        (("a", "a", "--label", "x"), "1 labels for 2 results; give --label once for each"),
+        (("a", "a", "--label", "x", "--label", "x"), "two results have the label 'x'; give each"),
+        (("a", "--from", "West"), "--from and --to belong together"),
+        (("a", "--from", "West", "--to", "East", "--corridor", "West,East"), "leave one of them"),
+        (("a", "--corridor", "West"), "West is one station; give those at both ends"),
+        (("a", "--from", "West", "--to", "Est"), "there is no station 'Est'; did you mean East"),
+    ],
+    ids=["label of one", "too few", "twice", "one end", "both", "one station", "nowhere"],
+)
+def test_what_does_not_fit_the_results_is_refused(tpss_command, folder, tmp_path, asked, words):
+    said = tpss_command("report", *asked, "--out", "b.html")
+    assert said.code == 2
+    assert words in said.err
+    assert not (tmp_path / "b.html").exists()
+
+
+def test_a_report_of_a_stretch_says_which(tpss_command, folder):
+    assert tpss_command("report", "a", "--from", "East", "--to", "West").code == 0
+    page = Page((folder / "report.html").read_text("utf-8"))
+    assert "Time-distance graph: West – East" in page.text
+
+
 class Named:
     """As much of a result as a label needs."""
 

@@ -13,8 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import tomli_w
 
 import tpss.api
+from lines import STAR, network, service
 from tpss import load_result
 from tpss.audit import verdict
 from tpss.cli.main import main
@@ -453,3 +455,31 @@ def test_a_fault_of_the_program_can_be_traced(tpss_command, monkeypatch):
     monkeypatch.setattr("sys.argv", ["tpss", "run", str(HEADWAY), "--quiet"])
     with pytest.raises(RuntimeError, match="a wheel came off"):
         main()
+
+
+@pytest.mark.parametrize("columns", [80, 60, 40])
+def test_tables_have_whole_numbers_in_a_narrow_terminal(
+    tpss_command, tmp_path, monkeypatch, columns
+):
+    """Lines of 60 km and a branch; a table that is too wide is printed in parts."""
+    document = network(STAR, [service("up", "West", "Mine"), service("along", "West", "East")])
+    document["simulation"]["duration_min"] = 10.0
+    document["variants"] = {"lighter": {"set": {"trains.freight.mass_t": 500.0}}}
+    (tmp_path / "network.toml").write_text(tomli_w.dumps(document), encoding="utf-8")
+    monkeypatch.setenv("COLUMNS", str(columns))
+    said = tpss_command(
+        "run", "network.toml", "--variant", "all", "--no-step-check", "--out", "all"
+    )
+    assert said.code == 0
+    assert "…" not in said.out
+    assert ("Trains, continued" in said.out) == (columns < 80)
+
+
+def test_show_tells_the_line_of_each_place(tpss_command, tmp_path):
+    document = network(STAR, [service("up", "West", "Mine")])
+    document["simulation"]["duration_min"] = 40.0
+    (tmp_path / "network.toml").write_text(tomli_w.dumps(document), encoding="utf-8")
+    said = tpss_command("run", "network.toml", "--no-step-check", "--out", "a", "--show", "up 1")
+    assert "time on position" in said.out
+    lines = re.findall(r"\d\.\d\d (main|branch) \d+\.\d{3}", said.out)
+    assert list(dict.fromkeys(lines)) == ["main", "branch"]

@@ -4,6 +4,7 @@ import copy
 
 import pytest
 
+import lines
 import tpss
 from tpss.report.html import comparison, report
 
@@ -15,6 +16,15 @@ from scenarios import run
 def short() -> tpss.Result:
     """The short line, a train every ten minutes."""
     return run({"traffic.0.headway_min": 10.0})
+
+
+@pytest.fixture(scope="session")
+def star() -> tpss.Result:
+    """A branch that leaves a main line; a train runs onto it, and one along."""
+    ways = [lines.service("up", "West", "Mine"), lines.service("along", "West", "East")]
+    document = lines.network(lines.STAR, ways)
+    document["supply"]["catenary"] = "AT"
+    return lines.run(document)
 
 
 @pytest.fixture(scope="session")

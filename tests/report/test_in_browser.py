@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from tpss.report.html import report
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
@@ -231,4 +233,50 @@ def test_a_comparison_draws_its_plots(browser, compared, tmp_path):
     assert found.tab.locator(".plot.drawn").count() == 5
     assert found.faults == []
     assert found.requests == [file.as_uri()]
+    found.tab.close()
+
+
+def test_the_slider_moves_the_trains_of_a_network_onto_its_branch(browser, star, tmp_path):
+    """At minute 30 both trains have passed Fork: one is on the branch, beside the main line."""
+    file = tmp_path / "network.html"
+    file.write_text(report(star), encoding="utf-8")
+    found = open_page(browser, file)
+    shown = "[...document.getElementById('network').data.at(-1).%s]"
+    assert found.tab.evaluate(shown % "y") == [0.0, 0.0]
+    found.tab.locator("#time").fill("300")  # steps of 0.1 min
+    found.wait_for(f"({shown % 'y'}).some((row) => row !== 0)")
+    x, y = (found.tab.evaluate(shown % axis) for axis in "xy")
+    words = found.tab.evaluate(shown % "text")
+    up = next(k for k, text in enumerate(words) if text.startswith("up 1<br>branch km 1"))
+    assert y[1 - up] == 0.0
+    assert x[1 - up] > 40.0
+    assert "2 trains on the network; lowest" in found.tab.locator("#state").inner_text()
+    found.tab.select_option("#train", label="up 1")
+    way = found.tab.evaluate("document.getElementById('journey').data[0].x.at(-1)")
+    assert way == pytest.approx(70.0)
+    assert found.faults == []
+    assert found.requests == [file.as_uri()]
+    found.tab.close()
+
+
+def test_the_journey_of_any_train_that_all_compared_runs_have_can_be_chosen(
+    browser, compared, tmp_path
+):
+    """Trains every 10 min and every 5: the second one departs at minute 10, and at minute 5."""
+    file = tmp_path / "comparison.html"
+    file.write_text(compared, encoding="utf-8")
+    found = open_page(browser, file)
+    choices = found.tab.locator("#train option").all_inner_texts()
+    assert choices[:3] == ["the studied train of each run", "eastbound 1", "eastbound 2"]
+    found.tab.select_option("#train", label="eastbound 2")
+    found.tab.select_option("#against", "time")
+    journey = "document.getElementById('journey').data"
+    shown = found.tab.evaluate(f"{journey}.slice(0, 2).map((each) => [each.name, each.x[0]])")
+    assert shown == [
+        ["every 10 min: eastbound 2", pytest.approx(10.0)],
+        ["every 5 min: eastbound 2", pytest.approx(5.0)],
+    ]
+    found.tab.select_option("#train", index=0)
+    assert found.tab.evaluate(f"{journey}[1].name") == "every 5 min: eastbound 1"
+    assert found.faults == []
     found.tab.close()

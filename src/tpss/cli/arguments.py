@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from tpss.cli import complete
+from tpss.errors import ResultError
 
 option = partial(typer.Option, show_default=False)
 argument = partial(typer.Argument, show_default=False)
@@ -36,3 +37,42 @@ NoStepCheck = Annotated[
 ]
 
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]
+
+Corridor = Annotated[
+    str | None,
+    option(
+        metavar="STATIONS",
+        help="Stations of a network over which lines are drawn as one, such as West,Fork,Mine; by "
+        "default those of the first service's way.",
+    ),
+]
+
+From = Annotated[
+    str | None,
+    option(
+        "--from",
+        metavar="STATION",
+        help="With --to: draw what lies between two stations, of a network on the shortest way.",
+    ),
+]
+
+To = Annotated[str | None, option("--to", metavar="STATION", help="See --from.")]
+
+
+def stations_of(corridor: str | None, origin: str | None, destination: str | None) -> list[str]:
+    """Stations over which figures along a line are drawn, as they were asked for.
+
+    Raises
+    ------
+    ResultError
+        Both a corridor and its ends are given, or one end only, or one station only.
+    """
+    if corridor is not None and (origin or destination):
+        raise ResultError("--corridor says all that --from and --to do; leave one of them out")
+    if (origin is None) != (destination is None):
+        raise ResultError("--from and --to belong together; give both, or neither")
+    named = [origin, destination] if corridor is None else corridor.split(",")
+    stations = [name.strip() for name in named if name]
+    if len(stations) == 1:
+        raise ResultError(f"{stations[0]} is one station; give those at both ends at least")
+    return stations

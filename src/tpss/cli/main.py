@@ -17,13 +17,17 @@ import typer
 from tpss.cli import approximate_app, complete, import_app
 from tpss.cli.arguments import (
     Assignments,
+    Corridor,
     Force,
+    From,
     NoStepCheck,
     Quiet,
     ResultFolder,
     ScenarioFile,
+    To,
     argument,
     option,
+    stations_of,
 )
 from tpss.results.contents import FIGURE_NAMES
 from tpss.results.file_kinds import Kind
@@ -135,7 +139,8 @@ def run(
 
 
 @app.command(
-    epilog="Examples:  tpss report results/thesis-160km-001, then tpss report results/a results/b"
+    epilog="Examples:  tpss report results/thesis-160km-001, then tpss report results/a results/b "
+    "--label before --label after"
 )
 def report(
     results: Annotated[
@@ -152,6 +157,17 @@ def report(
             "results comparison.html here."
         ),
     ] = None,
+    label: Annotated[
+        list[str] | None,
+        option(
+            metavar="TEXT",
+            help="What a compared result is called, in their order; once for each. By default they have "
+            "the names of their scenarios or folders.",
+        ),
+    ] = None,
+    corridor: Corridor = None,
+    from_: From = None,
+    to: To = None,
     force: Force = False,
 ) -> None:
     """Write a report of a result, or a comparison of several, into one HTML file.
@@ -161,7 +177,7 @@ def report(
     """
     from tpss.cli.report import report_results
 
-    report_results(results, out, force)
+    report_results(results, out, force, label or [], stations_of(corridor, from_, to))
 
 
 @app.command(
@@ -185,14 +201,9 @@ def plot(
     against: Annotated[
         Against, typer.Option(metavar="AXIS", help="time or distance, of the journey.")
     ] = Against.DISTANCE,
-    corridor: Annotated[
-        str | None,
-        option(
-            metavar="STATIONS",
-            help="Stations of a network over which lines are drawn as one, such as West,Fork,Mine; by "
-            "default those of the first service's way.",
-        ),
-    ] = None,
+    corridor: Corridor = None,
+    from_: From = None,
+    to: To = None,
     out: Annotated[
         Path | None,
         option(
@@ -209,7 +220,7 @@ def plot(
     """
     from tpss.cli.plot import plot_result
 
-    stations = [name.strip() for name in corridor.split(",")] if corridor else []
+    stations = stations_of(corridor, from_, to)
     plot_result(result, figure, train, against.value, stations, out, force)
 
 

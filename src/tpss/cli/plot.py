@@ -44,6 +44,11 @@ def plot_result(
     if figure != ALL:
         catalogue.demand_figure(figure)
         _demand_use(figure, train, against, catalogue.OF_A_TRAIN)
+        if corridor and figure not in catalogue.ALONG_A_CORRIDOR:
+            remedy = f"draw {', '.join(catalogue.ALONG_A_CORRIDOR)}"
+            raise ResultError(
+                f"{figure} shows the whole run; leave --corridor, --from and --to out, or {remedy}"
+            )
     place, names = _target(folder, figure, out)
     result = load_result(folder)
     check_files(place, names.values(), force)

@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import units
-from tpss.cli.terminal import say
+from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
@@ -31,8 +31,14 @@ def print_result(result: Result, console: Console) -> None:
     summary = result.summary
     title = f"\n[bold]{summary['name']}[/bold]  {escape(summary['description'])}"
     console.print(title, highlight=False, soft_wrap=True)
-    console.print(_train_table(result))
-    console.print(_station_table(result))
+    _print_trains(result, console)
+    _print_table(
+        "Feeding stations",
+        "station",
+        _STATION_COLUMNS,
+        _named_rows(result.stations, "station"),
+        console,
+    )
     for line in key_figures(result):
         say(console, line)
     print_violations(result, console)
@@ -86,6 +92,9 @@ _STATION_COLUMNS = (
     _Column("mean_converters", "converters", "mean", 1),
 )
 
+_STEP_PLACE = [_Column("line", "on", "", 0), _Column("track", "track", "", 0)]
+"""Where a train is beside its kilometre, where that has to be told."""
+
 _STEP_COLUMNS = [
     _Column(each.column, each.heading, units.label(each.column), each.digits)
     for each in RECORDED
@@ -126,18 +135,34 @@ def _named_rows(frame: pd.DataFrame, name: str) -> list[tuple[str, dict[str, Any
     return [(str(row[name]), row) for row in rows]
 
 
-def _train_table(result: Result) -> Table:
+def _print_trains(result: Result, console: Console) -> None:
     trips = result.trips
     rows = _named_rows(trips.head(MOST_TRAINS), "train")
-    table = _table("Trains", "train", _TRAIN_COLUMNS, rows)
+    _print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
     if len(trips) > MOST_TRAINS:
-        table.caption = f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result"
-    return table
+        say(console, f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result")
 
 
-def _station_table(result: Result) -> Table:
-    rows = _named_rows(result.stations, "station")
-    return _table("Feeding stations", "station", _STATION_COLUMNS, rows)
+def _print_table(
+    title: str,
+    first: str,
+    columns: Sequence[_Column],
+    rows: Sequence[tuple[str, Mapping[str, Any]]],
+    console: Console,
+) -> None:
+    """Print a table, in a narrow terminal in parts that have whole numbers."""
+    # A line stays beside its kilometre.
+    together = [
+        [columns[k - 1], column] if k and columns[k - 1].heading == "on" else [column]
+        for k, column in enumerate(columns)
+        if column.heading != "on"
+    ]
+
+    def table_of(groups: Sequence[Sequence[_Column]], more: str = "") -> Table:
+        return _table(title + more, first, [column for each in groups for column in each], rows)
+
+    for k, part in enumerate(parts_that_fit(together, table_of, console)):
+        console.print(table_of(part, ", continued" if k else ""))
 
 
 def key_figures(result: Result) -> list[str]:
@@ -220,6 +245,7 @@ def print_train(result: Result, name: str, console: Console) -> None:
     """Print a train's journey, one row per step."""
     steps = train_steps(result.dataset.sel(train=[name]))
     rows = _named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
-    table = _table(name, "time\n[dim]min[/dim]", _STEP_COLUMNS, rows)
+    columns = [*_STEP_PLACE, *_STEP_COLUMNS]
+    table = _table(name, "time\n[dim]min[/dim]", columns, rows)
     # A row stays on one line, in a narrow terminal too.
-    Console(file=console.file, width=max(console.width, 110)).print(table)
+    Console(file=console.file, width=max(console.width, width_of(table))).print(table)

@@ -1,11 +1,15 @@
-"""What several commands print: progress bars, plain lines, and that the kernels are compiled."""
+"""What several commands print: progress bars, plain lines, tables, and that the kernels are compiled."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
+from rich.table import Table
+
+Column = TypeVar("Column")
 
 
 def say(console: Console, text: str) -> None:
@@ -19,6 +23,24 @@ def announce_compilation(console: Console) -> None:
 
     if not are_ready():
         console.print("Compiling the numerical kernels; this takes up to a minute, once.")
+
+
+def parts_that_fit(
+    columns: Sequence[Column], table_of: Callable[[Sequence[Column]], Table], console: Console
+) -> list[list[Column]]:
+    """Columns of a table in as many parts as a narrow terminal needs to show their cells whole."""
+    parts: list[list[Column]] = [[]]
+    for column in columns:
+        if parts[-1] and width_of(table_of([*parts[-1], column])) > console.width:
+            parts.append([])
+        parts[-1].append(column)
+    return parts
+
+
+def width_of(table: Table) -> int:
+    """Width of a table that nothing limits."""
+    endless = Console(width=10_000)
+    return Measurement.get(endless, endless.options, table).maximum
 
 
 @contextmanager

@@ -1,21 +1,25 @@
 """The scenario and its variants: which are run, and their figures side by side."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 
+from tpss.cli.terminal import parts_that_fit
 from tpss.scenario import Scenario
 from tpss.scenario.variants import ALL
+from tpss.units import on_line
 
 if TYPE_CHECKING:
     from tpss.results.result import Result
 
 BASE = "base"
 """Names the scenario as it is, among its variants."""
+
+COLUMNS = ("trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %")
 
 PLACE = 4
 """Column of a place, whose differences mean nothing."""
@@ -48,22 +52,27 @@ class Row:
     """How a run ended, and its key figures: what is kept of it for the comparison."""
 
     ended: str
-    figures: list[float | None]
+    figures: list[float | str | None]
 
 
 def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
     """Print the key figures of several results, and what differs from the first one."""
-    table = Table(title="Variants", title_justify="left", box=None, pad_edge=False)
-    table.add_column("variant", no_wrap=True)
-    table.add_column("ended", no_wrap=True)
-    for column in ("trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %"):
-        table.add_column(column, justify="right")
     first = next(iter(rows.values())).figures
     compared = [*first[:PLACE], None, *first[PLACE + 1 :]]
-    for name, row in rows.items():
-        cells = [_cell(value, base) for value, base in zip(row.figures, compared, strict=True)]
-        table.add_row(name, row.ended, *cells)
-    console.print(table)
+
+    def table_of(numbers: Sequence[int], more: str = "") -> Table:
+        table = Table(title=f"Variants{more}", title_justify="left", box=None, pad_edge=False)
+        table.add_column("variant", no_wrap=True)
+        table.add_column("ended", no_wrap=True)
+        for k in numbers:
+            table.add_column(COLUMNS[k], justify="right")
+        for name, row in rows.items():
+            cells = [_cell(row.figures[k], compared[k]) for k in numbers]
+            table.add_row(name, row.ended, *cells)
+        return table
+
+    for k, part in enumerate(parts_that_fit(range(len(COLUMNS)), table_of, console)):
+        console.print(table_of(part, ", continued" if k else ""))
 
 
 def row_of(result: "Result") -> Row:
@@ -75,16 +84,25 @@ def row_of(result: "Result") -> Row:
         summary["total_energy_mwh"],
         summary["losses_mwh"],
         lowest.get("voltage_kv"),
-        lowest.get("position_km"),
+        _place(lowest),
         None if loading != loading else 100.0 * float(loading),
     ]
     return Row(result.status, figures)
 
 
-def _cell(value: float | None, base: float | None) -> str:
+def _place(lowest: Mapping[str, Any]) -> float | str | None:
+    """Kilometre of the lowest voltage, with its line where there are several."""
+    if "line" not in lowest:
+        return lowest.get("position_km")
+    return on_line(str(lowest["line"]), f"{lowest['position_km']:.2f}")
+
+
+def _cell(value: float | str | None, base: float | str | None) -> str:
     """A figure, with its difference to the first one where there is one."""
     if value is None:
         return "-"
+    if isinstance(value, str) or isinstance(base, str):
+        return str(value)
     text = f"{value:.2f}"
     if base is None or f"{value - base:+.2f}" in ("+0.00", "-0.00"):
         return text

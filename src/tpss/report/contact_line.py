@@ -8,10 +8,13 @@ volts.
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from tpss.model.supply import CONTACT_LINE
 from tpss.report.sampling import Floats
+
+Phasors = npt.NDArray[np.complex128]
 
 MOST_POSITIONS = 240
 MOST_TIMES = 320
@@ -79,6 +82,24 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
     )
 
 
-def _phasors(dataset: xr.Dataset, place: str) -> np.ndarray:
+def phasors_at(dataset: xr.Dataset, place_m: float) -> Phasors:
+    """Voltage of the contact line of a line at a place, at every instant. [V]"""
+    on_line = dataset.node_kind.to_numpy() == CONTACT_LINE
+    node_m, node_v = (
+        dataset.node_position.to_numpy()[on_line],
+        _phasors(dataset, "node")[:, on_line],
+    )
+    train_m, train_v = dataset.position.to_numpy(), _phasors(dataset, "pantograph")
+    found = np.full(len(train_v), np.nan, dtype=np.complex128)
+    for k, (at_nodes, at_trains) in enumerate(zip(node_v, train_v, strict=True)):
+        there = np.isfinite(at_trains)
+        at_m = np.concatenate([node_m, train_m[k, there]])
+        order = np.argsort(at_m, kind="stable")
+        at_v = np.concatenate([at_nodes, at_trains[there]])
+        found[k] = np.interp(place_m, at_m[order], at_v[order])
+    return found
+
+
+def _phasors(dataset: xr.Dataset, place: str) -> Phasors:
     magnitude, angle = dataset[f"{place}_voltage"], dataset[f"{place}_angle"]
     return np.asarray(magnitude.to_numpy() * np.exp(1j * angle.to_numpy()))

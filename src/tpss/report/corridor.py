@@ -1,7 +1,7 @@
 """Corridors: a chain of lines, along which a run of a network is drawn as if it were one line.
 
-Kilometres along a corridor count from the station where it begins.  A run of one line needs none: its
-own kilometres serve.
+Kilometres along a corridor count from the station where it begins.  A run of one line needs none: it is
+drawn whole or between two of its stations, at its own kilometres.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,14 +12,21 @@ import numpy as np
 import xarray as xr
 
 from tpss.errors import ResultError, suggest
+from tpss.model.contact_line import stretches_of
+from tpss.model.supply import CONTACT_LINE, layouts_of
+from tpss.report.contact_line import phasors_at
 from tpss.report.sampling import Floats
-from tpss.results.places import LINE, lines_of, train_lines
+from tpss.results.places import LINE, lines_of, train_lines, train_tracks
 from tpss.results.result import Result
 from tpss.scenario.routes import Hop, NoWayError, find_way, hops_of
 from tpss.scenario.scenario import Scenario
 
 LANDMARK = "landmark"
 """Coordinate with the names of the stations along a corridor."""
+
+
+ALONG = "along"
+"""Attribute of a dataset that is seen along a corridor: where that begins, changes lines and ends."""
 
 
 class Stretch(NamedTuple):
@@ -80,7 +87,7 @@ def _stretches(stretches: Sequence[Hop]) -> Iterator[Stretch]:
 
 
 def along(result: Result, stations: Sequence[str] = ()) -> Result:
-    """A run as it is seen along a corridor; that of one line as it is.
+    """A run as it is seen along a corridor; that of one line as it is, or between two of its stations.
 
     What is not on the corridor is left out: trains are not there, nodes and feeding stations are none of
     it.
@@ -88,21 +95,68 @@ def along(result: Result, stations: Sequence[str] = ()) -> Result:
     Raises
     ------
     ResultError
-        As `corridor_of`; or stations are given for a run of one line.
+        As `corridor_of`.
     """
-    if LINE not in result.dataset.coords:
-        if stations:
-            raise ResultError("a corridor is chosen among several lines; this run has one")
+    if LINE not in result.dataset.coords and not stations:
         return result
     corridor = corridor_of(result.scenario, stations)
-    data = _with_trains(result.dataset, corridor)
+    if LINE not in result.dataset.coords:
+        corridor = [_in_own_kilometres(corridor)]
+    data = _with_trains(result.dataset, result.scenario, corridor)
     for what in ("node", "station"):
         data = _with_fixed(data, what, result.scenario, corridor)
+    data = _with_ends(data, result, corridor)
     names, places_km = _landmarks(result.scenario, corridor)
     data = data.assign_coords(
         {LANDMARK: names, f"{LANDMARK}_position": (LANDMARK, 1e3 * np.array(places_km))}
     )
-    return replace(result, dataset=data)
+    return replace(
+        result, dataset=data.assign_attrs({ALONG: _in_words(names, places_km, corridor)})
+    )
+
+
+def _in_own_kilometres(corridor: Sequence[Stretch]) -> Stretch:
+    (stretch,) = corridor
+    begin_km, end_km = sorted((stretch.begin_km, stretch.end_km))
+    return Stretch(stretch.line, begin_km, end_km, 1.0, 0.0)
+
+
+def _in_words(names: Sequence[str], places_km: Sequence[float], corridor: Sequence[Stretch]) -> str:
+    ends = [corridor[0].begin_km, *(stretch.end_km for stretch in corridor)]
+    stretches = [corridor[0], *corridor]
+    at_km = [float(each.along_km(np.array(km))) for each, km in zip(stretches, ends, strict=True)]
+    return " – ".join(names[int(np.abs(np.array(places_km) - km).argmin())] for km in at_km)
+
+
+def on_line(result: Result, name: str, track: int = 1) -> xr.Dataset:
+    """Trains and nodes of a run that are on one of its lines, at its kilometres.
+
+    Where its tracks are not tied to each other everywhere, only those of one track.
+    """
+    line = result.scenario.lines_by_name[name]
+    whole = [Stretch(name, line.begins_at_km, line.end_km, 1.0, 0.0)]
+    data = result.dataset
+    if LINE in data.coords:
+        data = _with_trains(data, result.scenario, whole)
+        data = _with_fixed(data, "node", result.scenario, whole)
+    apart = separate_tracks(result.scenario, name)
+    if not apart:
+        return data
+    others = [f", track {k}" for k in range(1, line.most_tracks + 1) if k != track]
+    own = [not any(other in node for other in others) for node in data.node.to_numpy().astype(str)]
+    km, tracks = data.position.to_numpy() / 1e3, train_tracks(data)
+    beside = np.zeros(km.shape, dtype=bool)
+    for begin_km, end_km in apart:
+        beside |= (km >= begin_km) & (km <= end_km) & (tracks != track)
+    there = data.pantograph_voltage.where(~beside)
+    return data.isel(node=np.flatnonzero(own)).assign(pantograph_voltage=there)
+
+
+def separate_tracks(scenario: Scenario, name: str) -> list[tuple[float, float]]:
+    """Ends of the stretches of a line where each track has a contact line of its own. [km]"""
+    layout = next(each for each in layouts_of(scenario.lines_by_name) if each.name == name)
+    stretches = stretches_of(layout, scenario.supply)
+    return [(each.begin_km, each.end_km) for each in stretches if each.conductors > 1]
 
 
 def is_corridor(result: Result) -> bool:
@@ -133,7 +187,7 @@ def span_km(result: Result) -> tuple[float, float]:
 def gradients_along(result: Result) -> list[tuple[float, float]]:
     """Places from which gradients hold, along a corridor or a line, and the gradients. [km], [‰]"""
     lines = result.scenario.lines_by_name
-    if not is_corridor(result):
+    if len(lines) == 1:
         return [(each.from_km, each.permille) for each in result.scenario.only_line.gradients]
     names = list(landmarks(result))
     profile: list[tuple[float, float]] = []
@@ -157,8 +211,8 @@ def _landmarks(scenario: Scenario, corridor: Sequence[Stretch]) -> tuple[list[st
     return ordered, [found[name] for name in ordered]
 
 
-def _with_trains(data: xr.Dataset, corridor: Sequence[Stretch]) -> xr.Dataset:
-    names, line = data[LINE].to_numpy().astype(str).tolist(), train_lines(data)
+def _with_trains(data: xr.Dataset, scenario: Scenario, corridor: Sequence[Stretch]) -> xr.Dataset:
+    names, line = list(scenario.lines_by_name), train_lines(data)
     places_km = data.position.to_numpy() / 1e3
     along_km = np.full(places_km.shape, np.nan)
     for stretch in corridor:
@@ -176,15 +230,17 @@ def _with_fixed(
     data: xr.Dataset, what: str, scenario: Scenario, corridor: Sequence[Stretch]
 ) -> xr.Dataset:
     """The nodes or stations of a corridor, those of other lines at a station where lines meet too."""
-    names = data[LINE].to_numpy().astype(str)
+    names = np.array(list(scenario.lines_by_name))
     owner = names[lines_of(data, what)]
     places_km = data[f"{what}_position"].to_numpy() / 1e3
     along_km = np.full(places_km.shape, np.nan)
     for stretch in corridor:
+        # Where lines meet that are not tied, each has a node of its own.
+        own = set(places_km[owner == stretch.line].tolist()) if what == "node" else set()
         for line, shift in _shared(scenario, stretch.line):
             here = owner == line
             if line != stretch.line:
-                here &= np.isin(places_km, list(shift))
+                here &= np.isin(places_km, [km for km, there in shift.items() if there not in own])
             own_km = np.array([shift.get(km, km) for km in places_km[here].tolist()])
             along_km[here] = np.where(
                 np.isfinite(along_km[here]), along_km[here], stretch.along_km(own_km)
@@ -195,6 +251,35 @@ def _with_fixed(
     return data.isel({what: order}).assign_coords(
         {f"{what}_position": (what, 1e3 * along_km[order], attributes)}
     )
+
+
+def _with_ends(data: xr.Dataset, result: Result, corridor: Sequence[Stretch]) -> xr.Dataset:
+    """The view with a node at each of its ends, between the nodes and trains beside it on its line."""
+    for stretch, end_km in (
+        (corridor[0], corridor[0].begin_km),
+        (corridor[-1], corridor[-1].end_km),
+    ):
+        along_m = 1e3 * float(stretch.along_km(np.array(end_km)))
+        on_contact_line = data.node_kind.to_numpy() == CONTACT_LINE
+        if (np.abs(data.node_position.to_numpy()[on_contact_line] - along_m) < 1.0).any():
+            continue
+        volts = phasors_at(on_line(result, stretch.line), 1e3 * end_km)
+        like = data.isel(node=np.flatnonzero(on_contact_line)[:1])
+        if not like.sizes["node"]:  # of a stretch without any, all are between nodes
+            like = result.dataset.isel(node=[0])
+        end = like.assign(
+            node_voltage=(like.node_voltage.dims, np.abs(volts)[:, None], like.node_voltage.attrs),
+            node_angle=(like.node_angle.dims, np.angle(volts)[:, None], like.node_angle.attrs),
+        ).assign_coords(
+            node=[f"{CONTACT_LINE} at {along_m / 1e3:g} km"], node_position=("node", [along_m])
+        )
+        of_nodes = [name for name, each in data.data_vars.items() if "node" in each.dims]
+        joined = xr.concat(
+            [data[of_nodes], end[of_nodes]], dim="node", coords="minimal", compat="override"
+        )
+        data = data.drop_dims("node").assign(joined.data_vars)
+    order = np.argsort(data.node_position.to_numpy(), kind="stable")
+    return data.isel(node=order)
 
 
 def _shared(scenario: Scenario, line: str) -> Iterator[tuple[str, dict[float, float]]]:

@@ -22,18 +22,21 @@ from tpss.files.whole import write_file
 from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
-from tpss.report.corridor import along, gradients_along
+from tpss.report.corridor import ALONG, along, gradients_along, is_corridor
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
+from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
+from tpss.report.moving import network_moving
 from tpss.report.render.interactive import render
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import REPORT_MARK, is_report
 from tpss.results.notes import notes
+from tpss.results.places import LINE
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
 from tpss.units import kilometres
@@ -57,7 +60,11 @@ OF_A_JOURNEY = ("speed [km/h]", "voltage [kV]", "gradient [‰]")
 
 
 def write_report(
-    results: Result | Mapping[str, Result], file: str | Path, *, force: bool = False
+    results: Result | Mapping[str, Result],
+    file: str | Path,
+    *,
+    force: bool = False,
+    corridor: Sequence[str] = (),
 ) -> Path:
     """Write a report of one result, or a comparison of several, into one HTML file.
 
@@ -69,6 +76,9 @@ def write_report(
         File to write.
     force : bool
         Whether a report that is there may be replaced.
+    corridor : sequence of str
+        Stations of a network over which plots along a line are drawn, by default those on the way of the
+        first service; or two stations of a single line.
 
     Returns
     -------
@@ -78,11 +88,13 @@ def write_report(
     Raises
     ------
     ResultError
-        The file exists, or cannot be written.
+        The file exists, or cannot be written; or there is no such corridor.
     """
     place = Path(file)
     check_target(place, force)
-    text = report(results) if isinstance(results, Result) else comparison(results)
+    text = (
+        report(results, corridor) if isinstance(results, Result) else comparison(results, corridor)
+    )
     with explained(place):
         write_file(place, text.encode())
     return place
@@ -93,14 +105,14 @@ def check_target(file: Path, force: bool) -> None:
     refuse_to_replace(file, force, "a report", is_report)
 
 
-def report(result: Result) -> str:
+def report(result: Result, corridor: Sequence[str] = ()) -> str:
     """Page about one result.
 
     A result whose audit failed is shown without its figures: they cannot be trusted.
     """
-    trusted, seen = bool(result.audit["passed"]), along(result)
+    trusted, seen = bool(result.audit["passed"]), along(result, corridor)
     voltage = line_voltage(seen.dataset) if trusted else None
-    figures, data = _figures(seen, voltage) if voltage else ({}, {})
+    figures, data = _figures(result, seen, voltage) if voltage else ({}, {})
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stops", "Times at stops", result.stops),
@@ -123,13 +135,13 @@ def report(result: Result) -> str:
     )
 
 
-def comparison(results: Mapping[str, Result]) -> str:
+def comparison(results: Mapping[str, Result], corridor: Sequence[str] = ()) -> str:
     """Page that compares results side by side; curves of results whose audit failed are left out."""
     trusted = {label: result for label, result in results.items() if result.audit["passed"]}
-    seen = {label: along(result) for label, result in trusted.items()}
+    seen = {label: along(result, corridor) for label, result in trusted.items()}
     voltages = {label: line_voltage(result.dataset) for label, result in seen.items()}
     drawn = {label: (seen[label], line) for label, line in voltages.items() if line is not None}
-    runs = {label: result for label, (result, _) in drawn.items()}
+    runs = {label: trusted[label] for label in drawn}
     figures, data = {}, {}
     if drawn:
         figures = {"envelopes": render(envelopes(drawn, with_trains=True), 460), **_over_time(runs)}
@@ -138,7 +150,7 @@ def comparison(results: Mapping[str, Result]) -> str:
         }
         if driven:
             figures["journey"] = render(journey(driven, shown=OF_A_JOURNEY), 560)
-        data = _moving(runs, "envelopes")
+        data = _moving({label: seen[label] for label in drawn}, runs, "envelopes")
     left_out = [f"{label}: nothing to draw" for label in results if label not in drawn]
     return _page(
         title=" / ".join(results),
@@ -152,50 +164,68 @@ def comparison(results: Mapping[str, Result]) -> str:
     )
 
 
-def _figures(result: Result, voltage: LineVoltage) -> tuple[dict[str, Figure], dict[str, Any]]:
-    """Figures of a result, and what the page needs to move trains and to show any journey."""
+def _figures(
+    result: Result, seen: Result, voltage: LineVoltage
+) -> tuple[dict[str, Figure], dict[str, Any]]:
+    """Figures of a result, some as it is seen, and what the page needs to move trains."""
     figures = {
-        "moment": render(envelopes({"": (result, voltage)}, with_trains=True), 460),
-        "graph": render(time_distance(result, voltage), 520),
+        "moment": render(envelopes({"": (seen, voltage)}, with_trains=True), 460),
+        "graph": render(time_distance(seen, voltage), 520),
         **_over_time({"": result}),
     }
-    chosen = chosen_train(result) if seen_trains(result) else None
-    if chosen is not None:
+    data = _moving({"": seen}, {"": result}, "moment")
+    if data["choices"]:
+        chosen = data["runs"][0]["chosen"]
         figures["journey"] = render(journey({chosen: result}, shown=OF_A_JOURNEY), 560)
-    return figures, {**_moving({"": result}, "moment"), "chosen": chosen}
+    if LINE in result.dataset.coords:
+        plan = network(result, with_trains=True)
+        figures["network"] = render(plan, 140 + round(120 * rows_of(plan)))
+    return figures, data
 
 
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     return {key: render(describe(runs), height) for key, (describe, height) in OVER_TIME.items()}
 
 
-def _moving(runs: Mapping[str, Result], plot: str) -> dict[str, Any]:
-    """Data to move the trains of all runs in a plot; time advances in the finest steps."""
-    most = sampling.MOST_OF_TRAINS // len(runs)
-    moving, thinned = [], False
-    for label, result in runs.items():
-        samples = sampling.sample_trains(result.dataset, most)
-        thinned = thinned or samples.thinned
-        limits = result.scenario.standards.voltage_limits
-        moving.append(
-            {
-                "label": label,
-                "step_min": result.dataset.attrs["time_step_s"] / 60.0,
-                "steps": result.dataset.sizes["time"] - 1,
-                "trains": samples.trains,
-                "low_kv": limits.umin1_kv,
-                "high_kv": limits.umax1_kv,
-                "gradients": [list(each) for each in gradients_along(result)],
-            }
-        )
+def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) -> dict[str, Any]:
+    """Data to move the trains of all runs in a plot, and to show the journey of any.
+
+    Time advances in the finest steps.
+    """
+    most = sampling.MOST_OF_TRAINS // len(seen)
+    moving = [_moving_run(label, run, whole[label], most) for label, run in seen.items()]
     finest = min(run["step_min"] for run in moving)
+    common = [{train["name"] for train in (run["network"] or run)["trains"]} for run in moving]
+    names = [train["name"] for train in (moving[0]["network"] or moving[0])["trains"]]
     return {
         "plot": plot,
         "step_min": finest,
         "steps": max(round(run["steps"] * run["step_min"] / finest) for run in moving),
         "runs": moving,
-        "chosen": None,
-        "thinned": thinned,
+        "choices": [name for name in names if all(name in each for each in common)],
+        "thinned": any(run["thinned"] for run in moving),
+        "corridor": next(iter(seen.values())).dataset.attrs.get(ALONG, ""),
+    }
+
+
+def _moving_run(label: str, seen: Result, whole: Result, most: int) -> dict[str, Any]:
+    """Data of a run: trains as they are seen along a line, and those of a network on all lines."""
+    several = LINE in whole.dataset.coords  # whose trains are in the page twice
+    share = most // 2 if several else most
+    network = network_moving(whole, share) if several else None
+    samples = sampling.sample_trains(seen.dataset, share, with_gaps=is_corridor(seen))
+    limits = whole.scenario.standards.voltage_limits
+    return {
+        "label": label,
+        "step_min": whole.dataset.attrs["time_step_s"] / 60.0,
+        "steps": whole.dataset.sizes["time"] - 1,
+        "trains": samples.trains,
+        "network": network,
+        "chosen": chosen_train(whole) if seen_trains(whole) else None,
+        "thinned": samples.thinned or bool(network and network["thinned"]),
+        "low_kv": limits.umin1_kv,
+        "high_kv": limits.umax1_kv,
+        "gradients": [list(each) for each in gradients_along(seen)],
     }
 
 

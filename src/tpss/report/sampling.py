@@ -63,7 +63,8 @@ class TrainSamples:
     ----------
     trains : list of dict
         For each train its ``name`` and, over the same instants, ``step`` (number of the time step),
-        ``km``, ``kmh`` and ``kv``; the voltage is None where none is recorded.
+        ``km``, ``kmh`` and ``kv``; the voltage is None where none is recorded, and all where a train
+        is off the line for a while.
     thinned : bool
         Whether instants were left out.
     """
@@ -72,8 +73,13 @@ class TrainSamples:
     thinned: bool
 
 
-def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> TrainSamples:
-    """Samples of all trains of a run that were on the line, about `most_of_all` in total."""
+def sample_trains(
+    dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS, *, with_gaps: bool = False
+) -> TrainSamples:
+    """Samples of all trains of a run that were on the line, about `most_of_all` in total.
+
+    Along a corridor, which a train may leave and come back to, these gaps may be kept.
+    """
     km, kmh = dataset.position.to_numpy() / 1e3, dataset.speed.to_numpy() * 3.6
     kv = dataset.pantograph_voltage.to_numpy() / 1e3
     on_line = np.isfinite(km)
@@ -84,17 +90,26 @@ def sample_trains(dataset: xr.Dataset, most_of_all: int = MOST_OF_TRAINS) -> Tra
         steps = np.flatnonzero(on_line[:, i])
         few = steps[kept((kmh[steps, i], kv[steps, i]), most)]
         thinned = thinned or len(few) < len(steps)
+        if with_gaps:
+            few = _with_gaps(few, steps)
         trains.append(
             {
                 "name": str(dataset.train.to_numpy()[i]),
                 "step": few.tolist(),
-                "km": _rounded(km[few, i], 3),
-                "kmh": _rounded(kmh[few, i], 1),
-                "kv": _rounded(kv[few, i], 3),
+                "km": rounded(km[few, i], 3),
+                "kmh": rounded(kmh[few, i], 1),
+                "kv": rounded(kv[few, i], 3),
             }
         )
     return TrainSamples(trains, thinned)
 
 
-def _rounded(values: Floats, digits: int) -> list[float | None]:
+def _with_gaps(few: Indices, steps: Indices) -> Indices:
+    """Few of a train's steps, with the ends of each way, and one where it is away before the next."""
+    ends = np.flatnonzero(np.diff(steps) > 1)
+    return np.unique(np.concatenate([few, steps[ends], steps[ends] + 1, steps[ends + 1]]))
+
+
+def rounded(values: Floats, digits: int) -> list[float | None]:
+    """Values with so many decimals; None for NaN."""
     return [None if np.isnan(value) else round(value, digits) for value in values.tolist()]

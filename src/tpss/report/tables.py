@@ -8,8 +8,10 @@ from typing import Any
 import pandas as pd
 
 from tpss import units
+from tpss.results.places import LINE
 from tpss.results.result import Result
 from tpss.scenario.differences import differences
+from tpss.units import on_line
 
 MOST_ROWS = 1_000
 """Rows of a table; the saved result has them all."""
@@ -130,8 +132,9 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ("share of losses", "%", 100.0 * lost / total if total else None),
         ("lowest voltage", "kV", lowest.get("voltage_kv")),
         ("train with lowest voltage", "", lowest.get("train")),
-        ("place of lowest voltage", "km", lowest.get("position_km")),
+        _place("place of lowest voltage", lowest),
         ("time of lowest voltage", "min", lowest.get("time_min")),
+        *_highest_loading(stations),
         *(
             (f"mean useful voltage, {zone}", "kV", float(mean_kv))
             for zone, mean_kv in zip(zones.zone, zones.mean_useful_kv, strict=True)
@@ -142,6 +145,27 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
             (f"peak loading of {name}", "%", 100.0 * float(loading))
             for name, loading in zip(stations.station, stations.peak_loading, strict=True)
         ),
+    ]
+
+
+def _place(name: str, found: Mapping[str, Any]) -> tuple[str, str, Any]:
+    """A place as a figure: its kilometre, or where there are several lines, in words."""
+    if LINE not in found:
+        return name, "km", found.get("position_km")
+    return name, "", on_line(str(found[LINE]), f"km {found['position_km']:.2f}")
+
+
+def _highest_loading(stations: pd.DataFrame) -> list[tuple[str, str, Any]]:
+    """The highest peak loading, where there are several stations, with the station and its place."""
+    loading = stations.peak_loading
+    if len(stations) < 2 or loading.isna().all():
+        return []
+    ordered = stations.sort_values("peak_loading", ascending=False)
+    worst = {str(name): value for name, value in ordered.iloc[0].items()}
+    return [
+        ("highest peak loading", "%", 100.0 * worst["peak_loading"]),
+        ("station with highest peak loading", "", worst["station"]),
+        _place("place of highest peak loading", worst),
     ]
 
 

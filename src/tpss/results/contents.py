@@ -40,7 +40,8 @@ FIGURES = "figures"
 """Folder of figures, within that of the result."""
 
 FIGURE_NAMES = (
-    "time-distance", "journey", "voltage", "train-voltage", "stations", "converters", "energy",
+    "network", "time-distance", "journey", "voltage", "train-voltage",
+    "stations", "converters", "energy",
     "effort",
 )  # fmt: skip
 

@@ -6,13 +6,14 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from tpss.model.routes import routes_of
+from tpss.model.routes import Route, routes_of
 from tpss.report.drawings.parts import POSITION, TIME, Curve, Drawing, Panel
 from tpss.report.gradients import inclination
 from tpss.report.sampling import Floats
 from tpss.report.trains import chosen_train
 from tpss.results.places import LINE
 from tpss.results.result import Result
+from tpss.scenario.scenario import Scenario
 
 PRINTED = {
     "gradient [‰]": "inclination [‰]",
@@ -72,9 +73,13 @@ def _time_or_place(result: Result, data: xr.Dataset, against: str) -> Floats:
 
 def _rise_ahead(result: Result, data: xr.Dataset) -> Floats:
     """Gradient of the line where a train is, as it runs. [1]"""
-    scenario, along_m = result.scenario, data.route_position.to_numpy()
-    services = [entry.name for entry in scenario.traffic]
-    route = routes_of(scenario)[services.index(str(data.service.values))]
+    services = [entry.name for entry in result.scenario.traffic]
+    route = routes_of(result.scenario)[services.index(str(data.service.values))]
+    return rise_ahead(result.scenario, route, data.route_position.to_numpy())
+
+
+def rise_ahead(scenario: Scenario, route: Route, along_m: Floats) -> Floats:
+    """Gradient of the lines at places along a route [m], as trains meet it. [1]"""
     rise = np.full(along_m.shape, np.nan)
     for course in route.courses:  # each as far as the next one begins
         here = along_m >= course.from_m

@@ -17,6 +17,10 @@ SOLID, DASHED, DASH_DOTTED, DOTTED = range(4)
 """Line styles, so that curves differ in black and white too."""
 
 
+DOT, RING, SQUARE, TRIANGLE, DIAMOND, CROSS, NO_SYMBOL = range(7)
+"""Symbols of places; without one a place has only its label."""
+
+
 @dataclass(frozen=True)
 class Colours:
     """Values that are shown as colours, from a low one, dark, to a high one."""
@@ -25,6 +29,8 @@ class Colours:
     label: str
     low: float
     high: float
+    explained: bool = True
+    """Whether a scale beside the panel says which colour is which value."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,7 @@ class Curve:
     """A line through points, which NaN interrupts, or points alone if they are not joined.
 
     Values that are held stay constant until the next instant, rather than change linearly.  Points may
-    have words, which are shown on hovering.
+    have words, which are shown on hovering; the width of coloured ones is that of the points.
     """
 
     x: Floats
@@ -90,7 +96,22 @@ class Bar:
     colour: str
 
 
-Item = Curve | Band | Mark | Map | Bar
+@dataclass(frozen=True)
+class Places:
+    """Places with a symbol, with words on hovering, and labels above, slanted, or below, level."""
+
+    x: Floats
+    y: Floats
+    name: str
+    symbol: int
+    colour: str
+    words: Sequence[str]
+    labels: Sequence[str] = ()
+    above: bool = True
+    hollow: bool = False
+
+
+Item = Curve | Band | Mark | Map | Bar | Places
 
 
 @dataclass(frozen=True)
@@ -98,7 +119,7 @@ class Panel:
     """What is drawn over one vertical axis, in that order.
 
     The axis has a span, or begins at 0, or fits what is drawn; its ticks may have a fixed step.  Of
-    bars it carries the names of their rows.
+    bars it carries the names of their rows; of a plan it is bare, as nothing is counted along it.
     """
 
     label: str
@@ -108,6 +129,7 @@ class Panel:
     from_zero: bool = False
     tick: float | None = None
     rows: Sequence[str] = ()
+    bare: bool = False
 
 
 @dataclass(frozen=True)

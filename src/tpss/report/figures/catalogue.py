@@ -6,10 +6,11 @@ from typing import Literal
 from matplotlib.figure import Figure
 
 from tpss.errors import ResultError, suggest
-from tpss.report.corridor import along
+from tpss.report.corridor import ALONG, along
 from tpss.report.drawings.effort import effort
 from tpss.report.drawings.energy import energy_flow
 from tpss.report.drawings.journey import journey
+from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
@@ -25,6 +26,7 @@ Against = Literal["time", "distance"]
 Describe = Callable[[Result, str | None, Against], Drawing]
 
 FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
+    "network": ("run", lambda run, *_: network(run)),
     "time-distance": ("trains", lambda run, *_: time_distance(run)),
     "journey": ("train", lambda run, train, against: journey({"": run}, train, against)),
     "voltage": ("run", lambda run, *_: voltage_envelope(run)),
@@ -35,6 +37,9 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }
 """Figures by their names: what they need, and the function that describes them."""
+
+ALONG_A_CORRIDOR = ("time-distance", "journey", "voltage", "train-voltage")
+"""Figures of a network that are drawn along a corridor; a journey only if one is chosen."""
 
 OF_A_TRAIN = [name for name, (of, _) in FIGURES.items() if of == "train"]
 """Figures for which a train can be chosen."""
@@ -65,7 +70,8 @@ def draw(
     against : {"time", "distance"}
         Quantity of the horizontal axis of a journey.
     corridor : sequence of str
-        Stations of a network over which it is drawn; by default those on the way of the first service.
+        Stations of a network over which a figure along a line is drawn, by default those on the way of
+        the first service; or two stations of a single line.
 
     Raises
     ------
@@ -83,9 +89,12 @@ def draw(
     if result.dataset.sizes["time"] < 2:
         raise NothingToDrawError("no time step was simulated")
     of, describe = FIGURES[name]
-    chosen = None if train is None and of == "run" else chosen_train(result, train)
-    figure = render(describe(along(result, corridor), chosen, against))
-    title = result.scenario.name + (f": {as_text(chosen)}" if of == "train" else "")
+    follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
+    seen = along(result, corridor) if follows else result
+    chosen = None if train is None and of == "run" else chosen_train(seen, train)
+    figure = render(describe(seen, chosen, against))
+    told = [chosen if of == "train" else None, seen.dataset.attrs.get(ALONG)]
+    title = ": ".join([result.scenario.name, *(as_text(each) for each in told if each)])
     figure.suptitle(title, fontsize="large")
     if result.status in ENDED:
         title += f"\n{ENDED[result.status]} at {float(result.dataset.time[-1]) / 60.0:.1f} min"

@@ -20,6 +20,10 @@ DASHES = ("solid", "dash", "dashdot", "dot")
 SYMBOLS = ("circle", "square", "diamond", "star")
 """Symbols of points by the number of their colour."""
 
+OF_PLACES = ("circle", "circle", "square", "triangle-down", "diamond", "x", "circle")
+SIZES = (6, 11, 13, 10, 10, 11, 6)
+"""Symbols of places by their numbers, and their sizes. [px]"""
+
 LAYOUT = {
     "template": None,
     "margin": {"l": 58, "r": 16, "t": 40, "b": 48},
@@ -49,6 +53,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
             title={"text": panel.label}, range=panel.span, dtick=panel.tick, row=row, col=1,
             rangemode="tozero" if panel.from_zero else "normal",
         )  # fmt: skip
+        if panel.bare:
+            figure.update_yaxes(visible=False, row=row, col=1)
         if panel.rows:
             names = {"tickvals": [*range(len(panel.rows))], "ticktext": panel.rows}
             figure.update_yaxes(names, autorange="reversed", row=row, col=1)
@@ -57,14 +63,21 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
             if isinstance(item, parts.Mark):
                 _add_mark(figure, row, item)
                 continue
-            trace = _trace(item, len(curves)).update(hovertemplate=_hover(item, *units, alone))
+            said = _hover(item, *units, alone, panel.bare)
+            trace = _trace(item, len(curves)).update(hovertemplate=said)
+            if panel.bare and said is None:
+                trace.hoverinfo = "skip"
             trace.showlegend = row == 1 and bool(trace.name)
             figure.add_trace(trace, row=row, col=1)
+            if isinstance(item, parts.Places):
+                _add_labels(figure, row, item)
     named = sum(trace.showlegend for trace in figure.data)
     return figure.update_layout(showlegend=named > 1 or count > 1)
 
 
-def _trace(item: parts.Curve | parts.Band | parts.Map | parts.Bar, curves: int) -> Any:
+def _trace(
+    item: parts.Curve | parts.Band | parts.Map | parts.Bar | parts.Places, curves: int
+) -> Any:
     """A trace that shows an item of a figure of so many curves."""
     match item:
         case parts.Curve():
@@ -84,6 +97,13 @@ def _trace(item: parts.Curve | parts.Band | parts.Map | parts.Bar, curves: int) 
             return go.Bar(
                 part, name=item.name, text=item.words, textangle=0, width=0.62, marker=look
             )
+        case parts.Places():
+            fill = "#FFFFFF" if item.hollow else item.colour
+            look = {"symbol": OF_PLACES[item.symbol], "size": SIZES[item.symbol], "color": fill}
+            look["line"] = {"color": item.colour, "width": 2}
+            look["opacity"] = float(item.symbol != parts.NO_SYMBOL)
+            place = {"x": _single(item.x), "y": _single(item.y), "text": list(item.words)}
+            return go.Scatter(place, name=item.name, mode="markers", marker=look)
 
 
 def _curve(item: parts.Curve, few: Indices) -> Any:
@@ -99,7 +119,9 @@ def _curve(item: parts.Curve, few: Indices) -> Any:
     if item.colours:  # plotly draws a line in one colour only
         values = _single(item.colours.values[few])
         scale = _scaled(item.colours, LINE_SCALE, "c")
-        return trace.update(marker={"size": 5, "color": values, **scale})
+        size = 5.0 if item.joined else 5.0 * item.width
+        edge = {"color": "#1a1a1a", "width": 1.5 if size > 5.0 else 0.0}
+        return trace.update(marker={"size": size, "color": values, "line": edge, **scale})
     if item.joined:
         look |= {"dash": DASHES[item.dash % len(DASHES)], "shape": "hv" if item.held else "linear"}
         return trace.update(line={"width": 1.8 * item.width, **look})
@@ -119,10 +141,14 @@ def _few(item: parts.Curve, curves: int) -> Indices:
     return np.concatenate([np.empty(0, dtype=np.int64), *few])[:-1]
 
 
-def _hover(item: parts.Item, x_unit: str, y_unit: str, alone: bool) -> str | None:
-    """What is said at a point of an item, as a template of plotly's."""
+def _hover(item: parts.Item, x_unit: str, y_unit: str, alone: bool, bare: bool) -> str | None:
+    """What is said at a point of an item, as a template of plotly's; of a bare panel no coordinates."""
     at, end = f"%{{x:.1f}} {x_unit}, %{{y:.1f}} {y_unit}", "<extra></extra>"
     match item:
+        case parts.Curve(words=[_, *_]) | parts.Places() if bare:
+            return f"%{{text}}{end}"
+        case parts.Curve() if bare:
+            return None
         case parts.Curve(words=[_, *_]):
             return f"%{{text}}<br>{at}{end}" if item.joined else f"%{{text}}{end}"
         case parts.Curve():
@@ -144,10 +170,24 @@ def _add_mark(figure: go.Figure, row: int, mark: parts.Mark) -> None:
     (figure.add_vline if mark.upright else figure.add_hline)(mark.value, **look)
 
 
+def _add_labels(figure: go.Figure, row: int, places: parts.Places) -> None:
+    beside: Any = {"xanchor": "center", "yanchor": "top", "yshift": -8}
+    if places.above:
+        # Turned about its middle: the longer a label, the farther its middle is from its place.
+        beside = {"xanchor": "left", "yanchor": "bottom", "textangle": -35, "yshift": 5}
+    for x, y, words in zip(places.x.tolist(), places.y.tolist(), places.labels, strict=False):
+        if words:
+            text = words.replace("\n", "<br>")
+            beside |= {"text": text, "showarrow": False, "font": {"size": 11}}
+            figure.add_annotation(x=x, y=y, row=row, col=1, **beside)
+
+
 def _scaled(colours: parts.Colours, stops: Stops, letter: str) -> Any:
     """Scale of colours of a trace, whose limits plotly calls by the letter of what is coloured."""
     bar = {"title": {"text": colours.label, "side": "right"}, "thickness": 12, "len": 0.9}
     limits = {f"{letter}min": colours.low, f"{letter}max": colours.high}
+    if not colours.explained:
+        return {"colorscale": stops, "showscale": False, **limits}
     return {"colorscale": stops, "colorbar": bar, **limits}
 
 

@@ -14,12 +14,29 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from tpss.report.drawings.parts import Band, Bar, Colours, Curve, Drawing, Item, Map, Mark, Panel
+from tpss.report.drawings.parts import (
+    Band,
+    Bar,
+    Colours,
+    Curve,
+    Drawing,
+    Item,
+    Map,
+    Mark,
+    Panel,
+    Places,
+)
 from tpss.report.palette import AREA_SCALE, LINE_SCALE, STRONG_GREY, Stops
 from tpss.report.palette import colour as colour
 
 LINES = ("-", "--", "-.", ":")
 """Line styles, so that curves differ in black and white too."""
+
+SYMBOLS = ("o", "o", "s", "v", "D", "X", "")
+"""Symbols of places by their numbers."""
+
+SIZES = (3.5, 7.0, 8.0, 6.0, 5.0, 6.0, 0.0)
+"""Sizes of these. [pt]"""
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -76,6 +93,9 @@ def _set_vertical_axis(panel: Panel, axes: Axes) -> None:
         axes.set_ylim(len(panel.rows) - 0.5, -0.5)
         axes.tick_params(axis="y", length=0)
         axes.grid(visible=False, axis="y")
+    if panel.bare:
+        axes.set_yticks([])
+        axes.spines["left"].set_visible(False)
 
 
 def _draw(item: Item, axes: Axes) -> None:
@@ -98,6 +118,8 @@ def _draw(item: Item, axes: Axes) -> None:
             _add_scale(axes, drawn, item.colours)
         case Bar():
             _draw_bar(item, axes)
+        case Places():
+            _draw_places(item, axes)
 
 
 def _draw_coloured(item: Curve, colours: Colours, axes: Axes) -> None:
@@ -110,7 +132,9 @@ def _draw_coloured(item: Curve, colours: Colours, axes: Axes) -> None:
         look |= {"array": colours.values[:-1][whole], "lw": 1.2 * item.width, "capstyle": "round"}
         drawn = axes.add_collection(LineCollection(list(pieces[whole]), **look))
     else:
-        drawn = axes.scatter(item.x, item.y, c=colours.values, s=12, zorder=3, **look)
+        drawn = axes.scatter(
+            item.x, item.y, c=colours.values, s=12 * item.width**2, zorder=3, **look
+        )
     _add_scale(axes, drawn, colours)
 
 
@@ -140,12 +164,27 @@ def _draw_bar(item: Bar, axes: Axes) -> None:
     axes.text(item.start + item.length / 2.0, item.row, item.words, **look)
 
 
+def _draw_places(item: Places, axes: Axes) -> None:
+    look: Any = {"marker": SYMBOLS[item.symbol], "ms": SIZES[item.symbol], "mec": item.colour}
+    look |= {"mfc": "white" if item.hollow else item.colour, "ls": "", "zorder": 4}
+    axes.plot(item.x, item.y, label=as_text(item.name), **look)
+    beside: Any = {"xytext": (0, -7), "ha": "center", "va": "top"}
+    if item.above:
+        turned = {"rotation": 35.0, "rotation_mode": "anchor"}
+        beside = {"xytext": (1, 6), "ha": "left", "va": "bottom", **turned}
+    beside |= {"textcoords": "offset points", "fontsize": "small", "annotation_clip": False}
+    for x, y, words in zip(item.x, item.y, item.labels, strict=False):
+        axes.annotate(as_text(words), (x, y), **beside)
+
+
 def _scaled(colours: Colours, stops: Stops) -> Any:
     scale = LinearSegmentedColormap.from_list("values", stops)
     return {"cmap": scale, "norm": Normalize(colours.low, colours.high)}
 
 
 def _add_scale(axes: Axes, drawn: ScalarMappable, colours: Colours) -> None:
+    if not colours.explained:
+        return
     axes.figure.colorbar(drawn, ax=axes, label=colours.label, pad=0.02, aspect=40)
 
 

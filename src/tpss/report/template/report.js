@@ -81,13 +81,16 @@
   }
 
   function trainAt(train, step) {
-    const last = train.step.length - 1;
-    if (step < train.step[0] || step > train.step[last]) return null;
-    const k = sampleAt(train, step), next = Math.min(k + 1, last);
+    if (step < train.step[0] || step > train.step[train.step.length - 1]) return null;
+    const [km, kmh] = [train.km, train.kmh].map((values) => between(train, values, step));
+    return { name: train.name, km, kmh, kv: train.kv[sampleAt(train, step)] };
+  }
+
+  // A value of a train at a step, between its samples.
+  function between(train, values, step) {
+    const k = sampleAt(train, step), next = Math.min(k + 1, train.step.length - 1);
     const gap = train.step[next] - train.step[k];
-    const part = gap ? (step - train.step[k]) / gap : 0;
-    const between = (values) => values[k] + part * (values[next] - values[k]);
-    return { name: train.name, km: between(train.km), kmh: between(train.kmh), kv: train.kv[k] };
+    return values[k] + (gap ? (step - train.step[k]) / gap : 0) * (values[next] - values[k]);
   }
 
   const shown = (colour) => (isDark && DARK[colour]) || colour;
@@ -99,10 +102,12 @@
     const beyond = there.map((t) => t.kv < each.low_kv || t.kv > each.high_kv);
     const label = (t) =>
       `${t.name}<br>${t.km.toFixed(2)} km, ${t.kmh.toFixed(1)} km/h<br>${t.kv.toFixed(2)} kV`;
-    const lowest = there.reduce((a, b) => (a && a.kv <= b.kv ? a : b), null);
-    const said = !lowest ? "No train is on the line." :
-      `${there.length} train${there.length > 1 ? "s" : ""} on the line; lowest voltage ` +
-      `${lowest.kv.toFixed(2)} kV, ${lowest.name} at ${lowest.km.toFixed(1)} km.`;
+    const everywhere = each.network ? onNetwork(each.network, step) : there;
+    const lowest = everywhere.reduce((a, b) => (a && a.kv <= b.kv ? a : b), null);
+    const count = everywhere.length, where = each.network ? "network" : "line";
+    const said = !lowest ? `No train is on the ${where}.` :
+      `${count} train${count > 1 ? "s" : ""} on the ${where}; lowest voltage ` +
+      `${lowest.kv.toFixed(2)} kV, ${lowest.name} at ${lowest.at || `${lowest.km.toFixed(1)} km`}.`;
     return {
       x: there.map((t) => t.km), y: there.map((t) => t.kv), text: there.map(label),
       symbol: beyond.map((b) => (b ? "triangle-down" : symbol)),
@@ -115,6 +120,40 @@
   const traces = slider ? plots[run.plot].data.length - run.runs.length : 0;
   const marks = slider ? plots[run.plot].data.slice(traces).map(({ marker }) => ({ ...marker })) : [];
 
+  // Where a kilometre of a line lies in the plan; the points of its path rise.
+  function placeOf({ km, x, y }, at) {
+    let k = km.findIndex((there) => there >= at);
+    k = Math.max(1, k < 0 ? km.length - 1 : k);
+    const part = (at - km[k - 1]) / (km[k] - km[k - 1]);
+    return [x[k - 1] + part * (x[k] - x[k - 1]), y[k - 1] + part * (y[k] - y[k - 1])];
+  }
+
+  // Between two lines a train is at the end of the first: both steps of the change are samples.
+  function onNetwork({ lines, trains }, step) {
+    return trains.map((train) => {
+      const now = trainAt(train, step);
+      if (!now || now.kv === null) return null;
+      const k = sampleAt(train, step), line = lines[train.line[k]];
+      const stays = train.line[k] === train.line[Math.min(k + 1, train.line.length - 1)];
+      const km = stays ? now.km : train.km[k];
+      return { ...now, km, line, aside: train.aside[k], at: `${line.name} km ${km.toFixed(1)}` };
+    }).filter((now) => now);
+  }
+
+  function showNetwork(step) {
+    const there = onNetwork(run.runs[0].network, step);
+    const places = there.map(({ line, km, aside }) => {
+      const [x, y] = placeOf(line, km);
+      return [x, y + aside];
+    });
+    const label = ({ name, line, km, kmh, kv }) =>
+      `${name}<br>${line.name} km ${km.toFixed(2)}, ${kmh.toFixed(1)} km/h<br>${kv.toFixed(2)} kV`;
+    Plotly.restyle("network", {
+      x: [places.map(([x]) => x)], y: [places.map(([, y]) => y)], text: [there.map(label)],
+      "marker.color": [there.map(({ kv }) => kv)],
+    }, [plots.network.data.length - 1]);
+  }
+
   function showMoment(step) {
     const minutes = step * run.step_min, single = run.runs.length === 1;
     const moments = run.runs.map((each, k) =>
@@ -124,6 +163,7 @@
       x: all("x"), y: all("y"), text: all("text"),
       "marker.symbol": all("symbol"), "marker.color": all("color"),
     }, moments.map((_, k) => traces + k));
+    if (plots.network) showNetwork(step);
     const text = `${minutes.toFixed(2)} min`;
     element("now").textContent = text;
     slider.setAttribute("aria-valuetext", text);
@@ -135,7 +175,8 @@
     const chosen = chosenTrain();
     if (chosen) {
       const now = trainAt(chosen, step);
-      const x = element("against").value === "time" ? minutes : now && now.km;
+      const place = now && (chosen.way ? between(chosen, chosen.way, step) : now.km);
+      const x = element("against").value === "time" ? minutes : place;
       moveCursor(element("journey"), now ? x : null);
     }
   }
@@ -193,9 +234,17 @@
 
   // ---- the journey of a train
 
+  const trainsOf = (each) => (each.network || each).trains; // all trains that can be chosen
+
+  // The chosen train of a run; with no name, its studied one.
+  function trainOf(each, name) {
+    return trainsOf(each).find((train) => train.name === (name || each.chosen));
+  }
+
+  // Of a single run.
   function chosenTrain() {
     const select = element("train");
-    return select && run.runs[0].trains[select.selectedIndex];
+    return select && run.runs.length === 1 ? trainOf(run.runs[0], select.value) : null;
   }
 
   // -1 of a train that runs towards falling kilometres, which meets gradients with the other sign.
@@ -206,23 +255,37 @@
   function timeAt(km) {
     const train = slider && chosenTrain();
     if (!train) return null;
-    const sign = signOf(train);
-    const k = train.km.findIndex((there) => sign * there >= sign * km - 1e-3);
+    const places = train.way || train.km, sign = train.way ? 1 : signOf(train);
+    const k = places.findIndex((there) => sign * there >= sign * km - 1e-3);
     return k < 0 ? null : train.step[k] * run.step_min;
   }
 
   // The gradient holds from its place to the next one's; before the first, the first.
-  function gradientAt(km) {
-    const profile = run.runs[0].gradients;
+  function gradientAt({ gradients: profile }, km) {
     return profile[Math.max(0, profile.findLastIndex(([from]) => from <= km))][1];
   }
 
+  // Over the way since it began, of a train of a network, or over the line's kilometres.
+  function journeyOf(each, name, against) {
+    const train = trainOf(each, name);
+    const gradient = train.permille || train.km.map((km) => signOf(train) * gradientAt(each, km));
+    return {
+      x: against === "time" ? train.step.map((k) => k * each.step_min) : train.way || train.km,
+      y: [train.kmh, train.kv, gradient],
+      name: run.runs.length === 1 ? train.name : `${each.label}: ${train.name}`,
+    };
+  }
+
   function showJourney() {
-    const train = chosenTrain(), against = element("against").value;
-    const x = against === "time" ? train.step.map((k) => k * run.step_min) : train.km;
+    const name = element("train").value, against = element("against").value;
+    const runs = run.runs.filter((each) => each.chosen !== null);
+    const shown = runs.map((each) => journeyOf(each, name, against));
     const div = element("journey");
-    const y = [train.kmh, train.kv, train.km.map((km) => signOf(train) * gradientAt(km))];
-    Plotly.restyle(div, { x: [x, x, x], y, name: train.name }, [0, 1, 2]);
+    const order = [0, 1, 2].flatMap((panel) => shown.map((each) => [panel, each]));
+    Plotly.restyle(div, {
+      x: order.map(([, each]) => each.x), y: order.map(([panel, each]) => each.y[panel]),
+      name: order.map(([, each]) => each.name),
+    }, order.map((_, k) => k));
     Plotly.relayout(div, {
       meta: against,
       "xaxis3.title.text": against === "time" ? "time [min]" : "position [km]",
