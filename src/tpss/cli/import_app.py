@@ -33,3 +33,23 @@ def ttobench(
     from tpss.cli.imports import import_ttobench
 
     import_ttobench(files, out, force)
+
+
+@app.command(epilog="Example:  tpss import osrd infra.json trains.json --out small")
+def osrd(
+    infra: Annotated[Path, argument(metavar="INFRA", help="Infrastructure (railjson 3).")],
+    out: Annotated[Path, option(help="Folder for the files.")],
+    trains: Annotated[
+        Path | None, argument(metavar="[TRAINS]", help="Train schedules (JSON).")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn an infrastructure of OSRD, and its train schedules, into lines and a timetable.
+
+    Tracks in a row become a line, operational points and switches its stations; lines meet at stations
+    of one name. tracks.csv says which track lies where. Signalling is left out. In scenario.toml the
+    supply and the types of train are assumed, and marked as such.
+    """
+    from tpss.cli.imports import import_osrd
+
+    import_osrd(infra, trains, out, force)

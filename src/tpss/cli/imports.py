@@ -5,8 +5,12 @@ from pathlib import Path
 from rich.console import Console
 
 from tpss.cli.terminal import say
+from tpss.importers.network import ImportedNetwork
+from tpss.importers.network_files import SCENARIO
+from tpss.importers.network_files import files as network_texts
+from tpss.importers.texts import sections, write
 from tpss.importers.ttobench import Imported, read
-from tpss.importers.ttobench_files import files, scenario_name, sections, write
+from tpss.importers.ttobench_files import files, scenario_name
 
 
 def import_ttobench(paths: list[Path], out: Path, force: bool) -> None:
@@ -31,3 +35,23 @@ def _report(part: Imported) -> list[str]:
     for title, items in sections(part):
         lines += [f"  {title}:", *(f"    {item}" for item in items)]
     return lines
+
+
+def import_osrd(infra: Path, trains: Path | None, out: Path, force: bool) -> None:
+    """Write lines, a timetable and a scenario from files of OSRD, and print what was done."""
+    from tpss.importers.osrd import read as read_osrd
+
+    _write_network(read_osrd(infra, trains), out, force)
+
+
+def _write_network(network: ImportedNetwork, out: Path, force: bool) -> None:
+    written = write(network_texts(network), out, force)
+    console = Console()
+    lines = [", ".join(str(path) for path in network.sources)]
+    for title, items in sections(network):
+        lines += [f"  {title}:", *(f"    {item}" for item in items)]
+    say(console, "\n".join(lines))
+    say(console, "Written:")
+    for path in written:
+        say(console, f"  {path}")
+    say(console, f"Complete it, then check it:  tpss check {out / SCENARIO}")

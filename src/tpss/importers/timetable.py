@@ -1,0 +1,94 @@
+"""Timetables as importers write them: a CSV file with a row for each station of a train."""
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+HEADER = ("name", "train", "station", "arrival", "departure", "min_dwell_s", "kind")
+
+MIDNIGHT_S = 86_400
+ROUND_S = 300
+"""The clock of a simulation begins at such a multiple. [s]"""
+
+
+@dataclass(frozen=True)
+class Call:
+    """A train at a station; times are counted from the midnight before the first train. [s]"""
+
+    station: str
+    kind: str = "pass"
+    arrival_s: float | None = None
+    departure_s: float | None = None
+    min_dwell_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Train:
+    """A train of a timetable, with its calls in the order of travel."""
+
+    name: str
+    train_type: str
+    calls: tuple[Call, ...]
+
+    @property
+    def departure_s(self) -> float:
+        """When it departs at its origin. [s]"""
+        return self.calls[0].departure_s or 0.0
+
+
+@dataclass(frozen=True)
+class Headway:
+    """A service every so many minutes; times at its calls are counted from its own departure."""
+
+    train: Train
+    first_s: float
+    last_s: float
+    headway_s: float
+
+
+def clock(time_s: float) -> str:
+    """A time as HH:MM:SS, which goes on beyond 24:00."""
+    whole = round(time_s)
+    return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def csv_text(trains: Iterable[Train], head: str = "") -> str:
+    """Text of a timetable, in the order of departures; the head is comments."""
+    text = io.StringIO()
+    text.write(head)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADER)
+    for train in sorted(trains, key=lambda each: each.departure_s):
+        for i, call in enumerate(train.calls):
+            times = [
+                "" if each is None else clock(each) for each in (call.arrival_s, call.departure_s)
+            ]
+            dwell = "" if call.min_dwell_s is None else f"{call.min_dwell_s:g}"
+            kind_of_train = "" if i else train.train_type
+            writer.writerow([train.name, kind_of_train, call.station, *times, dwell, call.kind])
+    return text.getvalue()
+
+
+def ends_told(calls: Sequence[Call]) -> tuple[Call, ...]:
+    """Calls whose first one is the start and whose last one the end, without what these have not."""
+    first = replace(calls[0], kind="start", arrival_s=None, min_dwell_s=None)
+    last = replace(calls[-1], kind="end", departure_s=None, min_dwell_s=None)
+    return (first, *calls[1:-1], last)
+
+
+def begin_of_day(trains: Sequence[Train]) -> float:
+    """When the clock of a simulation of the trains begins: at the first departure, rounded down. [s]"""
+    return min(train.departure_s for train in trains) // ROUND_S * ROUND_S
+
+
+def end_of_day(trains: Sequence[Train]) -> float:
+    """The last time that is scheduled. [s]"""
+    times = [
+        time
+        for train in trains
+        for call in train.calls
+        for time in (call.arrival_s, call.departure_s)
+        if time is not None
+    ]
+    return max(times)
