@@ -1,5 +1,6 @@
 """Arguments and options of ``tpss import``."""
 
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -53,3 +54,34 @@ def osrd(
     from tpss.cli.imports import import_osrd
 
     import_osrd(infra, trains, out, force)
+
+
+@app.command(
+    epilog="Example:  tpss import gtfs feed.zip --route 'Line 7' --date 2025-03-12 --out line7"
+)
+def gtfs(
+    feed: Annotated[Path, argument(metavar="FEED", help="Zip file or folder of a GTFS feed.")],
+    route: Annotated[
+        list[str],
+        option(metavar="NAME", help="Id, short or long name of a route; repeatable."),
+    ],
+    out: Annotated[Path, option(help="Folder for the files.")],
+    date: Annotated[
+        datetime | None,
+        option(
+            formats=["%Y-%m-%d"],
+            metavar="YYYY-MM-DD",
+            help="Day; by default the first one with the most trips.",
+        ),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn routes of a GTFS feed into lines of stations and a timetable of one day.
+
+    The trip with the most stations becomes a line, what others serve besides further ones. Kilometres
+    are along the shapes of trips, or straight between coordinates. Gradients, speed limits, supply and
+    types of train are assumed, and marked as such. Frequencies become services.
+    """
+    from tpss.cli.imports import import_gtfs
+
+    import_gtfs(feed, route, date.date() if date else None, out, force)

@@ -1,5 +1,6 @@
 """The commands ``tpss import ...``."""
 
+from datetime import date
 from pathlib import Path
 
 from rich.console import Console
@@ -42,6 +43,13 @@ def import_osrd(infra: Path, trains: Path | None, out: Path, force: bool) -> Non
     from tpss.importers.osrd import read as read_osrd
 
     _write_network(read_osrd(infra, trains), out, force)
+
+
+def import_gtfs(feed: Path, routes: list[str], day: date | None, out: Path, force: bool) -> None:
+    """Write lines, a timetable and a scenario from routes of a GTFS feed, and print what was done."""
+    from tpss.importers.gtfs import read as read_gtfs
+
+    _write_network(read_gtfs(feed, routes, day), out, force)
 
 
 def _write_network(network: ImportedNetwork, out: Path, force: bool) -> None:

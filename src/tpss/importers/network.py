@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tpss.importers.quantities import DIGITS
-from tpss.importers.timetable import Headway, Train
+from tpss.importers.timetable import Service, Train
 
 NO_LIMIT_KMH = 500.0
 """Where a format states no limit: the trains' own highest speeds count. [km/h]"""
@@ -71,7 +71,7 @@ class ImportedNetwork:
     format_name: str
     lines: list[NetworkLine]
     trains: list[Train] = field(default_factory=list)
-    headways: list[Headway] = field(default_factory=list)
+    services: list[Service] = field(default_factory=list)
     tracks: list[TrackRange] = field(default_factory=list)
     system: str = ""
     """Electrification system of most of the lines, if it is known."""

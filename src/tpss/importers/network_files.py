@@ -112,7 +112,7 @@ def scenario_text(network: ImportedNetwork) -> str:
     """The scenario: what was imported, and a supply, trains and traffic to be edited."""
     sources = " and ".join(path.name for path in network.sources)
     kinds = {each.train_type: None for each in network.trains}
-    kinds |= {each.train.train_type: None for each in network.headways}
+    kinds |= {each.train.train_type: None for each in network.services}
     return comments(f"Imported from {sources} of {network.format_name}.", network) + (
         _SCENARIO.format(
             name=_text(network.name),
@@ -131,11 +131,11 @@ def scenario_text(network: ImportedNetwork) -> str:
 def _clock_s(network: ImportedNetwork) -> tuple[float, float] | None:
     """When a simulation of the trains begins and ends, after midnight; None without trains."""
     begins = [begin_of_day(network.trains)] if network.trains else []
-    begins += [each.first_s for each in network.headways]
+    begins += [each.first_s for each in network.services]
     if not begins:
         return None
     ends = [end_of_day(network.trains)] if network.trains else []
-    ends += [each.last_s for each in network.headways]
+    ends += [each.end_s for each in network.services]
     return min(begins), max(ends) + 60.0 * AFTERWARDS_MIN
 
 
@@ -166,7 +166,7 @@ def _traffic(network: ImportedNetwork) -> str:
     text = _TIMETABLE if network.trains else ""
     hours = _clock_s(network)
     if hours is not None:
-        return text + service_tables(network.headways, hours)
+        return text + service_tables(network.services, hours)
     begin, end, via = example_way(network.stations)
     passed = f"via = [{', '.join(map(_text, via))}]\n" if via else ""
     return EXAMPLE.format(begin=_text(begin), end=_text(end), via=passed)

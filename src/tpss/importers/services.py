@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterable
 
 from tpss.importers.network import own_name
-from tpss.importers.timetable import Call, Headway
+from tpss.importers.timetable import Call, Service
 
 EXAMPLE = """
 # ASSUMED, edit it: no trains were imported.
@@ -17,12 +17,12 @@ to = {end}
 """
 
 
-def service_tables(services: Iterable[Headway], hours_s: tuple[float, float]) -> str:
+def service_tables(services: Iterable[Service], hours_s: tuple[float, float]) -> str:
     """Tables of services: with a headway, or with their departures where they end before the simulation.
 
     Parameters
     ----------
-    services : iterable of Headway
+    services : iterable of Service
     hours_s : tuple of float
         When the simulation begins and ends, after midnight. [s]
     """
@@ -34,7 +34,7 @@ def service_tables(services: Iterable[Headway], hours_s: tuple[float, float]) ->
     return "".join(texts)
 
 
-def _table(name: str, service: Headway, begin_s: float, end_s: float) -> str:
+def _table(name: str, service: Service, begin_s: float, end_s: float) -> str:
     calls = service.train.calls
     first, last = calls[0], calls[-1]
     lines = [
@@ -57,15 +57,16 @@ def _table(name: str, service: Headway, begin_s: float, end_s: float) -> str:
     return "\n".join([*lines, ""])
 
 
-def _departures(service: Headway, begin_s: float, end_s: float) -> list[str]:
-    first_s, every_s = service.first_s - begin_s, service.headway_s
-    if service.last_s + every_s > end_s:
+def _departures(service: Service, begin_s: float, end_s: float) -> list[str]:
+    only = service.windows[0]
+    if len(service.windows) == 1 and only.last_s + only.headway_s > end_s:
+        first_s = only.first_s - begin_s
         return [
-            f"headway_min = {_minutes(every_s)}",
+            f"headway_min = {_minutes(only.headway_s)}",
             *([f"first_departure_min = {_minutes(first_s)}"] if first_s else []),
         ]
-    count = int((service.last_s - service.first_s) // every_s) + 1
-    times = ", ".join(_minutes(first_s + i * every_s) for i in range(count))
+    departures_s = {time for window in service.windows for time in window.departures_s}
+    times = ", ".join(_minutes(time - begin_s) for time in sorted(departures_s))
     return [f"departures_min = [{times}]"]
 
 

@@ -38,13 +38,37 @@ class Train:
 
 
 @dataclass(frozen=True)
-class Headway:
-    """A service every so many minutes; times at its calls are counted from its own departure."""
+class Window:
+    """Departures every so often."""
 
-    train: Train
     first_s: float
     last_s: float
     headway_s: float
+
+    @property
+    def departures_s(self) -> list[float]:
+        """All of them. [s]"""
+        count = round((self.last_s - self.first_s) / self.headway_s) + 1
+        return [self.first_s + i * self.headway_s for i in range(count)]
+
+
+@dataclass(frozen=True)
+class Service:
+    """A train that runs again and again; times at its calls are counted from each departure."""
+
+    train: Train
+    windows: tuple[Window, ...]
+
+    @property
+    def first_s(self) -> float:
+        """The first departure. [s]"""
+        return min(window.first_s for window in self.windows)
+
+    @property
+    def end_s(self) -> float:
+        """When the last of its trains should arrive, as far as that is known. [s]"""
+        last_s = max(window.last_s for window in self.windows)
+        return last_s + (self.train.calls[-1].arrival_s or 0.0)
 
 
 def clock(time_s: float) -> str:
