@@ -277,6 +277,7 @@ def test_the_files_are_a_scenario_without_faults(tmp_path, monkeypatch):
         ("stop_times.txt", "A,1,,", "A,first,,", "line 2, stop_sequence", "not a number"),
         ("stops.txt", "0,10.2,", "north,10.2,", "line 6, stop_lat", "not a number"),
         ("stops.txt", "0,10.2,", "95,10.2,", "line 6, stop_lat", "not a coordinate"),
+        ("stops.txt", "C,Gamma", "X,Gamma", "stop_id", "a stop that is not there"),
         ("calendar.txt", "20250301,20250331\nsun", "01032025,20250331\nsun", "line 2, start_date",
          "not a date"),
         ("trips.txt", "trip_id,", "trip,", "line 1", "the column trip_id is missing"),

@@ -17,7 +17,7 @@ from tpss.importers.timetable import Call, Service, Train, Window, ends_told
 from tpss.importers.ways import with_passes
 
 DWELL_S = 30.0
-"""Where a feed has the same time of arrival and of departure. [s]"""
+"""Where a feed has the same time of arrival and of departure, or none. [s]"""
 
 LEAST_LIMIT_KMH, LARGEST_LIMIT_KMH = 80.0, 500.0
 LIMIT_OVER_MEAN = 2.0
@@ -42,15 +42,7 @@ def read(path: Path, routes: list[str], day: date | None = None) -> ImportedNetw
     """
     feed = Feed(path)
     names = chosen_routes(feed, routes)
-    every = trips_of(feed, names)
-    calendar = Calendar(feed, {trip.service for trip in every})
-    counts = Counter(trip.service for trip in every)
-    chosen = day or calendar.busiest(counts)
-    running = calendar.services_on(chosen)
-    trips = [trip for trip in every if trip.service in running]
-    if not trips:
-        problem, remedy = "no trip of the routes runs on that day", "give another --date"
-        raise ScenarioError([Finding(str(path), "--date", chosen.isoformat(), problem, remedy)])
+    chosen, trips = _trips_on(feed, names, day)
     stations = Stations(feed, {stop.stop for trip in trips for stop in trip.stops})
     usable = [trip for trip in trips if _is_usable(trip, stations)]
     distances = Distances(usable, stations)
@@ -69,6 +61,9 @@ def read(path: Path, routes: list[str], day: date | None = None) -> ImportedNetw
         assumed=_assumed(distances, limit_kmh),
     )
     _add_trains(network, usable, names, stations)
+    trains = [*network.trains, *(service.train for service in network.services)]
+    if any(call.min_dwell_s == DWELL_S for train in trains for call in train.calls):
+        network.assumed.append(f"stops of {DWELL_S:g} s where a feed has no duration")
     if len(usable) < len(trips):
         network.left_out.append(
             "trips of fewer than two stations, or without times at their ends: "
@@ -77,9 +72,23 @@ def read(path: Path, routes: list[str], day: date | None = None) -> ImportedNetw
     return network
 
 
+def _trips_on(feed: Feed, routes: Mapping[str, str], day: date | None) -> tuple[date, list[Trip]]:
+    """A day, the first one with the most trips if none is given, and the trips that run on it."""
+    every = trips_of(feed, routes)
+    calendar = Calendar(feed, {trip.service for trip in every})
+    chosen = day or calendar.busiest(Counter(trip.service for trip in every))
+    running = calendar.services_on(chosen)
+    trips = [trip for trip in every if trip.service in running]
+    if not trips:
+        place = (str(feed.path), "--date", chosen.isoformat())
+        problem, remedy = "no trip of the routes runs on that day", "give another --date"
+        raise ScenarioError([Finding(*place, problem, remedy)])
+    return chosen, trips
+
+
 def _pattern(trip: Trip, stations: Stations) -> tuple[str, ...]:
     """Stations of a trip, in order."""
-    names = [stations.name_of[stop.stop] for stop in trip.stops if stop.stop in stations.name_of]
+    names = [stations.name_of[stop.stop] for stop in trip.stops]
     return tuple(name for i, name in enumerate(names) if i == 0 or names[i - 1] != name)
 
 
@@ -169,8 +178,8 @@ def _windows(trip: Trip) -> tuple[Window, ...]:
 def _calls(trip: Trip, stations: Stations) -> tuple[Call, ...]:
     calls: list[Call] = []
     for stop in trip.stops:
-        station = stations.name_of.get(stop.stop)
-        if station is not None and (not calls or calls[-1].station != station):
+        station = stations.name_of[stop.stop]
+        if not calls or calls[-1].station != station:
             calls.append(_call(station, stop))
     return ends_told(calls)
 
@@ -220,5 +229,4 @@ def _assumed(distances: Distances, limit_kmh: float) -> list[str]:
         *told,
         "level track, and no curves: a feed has none",
         f"a speed limit of {limit_kmh:g} km/h: a feed has none; twice the highest mean speed of a trip",
-        f"stops of {DWELL_S:g} s where arrival and departure are at the same time",
     ]

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tpss.errors import ScenarioError
-from tpss.importers.gtfs_feed import Feed
+from tpss.errors import Finding, ScenarioError
+from tpss.importers.gtfs_feed import REMEDY, Feed
 from tpss.importers.gtfs_trips import Trip
 from tpss.importers.network import own_name
 
@@ -55,10 +55,12 @@ class Stations:
         rows = {row["stop_id"]: row for row in feed.rows("stops.txt", "stop_id", "stop_name")}
         self.name_of: dict[str, str] = {}
         self.places: dict[str, Place] = {}
+        if unknown := sorted(stops - set(rows)):
+            table = str(feed.path / "stops.txt")
+            problem = "stop_times.txt has a stop that is not there"
+            raise ScenarioError([Finding(table, "stop_id", unknown[0], problem, REMEDY)])
         wanted: dict[str, str] = {}
         for stop in sorted(stops):
-            if stop not in rows:
-                continue
             row = rows.get(rows[stop]["parent_station"], rows[stop])
             place = Place(row.number("stop_lat"), row.number("stop_lon"))
             if abs(place.latitude) > 90.0 or abs(place.longitude) > 360.0:
@@ -84,8 +86,8 @@ class Distances:
         given: dict[frozenset[str], list[tuple[float, float]]] = defaultdict(list)
         for trip in trips:
             for a, b in pairwise(trip.stops):
-                one, other = (stations.name_of.get(each.stop, "") for each in (a, b))
-                if a.distance is None or b.distance is None or not one or not other:
+                one, other = (stations.name_of[each.stop] for each in (a, b))
+                if a.distance is None or b.distance is None:
                     continue
                 straight = straight_km(self._places[one], self._places[other])
                 if one != other and b.distance > a.distance and straight > 0.0:
