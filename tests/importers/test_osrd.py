@@ -14,7 +14,7 @@ from tpss.cli.main import main
 from tpss.importers.network import ImportedNetwork, NetworkLine
 from tpss.importers.network_files import files
 from tpss.importers.osrd import read
-from tpss.importers.osrd_trains import seconds_of
+from tpss.importers.timetable import seconds_of
 
 from osrd_made_up import INFRA, TRAINS, circle, parallel, point, ports, track
 

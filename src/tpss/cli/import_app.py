@@ -85,3 +85,19 @@ def gtfs(
     from tpss.cli.imports import import_gtfs
 
     import_gtfs(feed, route, date.date() if date else None, out, force)
+
+
+@app.command(epilog="Example:  tpss import railml timetable.railml --out planned")
+def railml(
+    file: Annotated[Path, argument(metavar="FILE", help="Timetable of railML 2 (XML).")],
+    out: Annotated[Path, option(help="Folder for the file.")],
+    force: Force = False,
+) -> None:
+    """Turn the trains of a railML 2 file into a timetable.
+
+    timetable.csv has a row for each place of a train; scheduled times are preferred to published and
+    calculated ones. Infrastructure is not imported: the lines have to have stations of these names.
+    """
+    from tpss.cli.imports import import_railml
+
+    import_railml(file, out, force)

@@ -7,9 +7,11 @@ from rich.console import Console
 
 from tpss.cli.terminal import say
 from tpss.importers.network import ImportedNetwork
-from tpss.importers.network_files import SCENARIO
+from tpss.importers.network_files import SCENARIO, TIMETABLE
 from tpss.importers.network_files import files as network_texts
-from tpss.importers.texts import sections, write
+from tpss.importers.railml2 import ImportedTrains
+from tpss.importers.texts import Told, comments, sections, write
+from tpss.importers.timetable import csv_text
 from tpss.importers.ttobench import Imported, read
 from tpss.importers.ttobench_files import files, scenario_name
 
@@ -30,10 +32,15 @@ def import_ttobench(paths: list[Path], out: Path, force: bool) -> None:
             say(console, f"Run it:  tpss run {out / scenario_name(track, train)}.toml")
 
 
-def _report(part: Imported) -> list[str]:
+def _report(part: Imported | ImportedTrains) -> list[str]:
     """Report on an imported file, as lines."""
-    lines = [str(part.source)]
-    for title, items in sections(part):
+    return [str(part.source), *_told(part)]
+
+
+def _told(told: Told) -> list[str]:
+    """What was taken, left out and assumed, as lines."""
+    lines = []
+    for title, items in sections(told):
         lines += [f"  {title}:", *(f"    {item}" for item in items)]
     return lines
 
@@ -52,13 +59,25 @@ def import_gtfs(feed: Path, routes: list[str], day: date | None, out: Path, forc
     _write_network(read_gtfs(feed, routes, day), out, force)
 
 
+def import_railml(file: Path, out: Path, force: bool) -> None:
+    """Write a timetable from a file of railML 2, and print what was done."""
+    from tpss.importers.railml2 import read as read_railml
+
+    found = read_railml(file)
+    head = comments(f"Imported from {file.name} of railML 2.", found).rstrip("\n") + "\n"
+    written = write({TIMETABLE: csv_text(found.trains, head)}, out, force)
+    console = Console()
+    say(console, "\n".join(_report(found)))
+    say(console, "Written:")
+    for path in written:
+        say(console, f"  {path}")
+
+
 def _write_network(network: ImportedNetwork, out: Path, force: bool) -> None:
     written = write(network_texts(network), out, force)
     console = Console()
     lines = [", ".join(str(path) for path in network.sources)]
-    for title, items in sections(network):
-        lines += [f"  {title}:", *(f"    {item}" for item in items)]
-    say(console, "\n".join(lines))
+    say(console, "\n".join([*lines, *_told(network)]))
     say(console, "Written:")
     for path in written:
         say(console, f"  {path}")

@@ -1,10 +1,9 @@
 """Train schedules of OSRD as trains of a timetable."""
 
-import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime, timedelta
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,24 +13,9 @@ from tpss.errors import Finding, ScenarioError
 from tpss.importers.documents import Item, as_model, read_json
 from tpss.importers.network import own_name, plain_name
 from tpss.importers.osrd_infra import Infra, OperationalPoint
-from tpss.importers.timetable import Call, Train, ends_told
+from tpss.importers.timetable import Call, Train, ends_told, seconds_of
 
 REMEDY = "export the train schedules from OSRD anew"
-
-_DURATION = re.compile(
-    r"P(?:(?P<days>[\d.]+)D)?(?:T(?:(?P<hours>[\d.]+)H)?(?:(?P<minutes>[\d.]+)M)?"
-    r"(?:(?P<seconds>[\d.]+)S)?)?"
-)
-
-
-def seconds_of(text: Any) -> Any:
-    """Seconds of a duration such as PT1H30M; what is none of them is left to be refused."""
-    match = _DURATION.fullmatch(text) if isinstance(text, str) else None
-    if match is None or not any(match.groups()):
-        return text
-    parts = {unit: float(number) for unit, number in match.groupdict().items() if number}
-    return timedelta(**parts).total_seconds()
-
 
 Duration = Annotated[float, BeforeValidator(seconds_of), Field(ge=0)]
 

@@ -2,14 +2,24 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from datetime import timedelta
+from typing import Any
 
 HEADER = ("name", "train", "station", "arrival", "departure", "min_dwell_s", "kind")
 
-MIDNIGHT_S = 86_400
+DAY_S = 86_400
+"""Length of a day. [s]"""
 ROUND_S = 300
 """The clock of a simulation begins at such a multiple. [s]"""
+
+
+_DURATION = re.compile(
+    r"P(?:(?P<days>[\d.]+)D)?(?:T(?:(?P<hours>[\d.]+)H)?(?:(?P<minutes>[\d.]+)M)?"
+    r"(?:(?P<seconds>[\d.]+)S)?)?"
+)
 
 
 @dataclass(frozen=True)
@@ -75,6 +85,15 @@ def clock(time_s: float) -> str:
     """A time as HH:MM:SS, which goes on beyond 24:00."""
     whole = round(time_s)
     return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def seconds_of(text: Any) -> Any:
+    """Seconds of a duration such as PT1H30M; what is none of them is left to be refused."""
+    match = _DURATION.fullmatch(text) if isinstance(text, str) else None
+    if match is None or not any(match.groups()):
+        return text
+    parts = {unit: float(number) for unit, number in match.groupdict().items() if number}
+    return timedelta(**parts).total_seconds()
 
 
 def csv_text(trains: Iterable[Train], head: str = "") -> str:
