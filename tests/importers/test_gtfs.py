@@ -23,9 +23,6 @@ REAL = Path(os.environ.get("GTFS_FEED", "not given"))
 needs_a_real_feed = pytest.mark.skipif(
     not REAL.exists(), reason="GTFS_FEED does not name a feed, its first route on rails is imported"
 )
-reads_timetables = pytest.mark.skipif(
-    "timetables" not in tpss.Scenario.model_fields, reason="scenarios hold no timetables"
-)
 
 FEED = {
     "routes.txt": """\
@@ -262,7 +259,6 @@ def test_the_command_says_what_was_taken_left_out_and_assumed(tmp_path, monkeypa
     assert 'starts_at = "05:40"' in (tmp_path / "m" / "scenario.toml").read_text("utf-8")
 
 
-@reads_timetables
 def test_the_files_are_a_scenario_without_faults(tmp_path, monkeypatch):
     there = write(tmp_path / "feed")
     given = ("--route", "RE 7", "--date", "2025-03-12", "--out", tmp_path / "m")

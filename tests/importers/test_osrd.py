@@ -23,9 +23,6 @@ needs_real_files = pytest.mark.skipif(
     not REAL.is_dir(),
     reason="OSRD_INFRAS does not name the folder tests/data/infras of OSRD's repository",
 )
-reads_timetables = pytest.mark.skipif(
-    "timetables" not in tpss.Scenario.model_fields, reason="scenarios hold no timetables"
-)
 
 
 def write(path: Path, document: Any) -> Path:
@@ -264,7 +261,6 @@ def test_a_scenario_with_trains_names_the_timetable_and_its_clock(network):
     assert "[[traffic]]" not in text
 
 
-@reads_timetables
 def test_a_scenario_with_trains_has_no_faults(tmp_path, monkeypatch):
     there = [write(tmp_path / "i.json", INFRA), write(tmp_path / "t.json", TRAINS)]
     assert call(monkeypatch, "import", "osrd", *there, "--out", tmp_path / "m") == 0

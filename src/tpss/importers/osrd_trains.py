@@ -196,7 +196,7 @@ def _call(station: str, given: ScheduleItem | None, start_s: float, is_first: bo
 def left_out_of_trains(trains: Sequence[TrainSchedule], places: Places) -> list[str]:
     """What of the train schedules was left out, with counts."""
     counts = {
-        "margins of running times: trains run as fast as they may between their times": [
+        "margins of running times, which supplement_percent of [[timetables]] may stand for": [
             t for t in trains if t.margins and any(not _is_none(m) for m in t.margins.values)
         ],
         "power restrictions": [t for t in trains if t.power_restrictions],
