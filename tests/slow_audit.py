@@ -207,6 +207,10 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     sources = network.sources
     p, q = stations["station_active_power"], stations["station_reactive_power"]
     n, node_v = stations["active_converters"], phasors(nodes, "node")[:, sources.node]
+    out = n == 0.0  # of service: nothing is asked of them, and nothing fed
+    assert (p[out] == 0.0).all()
+    assert (q[out] == 0.0).all()
+    n = np.where(out, 1.0, n)
     asked_v = np.empty_like(node_v)
     for kind, phasor in (
         (SourceKind.CONVERTER, converter_phasor),
@@ -214,7 +218,7 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     ):
         own = sources.kind == kind
         asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
-    return _largest((node_v - asked_v) / network.system.base_voltage_v)
+    return _largest(np.where(out, 0.0, node_v - asked_v) / network.system.base_voltage_v)
 
 
 def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any) -> Complexes:

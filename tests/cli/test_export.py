@@ -113,3 +113,16 @@ def test_a_folder_that_cannot_be_made_is_told(tpss_command, demo, tmp_path):
     said = tpss_command("export", "demo", "--out", "notes.txt/a")
     assert said.code == 2
     assert "notes.txt/a cannot be written: Not a directory; give another --out" in said.err
+
+
+def test_electrical_profiles_are_written_and_say_what_they_cover(tpss_command, demo, tmp_path):
+    """3 minutes of a train that starts: on the first kilometre, at nearly 15 kV or more."""
+    said = tpss_command("export-profiles", "demo", "--out", "p.json", "--power-class", "3")
+    assert (said.code, said.err) == (0, "")
+    assert said.out.startswith("Wrote p.json: ")
+    document = json.loads((tmp_path / "p.json").read_text("utf-8"))
+    assert document["level_order"]["15000V"][0] == "15000V"
+    assert {level["power_class"] for level in document["levels"]} == {"3"}
+    assert document["levels"][0]["track_ranges"][0]["begin"] == 0.0
+    again = tpss_command("export-profiles", "demo", "--out", "p.json")
+    assert (again.code, "exists already" in again.err) == (2, True)

@@ -1,5 +1,6 @@
 """Arguments and options of ``tpss import``."""
 
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -33,3 +34,70 @@ def ttobench(
     from tpss.cli.imports import import_ttobench
 
     import_ttobench(files, out, force)
+
+
+@app.command(epilog="Example:  tpss import osrd infra.json trains.json --out small")
+def osrd(
+    infra: Annotated[Path, argument(metavar="INFRA", help="Infrastructure (railjson 3).")],
+    out: Annotated[Path, option(help="Folder for the files.")],
+    trains: Annotated[
+        Path | None, argument(metavar="[TRAINS]", help="Train schedules (JSON).")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn an infrastructure of OSRD, and its train schedules, into lines and a timetable.
+
+    Tracks in a row become a line, operational points and switches its stations; lines meet at stations
+    of one name. tracks.csv says which track lies where. Signalling is left out. In scenario.toml the
+    supply and the types of train are assumed, and marked as such.
+    """
+    from tpss.cli.imports import import_osrd
+
+    import_osrd(infra, trains, out, force)
+
+
+@app.command(
+    epilog="Example:  tpss import gtfs feed.zip --route 'Line 7' --date 2025-03-12 --out line7"
+)
+def gtfs(
+    feed: Annotated[Path, argument(metavar="FEED", help="Zip file or folder of a GTFS feed.")],
+    route: Annotated[
+        list[str],
+        option(metavar="NAME", help="Id, short or long name of a route; repeatable."),
+    ],
+    out: Annotated[Path, option(help="Folder for the files.")],
+    date: Annotated[
+        datetime | None,
+        option(
+            formats=["%Y-%m-%d"],
+            metavar="YYYY-MM-DD",
+            help="Day; by default the first one with the most trips.",
+        ),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn routes of a GTFS feed into lines of stations and a timetable of one day.
+
+    The trip with the most stations becomes a line, what others serve besides further ones. Kilometres
+    are along the shapes of trips, or straight between coordinates. Gradients, speed limits, supply and
+    types of train are assumed, and marked as such. Frequencies become services.
+    """
+    from tpss.cli.imports import import_gtfs
+
+    import_gtfs(feed, route, date.date() if date else None, out, force)
+
+
+@app.command(epilog="Example:  tpss import railml timetable.railml --out planned")
+def railml(
+    file: Annotated[Path, argument(metavar="FILE", help="Timetable of railML 2 (XML).")],
+    out: Annotated[Path, option(help="Folder for the file.")],
+    force: Force = False,
+) -> None:
+    """Turn the trains of a railML 2 file into a timetable.
+
+    timetable.csv has a row for each place of a train; scheduled times are preferred to published and
+    calculated ones. Infrastructure is not imported: the lines have to have stations of these names.
+    """
+    from tpss.cli.imports import import_railml
+
+    import_railml(file, out, force)

@@ -258,6 +258,56 @@ def export(
 
 
 @app.command(
+    epilog="Example:  tpss export-profiles results/small-001 --tracks small/tracks.csv "
+    "--out profiles.json"
+)
+def export_profiles(
+    result: ResultFolder,
+    out: Annotated[Path, option(help="File to write (JSON).")],
+    tracks: Annotated[
+        Path | None,
+        option(
+            help="Table of where tracks lie on the lines, the tracks.csv of tpss import osrd; by "
+            "default each line is a track of its name."
+        ),
+    ] = None,
+    lowest: Annotated[
+        bool,
+        typer.Option("--lowest", help="The lowest voltage of a stretch; by default the mean."),
+    ] = False,
+    stretch_km: Annotated[
+        float, typer.Option(min=0.01, max=1000.0, help="Length of a stretch.", metavar="KM")
+    ] = 1.0,
+    band_kv: Annotated[
+        float | None,
+        option(
+            min=0.01,
+            max=10.0,
+            metavar="KV",
+            help="Width of a band of voltages; by default a tenth of the nominal one.",
+        ),
+    ] = None,
+    power_class: Annotated[
+        list[str] | None,
+        option(metavar="CLASS", help="Power class of rolling stock; repeatable; by default 1."),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write the voltages of a run as an electrical profile set of OSRD.
+
+    Each stretch of track where trains ran has the band that its voltage does not fall below, at most the
+    nominal voltage.
+
+    Exit codes: 0 done, 2 the folder holds no result, its audit failed, or a file cannot be read or
+    written.
+    """
+    from tpss.cli.export import export_profiles_of
+
+    band_v = None if band_kv is None else 1e3 * band_kv
+    export_profiles_of(result, tracks, out, lowest, stretch_km, band_v, power_class or ["1"], force)
+
+
+@app.command(
     epilog="Examples:  tpss sweep examples/study_converters.toml --out converters, then "
     "tpss sweep --summary converters"
 )

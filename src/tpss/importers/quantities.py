@@ -1,13 +1,12 @@
 """Numbers with units in JSON files: read, checked and converted, all faults collected."""
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError, shortened
-from tpss.scenario.files import read_text, shown_line
+from tpss.importers.documents import read_json
 from tpss.units import kilometres
 
 Units = Mapping[str, float]
@@ -43,16 +42,7 @@ class Quantities:
         """Names of the quantities that were read."""
         self.given: dict[str, str] = {}
         """Values by their keys as they stand in the file, each with its unit."""
-        text = read_text(path)
-        try:
-            document = json.loads(text)
-        except (ValueError, RecursionError) as error:
-            number = getattr(error, "lineno", None)  # of errors of the format alone
-            place, value = shown_line(text, number) if number else ("", "")
-            remedy = "correct the file at that place, or name another file"
-            raise ScenarioError(
-                [Finding(str(path), place, value, f"not JSON: {error}", remedy)]
-            ) from error
+        document = read_json(path)
         if not isinstance(document, dict):
             problem, remedy = "not a JSON object", "name a file of a track or of a train"
             raise ScenarioError([Finding(str(path), "", "", problem, remedy)])

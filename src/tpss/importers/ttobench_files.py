@@ -1,16 +1,11 @@
 """Files of a scenario from tracks and trains of TTOBench, with comments on the import."""
 
-from pathlib import Path
-from textwrap import wrap
-
 import tomli_w
 
 from tpss.errors import Finding, ScenarioError
-from tpss.files.refusals import reason
+from tpss.importers.texts import comments
 from tpss.importers.ttobench import Imported
 from tpss.scenario.files import PROFILE_COLUMNS
-
-WIDTH = 100
 
 _SCENARIO = """\
 # {track} with {train}, imported from TTOBench.  Track and train are in separate files.
@@ -107,23 +102,7 @@ def _source(part: Imported) -> str:
 
 
 def _comments(part: Imported) -> str:
-    """What was read from a file, left out and assumed, as comments."""
-    lines = [f"# Imported from {part.source.name} of TTOBench."]
-    for title, items in sections(part):
-        lines.append(f"# {title}:")
-        for item in items:
-            lines += wrap(item, WIDTH, initial_indent="#   - ", subsequent_indent="#     ")
-    return "\n".join([*lines, "", ""])
-
-
-def sections(part: Imported) -> list[tuple[str, list[str]]]:
-    """Headings and items of the report on a file, empty ones left out."""
-    every = [
-        ("Taken", part.taken),
-        ("Left out", part.left_out),
-        ("Assumed, edit it", part.assumed),
-    ]
-    return [(title, items) for title, items in every if items]
+    return comments(f"Imported from {part.source.name} of TTOBench.", part)
 
 
 def _scenario(track: Imported, train: Imported) -> str:
@@ -141,30 +120,3 @@ def _scenario(track: Imported, train: Imported) -> str:
         stops=", ".join(between),
         dwells=" and no dwells" if between else "",
     )
-
-
-def write(texts: dict[str, str], folder: Path, force: bool) -> list[Path]:
-    """Write files into a folder, which is made if need be; return their paths.
-
-    Raises
-    ------
-    ScenarioError
-        Files exist and may not be replaced, or cannot be written.
-    """
-    targets = [folder / name for name in texts]
-    existing = [target for target in targets if target.exists() and not force]
-    if existing:
-        remedy = "give another --out, or --force to replace it"
-        raise ScenarioError(
-            [Finding(str(target), "", "", "it exists already", remedy) for target in existing]
-        )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for target, text in zip(targets, texts.values(), strict=True):
-            target.write_text(text, encoding="utf-8")
-    except OSError as error:
-        problem = f"it cannot be written: {reason(error)}"
-        raise ScenarioError(
-            [Finding(str(folder), "", "", problem, "give another --out")]
-        ) from error
-    return targets

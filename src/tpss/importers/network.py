@@ -1,0 +1,154 @@
+"""Lines that meet, as importers make them: what stands in the tables ``[lines.NAME]`` of a scenario."""
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from tpss.importers.quantities import DIGITS
+from tpss.importers.timetable import Service, Train
+
+NO_LIMIT_KMH = 500.0
+"""Where a format states no limit: the trains' own highest speeds count. [km/h]"""
+
+Range = tuple[float, float, float]
+"""Beginning and end of what applies there, and its value."""
+
+Stair = tuple[float, float]
+"""Where a value begins, and the value, which holds until the next."""
+
+
+@dataclass(frozen=True)
+class NetworkLine:
+    """A line; positions are from its beginning. [km]"""
+
+    name: str
+    length_km: float
+    stations: dict[str, float]
+    """Positions by name, ascending."""
+    gradients: list[Stair]
+    limits: list[Stair]
+    limits_down: list[Stair] = field(default_factory=list)
+    """Limits of trains towards falling kilometres, if they are others."""
+    curves: list[Range] = field(default_factory=list)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The line as in a scenario."""
+        down = {"speed_limits_down": _rows(self.limits_down, "speed_kmh")}
+        curves = {"curves": [{"from_km": a, "to_km": b, "radius_m": r} for a, b, r in self.curves]}
+        return {
+            "length_km": self.length_km,
+            "stations": [{"name": name, "position_km": km} for name, km in self.stations.items()],
+            "speed_limits": _rows(self.limits, "speed_kmh"),
+            **(down if self.limits_down else {}),
+            "gradients": _rows(self.gradients, "permille"),
+            **(curves if self.curves else {}),
+        }
+
+
+@dataclass(frozen=True)
+class TrackRange:
+    """Where a track of the imported format lies on a line."""
+
+    line: str
+    from_km: float
+    to_km: float
+    track: str
+    begin_m: float
+    end_m: float
+    """Positions on the track at `from_km` and `to_km`: falling ones where it runs the other way."""
+
+
+@dataclass(frozen=True)
+class ImportedNetwork:
+    """Lines and trains from files of another format, and how these were used."""
+
+    name: str
+    sources: tuple[Path, ...]
+    format_name: str
+    lines: list[NetworkLine]
+    trains: list[Train] = field(default_factory=list)
+    services: list[Service] = field(default_factory=list)
+    tracks: list[TrackRange] = field(default_factory=list)
+    system: str = ""
+    """Electrification system of most of the lines, if it is known."""
+    taken: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    assumed: list[str] = field(default_factory=list)
+
+    @property
+    def stations(self) -> dict[str, dict[str, float]]:
+        """Positions of the stations by the names of the lines, and their own. [km]"""
+        return {line.name: line.stations for line in self.lines}
+
+    @property
+    def islands(self) -> list[list[NetworkLine]]:
+        """Lines that hang together by their stations."""
+        islands: list[tuple[set[str], list[NetworkLine]]] = []
+        for line in self.lines:
+            names, lines = set(line.stations), [line]
+            apart = []
+            for each in islands:
+                if each[0] & names:
+                    names |= each[0]
+                    lines = [*each[1], *lines]
+                else:
+                    apart.append(each)
+            islands = [*apart, (names, lines)]
+        return [lines for _, lines in islands]
+
+
+def _rows(stairs: Iterable[Stair], key: str) -> list[dict[str, float]]:
+    return [{"from_km": km, key: value} for km, value in stairs]
+
+
+def stairs(
+    begin_km: float,
+    end_km: float,
+    ranges: Sequence[Range],
+    default: float,
+    choose: Callable[[Sequence[float]], float],
+) -> list[Stair]:
+    """Values along a line from ranges, which may overlap or leave gaps, in kilometres from its begin.
+
+    Parameters
+    ----------
+    begin_km, end_km : float
+        Ends of the line, in the kilometres of the ranges.
+    ranges : sequence of tuple
+        Beginning, end and value of each.
+    default : float
+        Value where no range lies.
+    choose : callable
+        The value where several ranges lie, from theirs.
+    """
+    inside = [
+        (max(begin, begin_km), min(end, end_km), value)
+        for begin, end, value in ranges
+        if begin < end_km and end > begin_km
+    ]
+    ends = {begin_km, end_km, *(km for each in inside for km in each[:2])}
+    found: list[Stair] = []
+    for begin, end in pairwise(sorted(ends)):
+        values = [value for a, b, value in inside if a <= begin and end <= b]
+        value = choose(values) if values else default
+        if not found or found[-1][1] != value:
+            found.append((round(begin - begin_km, DIGITS), value))
+    return found
+
+
+def plain_name(text: str, fallback: str = "line") -> str:
+    """A name in letters, digits, hyphens and underscores, for files and key paths."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", text).strip("_-") or fallback
+
+
+def own_name(wanted: str, taken: Iterable[str]) -> str:
+    """A name that is not taken: the wanted one, or with a number behind it."""
+    others, name, number = set(taken), wanted, 1
+    while name in others:
+        number += 1
+        name = f"{wanted}-{number}"
+    return name

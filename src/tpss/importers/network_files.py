@@ -1,0 +1,219 @@
+"""Files of a scenario from an imported network: lines, a timetable, and a scenario to complete."""
+
+import csv
+import io
+import json
+import math
+from typing import Any
+
+import tomli_w
+
+from tpss.errors import Finding, ScenarioError
+from tpss.importers.network import ImportedNetwork, plain_name
+from tpss.importers.services import EXAMPLE, service_tables
+from tpss.importers.texts import comments
+from tpss.importers.timetable import begin_of_day, clock, csv_text, end_of_day
+from tpss.importers.ways import example_way
+from tpss.scenario.scenario import Scenario
+
+TRACKS = "tracks.csv"
+TIMETABLE = "timetable.csv"
+SCENARIO = "scenario.toml"
+
+AFTERWARDS_MIN = 60.0
+"""A simulation goes on so long after the last time that is scheduled. [min]"""
+
+_SCENARIO = """\
+format = 1
+name = {name}
+description = {description}
+
+[simulation]
+{simulation}
+
+[lines]
+{lines}
+# ASSUMED, edit it: {format_name} describes no power supply.
+[supply]
+system = {system}
+{supply}{trains}
+{traffic}"""
+
+_SUPPLY = {
+    "25kV-50Hz": (
+        "catenary = { r_ohm_per_km = 0.169, x_ohm_per_km = 0.432 }",
+        """
+[[supply.transformer_stations]]
+name = {name}
+at = {at}
+no_load_voltage_kv = 27.5
+transformer = {{ rated_mva = 30.0, short_circuit_percent = 10.0 }}
+""",
+    ),
+    "15kV-16.7Hz": (
+        'catenary = "BT"                     # or "AT", a table, or a file of your own',
+        """
+[[supply.converter_stations]]
+name = {name}
+at = {at}
+type = "Q48/Q49"
+converters = 3
+""",
+    ),
+}
+"""Contact line and feeding station of the systems."""
+
+DEFAULT_SYSTEM = "15kV-16.7Hz"
+
+_TRAIN = """
+# ASSUMED, edit it: a multiple unit.
+[trains.{key}]
+tractive_effort = {{ max_force_kn = 200.0, max_power_kw = 5000.0 }}
+mass_t = 250.0
+adhesive_mass_t = 150.0
+rotating_mass_factor = 0.06
+resistance_a_n = 3000.0
+resistance_b_n_s_per_m = 80.0
+resistance_c_n_s2_per_m2 = 8.0
+max_speed_kmh = 160.0
+max_retardation_m_s2 = 0.8
+efficiency = 0.85
+power_factor = 1.0
+auxiliary_power_kw = 200.0
+"""
+
+_TIMETABLE = f"""
+[[timetables]]
+file = "{TIMETABLE}"
+"""
+
+
+def files(network: ImportedNetwork) -> dict[str, str]:
+    """Texts by file name: the scenario, a file for each line, and what there is besides.
+
+    Raises
+    ------
+    ScenarioError
+        The lines have faults, such as values out of range.
+    """
+    _check(network)
+    texts = {SCENARIO: scenario_text(network)}
+    for line in network.lines:
+        source = f"{network.format_name}, {network.sources[0].name}"
+        texts[f"lines/{line.name}.toml"] = tomli_w.dumps({"source": source, **line.document})
+    if network.trains:
+        texts[TIMETABLE] = csv_text(network.trains)
+    if network.tracks:
+        texts[TRACKS] = _tracks_text(network)
+    return texts
+
+
+def scenario_text(network: ImportedNetwork) -> str:
+    """The scenario: what was imported, and a supply, trains and traffic to be edited."""
+    sources = " and ".join(path.name for path in network.sources)
+    kinds = {each.train_type: None for each in network.trains}
+    kinds |= {each.train.train_type: None for each in network.services}
+    return comments(f"Imported from {sources} of {network.format_name}.", network) + (
+        _SCENARIO.format(
+            name=_text(network.name),
+            description=_text(f"{sources}, from {network.format_name}"),
+            simulation=_simulation(network),
+            lines="".join(f'{name} = "lines/{name}.toml"\n' for name in network.stations),
+            format_name=network.format_name,
+            system=_text(network.system or DEFAULT_SYSTEM),
+            supply=_supply(network),
+            trains="".join(_TRAIN.format(key=plain_name(kind)) for kind in kinds or ["train"]),
+            traffic=_traffic(network),
+        )
+    )
+
+
+def _clock_s(network: ImportedNetwork) -> tuple[float, float] | None:
+    """When a simulation of the trains begins and ends, after midnight; None without trains."""
+    begins = [begin_of_day(network.trains)] if network.trains else []
+    begins += [each.first_s for each in network.services]
+    if not begins:
+        return None
+    ends = [end_of_day(network.trains)] if network.trains else []
+    ends += [each.end_s for each in network.services]
+    return min(begins), max(ends) + 60.0 * AFTERWARDS_MIN
+
+
+def _simulation(network: ImportedNetwork) -> str:
+    hours = _clock_s(network)
+    if hours is None:
+        return "duration_min = 120.0                # ASSUMED, edit it"
+    begin_s, end_s = hours
+    minutes = float(math.ceil((end_s - begin_s) / 60.0))
+    return (
+        f'starts_at = "{clock(begin_s)[:5]}"\n'
+        f"duration_min = {minutes:g}.0             # ASSUMED: until an hour after the last time"
+    )
+
+
+def _supply(network: ImportedNetwork) -> str:
+    """The contact line, and a station for all lines that hang together, where most of them meet."""
+    catenary, station = _SUPPLY[network.system or DEFAULT_SYSTEM]
+    stations = []
+    for lines in network.islands:
+        names = [name for line in lines for name in line.stations]
+        at = max(names, key=names.count)
+        stations.append(station.format(name=_text(at), at=_text(at)))
+    return f"{catenary}\n{''.join(stations)}"
+
+
+def _traffic(network: ImportedNetwork) -> str:
+    text = _TIMETABLE if network.trains else ""
+    hours = _clock_s(network)
+    if hours is not None:
+        return text + service_tables(network.services, hours)
+    begin, end, via = example_way(network.stations)
+    passed = f"via = [{', '.join(map(_text, via))}]\n" if via else ""
+    return EXAMPLE.format(begin=_text(begin), end=_text(end), via=passed)
+
+
+def _tracks_text(network: ImportedNetwork) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["line", "from_km", "to_km", "track", "begin_m", "end_m"])
+    for each in network.tracks:
+        km = (f"{each.from_km:.10g}", f"{each.to_km:.10g}")
+        writer.writerow([each.line, *km, each.track, f"{each.begin_m:.10g}", f"{each.end_m:.10g}"])
+    return text.getvalue()
+
+
+def _text(words: str) -> str:
+    return json.dumps(words, ensure_ascii=False)
+
+
+def _check(network: ImportedNetwork) -> None:
+    """Validate the lines in a scenario whose other parts are placeholders.
+
+    Raises
+    ------
+    ScenarioError
+        There are no lines, or they have faults.
+    """
+    source = network.sources[0]
+    if not network.lines:
+        problem, remedy = "no line can be made of it", "name a file with more tracks or stations"
+        raise ScenarioError([Finding(str(source), "", "", problem, remedy)])
+    begin, end, via = example_way(network.stations)
+    at = network.lines[0].stations
+    document: dict[str, Any] = {
+        "format": 1,
+        "name": "check",
+        "lines": {line.name: line.document for line in network.lines},
+        "simulation": {"time_step_min": 1.0, "duration_min": 60.0},
+        "supply": {
+            "catenary": "BT",
+            "converter_stations": [
+                {"name": "S", "at": next(iter(at)), "type": "Q48/Q49", "converters": 1}
+            ],
+        },
+        "trains": {"t": {"model": "Rc4-freight-1470t"}},
+        "traffic": [
+            {"name": "t", "train": "t", "from": begin, "to": end, "via": via, "headway_min": 10.0}
+        ],
+    }
+    Scenario.from_document(document, source)
