@@ -71,7 +71,8 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
     assert found.limited == summary["limited"]
     assert_same_as_recorded(found, result.dataset)
     assert found.audit.as_dict() == result.audit
-    assert_agree(found.audit, *audit_of(result.scenario))
+    if result.scenario.simulation.outage is None:  # the slow twin knows one network a run
+        assert_agree(found.audit, *audit_of(result.scenario))
 
 
 def assert_same_as_recorded(found: KeyFigures, dataset: xr.Dataset) -> None:

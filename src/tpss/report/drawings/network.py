@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tpss.model.supply import transformer_positions_km
 from tpss.report.contact_line import line_voltage
 from tpss.report.corridor import on_line, separate_tracks
 from tpss.report.drawings import parts
@@ -17,6 +16,7 @@ from tpss.report.sampling import Floats
 from tpss.results.result import Result
 from tpss.scenario.line import Line
 from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.units import kilometres
 
 GAP_ROWS = 0.08
