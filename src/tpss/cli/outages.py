@@ -3,16 +3,16 @@
 import math
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, DONE, INTERRUPTED, NO_SOLUTION
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import announce_compilation, parts_that_fit, progress_bar, say
 from tpss.errors import ResultError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from tpss.outages.run import Comparison
 
 PROGRESS = "{task.completed}/{task.total} outages"
-
-WIDTH = 150
-"""Least width of the table, so that a row stays on one line. [characters]"""
 
 LEAST_CHANGE = 0.005
 """A difference below this is not printed."""
@@ -113,24 +110,34 @@ def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
         number += 1
 
 
+COLUMNS = (
+    ("verdict", ""), ("low U", "kV"), ("at", "km"), ("at", "min"), ("useful U", "kV"), ("in zone", ""),
+    ("peak load", "%"), ("15 min", "%"), ("of", ""), ("arrived", ""), ("late", ""), ("lost", "min"),
+)  # fmt: skip
+"""Headings and units of the columns, but for the first one."""
+
+TEXTS = ("verdict", "in zone", "of")
+"""Columns that are not numbers."""
+
+
 def print_table(found: "Comparison", console: Console) -> None:
-    """Print a row per case, with what differs from the intact supply in brackets."""
-    table = Table(title="Outages", title_justify="left", box=None, pad_edge=False, padding=(0, 1))
-    table.add_column("outage\n", no_wrap=True)
-    table.add_column("verdict\n", no_wrap=True)
-    for heading in (
-        "low U\n[dim]kV[/dim]", "at\n[dim]km[/dim]", "at\n[dim]min[/dim]", "useful U\n[dim]kV[/dim]",
-    ):  # fmt: skip
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("in zone\n", no_wrap=True)
-    for heading in ("peak load\n[dim]%[/dim]", "15 min\n[dim]%[/dim]"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("of\n", no_wrap=True)
-    for heading in ("arrived\n", "late\n", "lost\n[dim]min[/dim]"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for row in found.rows:
-        table.add_row(escape(row.outage), row.verdict_in_words, *_cells(row, found.intact))
-    Console(file=console.file, width=max(console.width, WIDTH)).print(table)
+    """Print a row per case, with what differs from the intact supply in brackets; in parts that fit."""
+    rows = [(row.outage, [row.verdict_in_words, *_cells(row, found.intact)]) for row in found.rows]
+
+    def table_of(chosen: Sequence[int]) -> Table:
+        table = Table(box=None, pad_edge=False, padding=(0, 1))
+        table.add_column("outage\n", no_wrap=True)
+        for k in chosen:
+            heading, unit = COLUMNS[k]
+            side: Literal["left", "right"] = "left" if heading in TEXTS else "right"
+            table.add_column(f"{heading}\n[dim]{unit}[/dim]", justify=side, no_wrap=True)
+        for name, cells in rows:
+            table.add_row(escape(name), *(cells[k] for k in chosen))
+        return table
+
+    for k, part in enumerate(parts_that_fit(range(len(COLUMNS)), table_of, console)):
+        say(console, "" if k else "Outages")
+        console.print(table_of(part))
 
 
 def _cells(row: "Row", intact: "Row") -> list[str]:
