@@ -20,7 +20,7 @@ def outage(**keys):
 @pytest.mark.parametrize(
     ("changes", "key", "value", "remedy"),
     [
-        pytest.param(outage(), OUT, "", "give stations, units or transformers_km", id="nothing"),
+        pytest.param(outage(), OUT, "", "give stations, units, transformers_km or opens", id="nothing"),
         pytest.param(outage(stations=["Wst"]), f"{OUT}.stations.0", "'Wst'",
                      "did you mean West? stations: West, East", id="unknown-station"),
         pytest.param(outage(units={"Nowhere": 1}), f"{OUT}.units.Nowhere", "'Nowhere'",

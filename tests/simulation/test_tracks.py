@@ -252,3 +252,59 @@ def test_stretches_of_contact_line_may_not_overlap():
     ]
     ((key, problem),) = faults_of(document)
     assert (key, problem) == ("supply.contact_lines.1", "overlaps supply.contact_lines.0")
+
+
+# Switches that are open in an outage
+
+
+def with_switches() -> dict[str, Any]:
+    document = with_posts(double_track("posts"), 12.0, 25.0)
+    document["supply"]["section_breaks"] = [{"name": "B", "line": "main", "position_km": 30.0}]
+    document["outages"] = [
+        {"name": "post open", "opens": ["P12"]},
+        {"name": "parted", "opens": ["B"], "units": {"end": 1}},
+    ]
+    return document
+
+
+def test_a_switch_that_opens_in_an_outage_is_one_that_is_open_in_the_scenario():
+    scenario = scenario_of(with_switches())
+    opened = tpss.simulate(scenario.with_outage("post open"))
+    written = tpss.simulate(scenario.with_({"supply.posts.P12.closed": False}))
+    for name in ("pantograph_voltage", "node_voltage", "branch_current"):
+        np.testing.assert_array_equal(opened.dataset[name], written.dataset[name])
+
+
+def test_switches_open_together_with_what_else_is_out():
+    scenario = scenario_of(with_switches())
+    found = tpss.simulate(scenario.with_outage("parted"))
+    changes = {
+        "supply.section_breaks.B.closed": False,
+        "supply.converter_stations.end.converters": 1,
+    }
+    expected = tpss.simulate(scenario.with_(changes))
+    np.testing.assert_allclose(
+        found.dataset.pantograph_voltage, expected.dataset.pantograph_voltage, rtol=1e-9
+    )
+    assert found.audit["passed"]
+
+
+def test_every_closed_switch_is_opened_once_in_the_table_of_outages():
+    found = tpss.compare_outages(scenario_of(with_switches()), every=True)
+    names = [row.outage for row in found.rows]
+    assert {"P25 open", "B open", "post open", "parted"} <= set(names)
+    assert "P12 open" not in names  # named already
+    assert len(names) == found.cases
+
+
+@pytest.mark.parametrize(
+    ("outage", "problem"),
+    [
+        ({"opens": ["P99"]}, "there is no such switch"),
+        ({"opens": ["P12"], "to_min": 10.0}, "posts and section breaks open throughout a run only"),
+    ],
+)
+def test_a_switch_that_is_not_there_or_is_to_close_again_is_a_fault(outage, problem):
+    document = with_switches()
+    document["outages"] = [{"name": "odd", **outage}]
+    assert problem in faults_of(document)[0][1]

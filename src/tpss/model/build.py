@@ -45,7 +45,9 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     lines = scenario.lines_by_name
-    _, plan = build_supply(scenario.supply, layouts_of(lines))
+    outage = scenario.outage
+    supply = scenario.supply if outage is None else outage.switched(scenario.supply)
+    _, plan = build_supply(supply, layouts_of(lines))
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
     types, points = build_train_types(running)

@@ -29,12 +29,13 @@ def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
     ScenarioError
         A part of the line is left without a feeding station, and trains move in steps.
     """
-    intact, plan = build_supply(scenario.supply, layouts_of(scenario.lines_by_name))
     outage = outage or scenario.outage
+    supply = scenario.supply if outage is None else outage.switched(scenario.supply)
+    intact, plan = build_supply(supply, layouts_of(scenario.lines_by_name))
     if outage is None:
         _demand_continuous_motion(intact, plan, None, scenario)
         return Service(intact)
-    reduced = reduced_network(intact, plan, scenario.supply, outage)
+    reduced = reduced_network(intact, plan, supply, outage)
     _demand_continuous_motion(reduced, plan, outage, scenario)
     ending = () if outage.to_min is None else (Switching(60.0 * outage.to_min, intact),)
     if outage.from_min == 0.0:

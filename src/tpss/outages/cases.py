@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.outages import Outage
+from tpss.scenario.outages import SWITCHES, Outage
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
@@ -31,7 +31,7 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
 
 
 def single_outages(scenario: Scenario) -> Iterator[Outage]:
-    """Each station, each with one unit fewer if it has several, each transformer, all throughout."""
+    """Each station, each with one unit fewer if it has several, each transformer, each switch."""
     stations = scenario.supply.stations
     for station in stations:
         yield Outage(name=f"{station.name} out", stations=(station.name,))
@@ -40,6 +40,10 @@ def single_outages(scenario: Scenario) -> Iterator[Outage]:
             yield Outage(name=f"{station.name}, one unit out", units={station.name: 1})
     for km in feeding_positions_km(scenario.supply):
         yield Outage(name=f"transformer {kilometres(km)} km out", transformers_km=(km,))
+    for kind in SWITCHES:
+        for switch in getattr(scenario.supply, kind):
+            if switch.closed:
+                yield Outage(name=f"{switch.name} open", opens=(switch.name,))
 
 
 def _content(outage: Outage) -> dict[str, object]:

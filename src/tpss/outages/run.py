@@ -109,6 +109,11 @@ def with_outage(prepared: Prepared, outage: Outage) -> Prepared:
     ScenarioError
         As `service_of`.
     """
+    if outage.opens:  # which is another network, with other sections above the trains
+        kept = [*prepared.scenario.outages, outage]
+        listed = {each.name: each.model_dump(exclude_defaults=True) for each in kept}
+        values = {"outages": list(listed.values()), "simulation.outage": outage.name}
+        return prepare(prepared.scenario.with_(values))
     service, start = service_of(prepared.scenario, outage), prepared.start
     model = start.model._replace(network=service.network)
     return replace(prepared, start=replace(start, model=model, switchings=service.switchings))

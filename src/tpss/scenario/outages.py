@@ -17,6 +17,9 @@ from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
 
+SWITCHES = ("posts", "section_breaks")
+"""Keys of the supply that list switches."""
+
 SAME_PLACE_KM = 0.0004
 """A transformer no further away is the one that is meant; no two are closer than a metre. [km]"""
 
@@ -36,6 +39,9 @@ class Outage(Part):
     transformers_km: tuple[Position, ...] = Field(
         default=(), description="Positions of transformers of the high-voltage line that are out."
     )
+    opens: tuple[Name, ...] = Field(
+        default=(), description="Coupling posts and section breaks that are open, throughout a run."
+    )
     from_min: Real = Field(
         default=0.0, ge=0, le=100_000, description="When it begins, from the start of the run."
     )
@@ -49,6 +55,7 @@ class Outage(Part):
         parts = [f"{name} out" for name in self.stations]
         parts += [f"{count} of {name}'s units out" for name, count in self.units.items()]
         parts += [f"transformer at {kilometres(km)} km out" for km in self.transformers_km]
+        parts += [f"{name} open" for name in self.opens]
         end = "the end" if self.to_min is None else f"{self.to_min:g} min"
         when = "" if self.is_throughout else f", from {self.from_min:g} min to {end}"
         return ", ".join(parts) + when
@@ -71,12 +78,34 @@ class Outage(Part):
 
     @model_validator(mode="after")
     def _takes_something_out(self) -> Self:
-        if not (self.stations or self.units or self.transformers_km):
-            raise fault("nothing is out", "give stations, units or transformers_km")
+        if not (self.stations or self.units or self.transformers_km or self.opens):
+            raise fault("nothing is out", "give stations, units, transformers_km or opens")
         if both := [name for name in self.stations if name in self.units]:
             raise fault(
                 f"{both[0]} is out as a whole, and some of its units besides",
                 "leave it out of stations or of units",
+            )
+        return self
+
+    def switched(self, supply: Supply) -> Supply:
+        """The supply with what it opens open."""
+        if not self.opens:
+            return supply
+        switches = {
+            kind: tuple(
+                each.model_copy(update={"closed": False}) if each.name in self.opens else each
+                for each in getattr(supply, kind)
+            )
+            for kind in SWITCHES
+        }
+        return supply.model_copy(update=switches)
+
+    @model_validator(mode="after")
+    def _switches_stay(self) -> Self:
+        if self.opens and not self.is_throughout:
+            raise fault(
+                "posts and section breaks open throughout a run only",
+                "leave from_min and to_min out, or opens",
             )
         return self
 
@@ -129,6 +158,10 @@ def _faults(outage: Outage, supply: Supply) -> Iterator[_Fault]:
     for key, name in [*named, *((f"units.{name}", name) for name in outage.units)]:
         if name not in stations:
             yield key, repr(name), *unknown("station", name, list(stations))
+    switches = [each.name for kind in SWITCHES for each in getattr(supply, kind)]
+    for i, name in enumerate(outage.opens):
+        if name not in switches:
+            yield f"opens.{i}", repr(name), *unknown("switch", name, switches)
     for name, count in outage.units.items():
         if name in stations:
             yield from _units(name, count, stations[name])
