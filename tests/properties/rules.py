@@ -407,7 +407,7 @@ class Journey:
         """At each stop it meets: within a millimetre at the instants, and for its dwell."""
         for call, stop in enumerate(self.entry.stops):
             place, dwell_s = self.stops_m[call], 60.0 * max(stop.dwell_min, stop.turn_min or 0.0)
-            if self.x[0] >= place or self.x[-1] <= place + STOP_ERROR_M:
+            if self.x[0] >= place - ROUNDING_M or self.x[-1] <= place + STOP_ERROR_M:
                 continue
             stood_s = self.went_on_s[call] - self.arrived_s[call]
             if stop.depart_after_min is not None:
@@ -440,7 +440,7 @@ class Journey:
         for place, dwell, leaves_s in [*stops, (self.end_m, 0, 0.0)]:
             stood = (np.abs(self.x - place) < STOP_ERROR_M) & (self.v == 0.0)
             left = self.x[-1] > place + STOP_ERROR_M
-            if self.x[0] >= place or not (left or stood.any()):
+            if self.x[0] >= place - ROUNDING_M or not (left or stood.any()):
                 continue
             assert stood.any(), f"{self.name} runs through its stop at {place} m"
             if left:

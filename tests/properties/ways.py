@@ -27,11 +27,13 @@ def along_way(scenario: tpss.Scenario, entry: Any) -> Along:
     way = find_way(hops_of(stations), entry.origin, calls, entry.destination, entry.via)
     reached_m: list[float] = []
     limits: list[tuple[float, float]] = []
+    shift_m = 0.0
     for i, hop in enumerate(way.hops):
         begin_m = reached_m[-1] if i else hop.sign * 1e3 * hop.begin_km
-        end_m = begin_m + 1e3 * hop.length_km
+        if i == 0 or (way.hops[i - 1].line, way.hops[i - 1].sign) != (hop.line, hop.sign):
+            shift_m = begin_m - hop.sign * 1e3 * hop.begin_km
+        end_m = hop.sign * 1e3 * hop.end_km + shift_m
         reached_m.append(end_m)
-        shift_m = begin_m - hop.sign * 1e3 * hop.begin_km
         seen = [(from_m + shift_m, limit) for from_m, limit in _seen(lines[hop.line], hop)]
         held = [limit for from_m, limit in seen if from_m <= begin_m][-1]
         limits.append((begin_m if i else -math.inf, held))
