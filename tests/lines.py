@@ -25,7 +25,7 @@ def service(name: str, origin: str, destination: str, **more: Any) -> dict[str, 
 
 
 def network(lines: dict[str, Any], traffic: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
-    first = next(iter(lines))
+    first = next(iter(lines), None)
     station = {"name": "feeder", "line": first, "position_km": 0.0, "type": "Q48/Q49"}
     return {
         "format": 1,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tpss
-from lines import TRAIN, line, network, run, service
+from lines import TRAIN, line, network, run, scenario_of, service
 
 SAME = 1e-9
 """A line that is cut has one more node: voltages are found to a tolerance, not by the same way."""
@@ -265,3 +265,74 @@ def test_of_lines_apart_only_the_one_that_no_station_reaches_is_without_power():
         result.dataset.speed.sel(train="n 1"), calm.dataset.speed.sel(train="n 1"), rtol=SAME
     )
     assert result.trips.arrival_min[1] > calm.trips.arrival_min[1]
+
+
+# Faults
+
+
+def faults_of(document: dict[str, Any]) -> list[tuple[str, str]]:
+    with pytest.raises(tpss.ScenarioError) as caught:
+        scenario_of(document)
+    return [(finding.key, finding.problem) for finding in caught.value.findings]
+
+
+def test_lines_that_do_not_meet_have_no_route_between_them():
+    lines = copy.deepcopy(STAR)
+    lines["branch"]["stations"][0]["name"] = "Forc"
+    traffic = [service(f"{k}", "West", "Mine") for k in range(3)]
+    assert faults_of(network(lines, traffic)) == [
+        ("traffic.0.to", "no lines lead from West to Mine; and 2 more like it")
+    ]
+
+
+def test_two_ways_of_one_length_are_both_named():
+    ring = {"south": line(20.0, {"A": 0.0, "C": 20.0}), "north": line(20.0, {"A": 0.0, "C": 20.0})}
+    ((key, problem),) = faults_of(network(ring, [service("round", "A", "C")]))
+    assert key == "traffic.0.to"
+    assert "over A on south and over A on north" in problem
+
+
+@pytest.mark.parametrize(
+    ("stop", "key"),
+    [
+        ({"station": "East", "dwell_min": 1.0}, "traffic.0.stops.0.turn_min"),
+        ({"station": "Fork", "dwell_min": 1.0, "turn_min": 5.0}, "traffic.0.stops.0.turn_min"),
+    ],
+)
+def test_a_train_turns_where_it_says_so_and_nowhere_else(stop, key):
+    ((found, _),) = faults_of(network(STAR, [service("round", "West", "Mine", stops=[stop])]))
+    assert found == key
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"line": "mian"}, "supply.converter_stations.0.line"),
+        ({"line": None}, "supply.converter_stations.0.line"),
+        ({"line": "branch", "position_km": 5.0}, "supply.converter_stations.0.position_km"),
+        ({"line": None, "position_km": None, "at": "Wets"}, "supply.converter_stations.0.at"),
+        ({"line": "branch", "position_km": None, "at": "East"}, "supply.converter_stations.0.at"),
+        ({"at": "East"}, "supply.converter_stations.0.position_km"),
+    ],
+)
+def test_a_station_that_is_nowhere_or_in_two_places_is_told(change, key):
+    document = network(STAR, [service("up", "West", "East")])
+    station = document["supply"]["converter_stations"][0] | change
+    document["supply"]["converter_stations"] = [
+        {name: value for name, value in station.items() if value is not None}
+    ]
+    assert key in [found for found, _ in faults_of(document)]
+
+
+def test_a_number_of_tracks_that_is_none_is_told_by_its_key():
+    lines = copy.deepcopy(STAR)
+    lines["main"]["tracks"] = 0
+    assert faults_of(network(lines, [service("up", "West", "East")])) == [
+        ("lines.main.tracks", "out of range")
+    ]
+
+
+def test_without_any_line_only_that_is_told():
+    document = network({}, [service("up", "West", "East")])
+    document["supply"]["converter_stations"][0].pop("line", None)
+    assert ("line", "it is missing") in faults_of(document)

@@ -3,7 +3,7 @@
 They read the document as it was written, see `scenario.raw`.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tpss.errors import closest
@@ -29,6 +29,9 @@ def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
     yield from _service_names(document)
     network = hops_of(stations)
     names = list(network)
+    if not names:
+        return  # lines without stations have faults of their own
+    ways: list[Fault] = []
     for i, entry in items(document, "traffic"):
         key = f"traffic.{i}"
         yield from _names(key, entry, trains, names)
@@ -36,7 +39,18 @@ def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
             (places,) = stations.values()
             yield from _along_line(key, entry, places)
         elif all(name in network for name in _calls(entry)):
-            yield from _over_network(key, entry, network, list(stations))
+            ways += _over_network(key, entry, network, list(stations))
+    yield from _each_once(ways)
+
+
+def _each_once(faults: Iterable[Fault]) -> Iterator[Fault]:
+    """Faults of many services that are the same, told once each, with how many there are."""
+    alike: dict[str, list[Fault]] = {}
+    for fault in faults:
+        alike.setdefault(fault[2], []).append(fault)
+    for (key, value, problem, remedy), *others in alike.values():
+        more = f"; and {len(others)} more like it" if others else ""
+        yield key, value, problem + more, remedy
 
 
 def _service_names(document: Mapping[str, Any]) -> Iterator[Fault]:

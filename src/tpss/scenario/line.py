@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic.dataclasses import dataclass
 
 from tpss.scenario.fields import (
@@ -104,7 +104,12 @@ def _one_after_another(curves: Sequence[TrackCurve]) -> Sequence[TrackCurve]:
     return curves
 
 
-Tracks = Annotated[tuple[TrackCount, ...], Field(min_length=1), ascending("from_km")]
+Tracks = Annotated[
+    Annotated[Whole, Field(ge=1, le=8), Tag("number")]
+    | Annotated[tuple[TrackCount, ...], Field(min_length=1), ascending("from_km"), Tag("list")],
+    Discriminator(lambda value: "list" if isinstance(value, list | tuple) else "number"),
+]
+"""A number, or one for each stretch."""
 
 
 class Station(Part):
@@ -150,7 +155,7 @@ class Line(Part):
         description="Speed limits of trains that run towards falling kilometres, if they are others; in "
         "rising kilometres too.",
     )
-    tracks: Annotated[Whole, Field(ge=1, le=8)] | Tracks = Field(
+    tracks: Tracks = Field(
         default=1,
         description="Number of tracks; or a list, each number with from_km, where it begins.",
     )

@@ -103,7 +103,7 @@ def check_stations_named(document: Mapping[str, Any]) -> Iterator[Fault]:
             )
         elif line in lines and at not in lines[str(line)]:
             yield f"{key}.at", repr(at), f"no station of {line}", "leave line out, or correct it"
-        elif km is not None and all(places.get(at, km) != km for places in lines.values()):
+        elif km is not None and km not in [p[at] for p in lines.values() if at in p]:
             yield f"{key}.position_km", kilometres(km), f"not where {at} is", "leave it out"
 
 
