@@ -54,9 +54,9 @@ def judge_values(result: Result) -> None:
 
 
 def judge_separation(result: Result) -> None:
-    """On a line alone, nobody is nearer than the margin behind the rear of a train of his direction.
+    """On a line alone, nobody comes nearer than the margin behind the rear of a train of his direction.
 
-    Trains that were placed too near each other are counted, and nothing is said of the run then.
+    Those that were placed nearer come no nearer; where they cannot brake in time, nothing is said.
     """
     signalling, data = result.scenario.signalling, result.dataset
     if signalling.separation == "none" or len(result.scenario.lines_by_name) > 1:
@@ -77,8 +77,11 @@ def judge_separation(result: Result) -> None:
             order = here[np.argsort(along_m[step, here], kind="stable")]
             for behind, ahead in zip(order, order[1:], strict=False):
                 room_m = along_m[step, ahead] - length_m[ahead] - along_m[step, behind]
-                if moving[step, behind]:
-                    assert room_m >= signalling.margin_m - 0.01, (
+                if step and moving[step, behind] and own[step - 1, [behind, ahead]].all():
+                    before_m = (
+                        along_m[step - 1, ahead] - length_m[ahead] - along_m[step - 1, behind]
+                    )
+                    assert room_m >= min(signalling.margin_m, before_m) - 0.01, (
                         f"{data.train.to_numpy()[behind]} is {room_m} m behind another at step {step}"
                     )
 

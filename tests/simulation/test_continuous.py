@@ -9,6 +9,7 @@ import pytest
 import tpss
 
 from properties.rules import keep_the_rules
+from scenarios import gradients, short_line
 
 STEPS_MIN = [0.01, 0.05, 0.07, 0.5, 1.0, 10.0]
 
@@ -388,3 +389,16 @@ def test_motion_left_out_follows_from_the_other_choices(choice, motion):
     scenario = tpss.Scenario.from_document(document, "line")
     assert scenario.simulation.how_trains_move == motion
     assert math.isfinite(tpss.simulate(scenario).summary["total_energy_mwh"])
+
+
+def test_a_train_that_leaves_its_stop_within_a_step_and_cannot_start_stalls_in_it():
+    """On 60 per mille behind Middle, where the rails pass on 257 kN of the 865 kN that 1470 t take."""
+    steep = gradients((0.0, 0.0), (9.9, 60.0))
+    stop = [{"station": "Middle", "dwell_min": 0.3}]
+    changes = {**steep, "traffic.0.stops": stop, "simulation.time_step_min": 1.0}
+    result = tpss.simulate(short_line(changes))
+    assert result.status == "stalled"
+    assert "cannot start at 10.00 km" in result.summary["problem"]
+    assert result.audit["passed"], result.audit["failures"]
+    (arrival_min,) = result.stops.arrival_min[result.stops.station == "Middle"]
+    assert float(result.dataset.time[-1]) / 60.0 <= arrival_min + 0.3

@@ -38,7 +38,7 @@ def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
         if len(stations) == 1 and not _turns_or_chooses(entry):
             (places,) = stations.values()
             yield from _along_line(key, entry, places)
-        elif all(name in network for name in _calls(entry)):
+        elif all(isinstance(name, str) and name in network for name in _calls(entry)):
             ways += _over_network(key, entry, network, list(stations))
     yield from _each_once(ways)
 

@@ -35,7 +35,8 @@ def find_stalled(count: int, state: State) -> bool:
     for k in range(count):
         i = state.flow.standing[at(k)].train
         train = state.trains[at(i)]
-        if train.motion.phase == Phase.DWELLING:
+        dwells = train.motion.phase == Phase.DWELLING
+        if dwells and train.decision.course != Course.PASSAGE:  # in which it may leave, and fail to
             continue
         forces = train.forces
         powerless = train.motion.speed_m_s <= 0.0 and forces.tractive_n < train.decision.force_n
