@@ -1,10 +1,11 @@
 """Time of a train and step in a network: twenty double-track lines, five hundred trains both ways.
 
-Usage: python benchmarks/network.py [--runs N]
+Usage: python benchmarks/network.py [--runs N] [--publish]
 """
 
 import statistics
 import time
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from tpss.run.kernels import make_ready
 from tpss.run.run import advance_to_end, run_of
 from tpss.step.state import TrainState
 
-from report import arguments, stay_on_one_core
+from report import arguments, caption, deliver, machine, stay_on_one_core, table
 
 LINES, LENGTH_KM, TRAINS = 20, 80.0, 500
 STEPS_MIN, DURATION_MIN = (0.05, 0.1), 60.0
@@ -113,35 +114,65 @@ RAILCAR = {
 }
 
 
-def measure(step_min: float, runs: int) -> None:
-    """Print how long runs with a time step take."""
-    started = time.perf_counter()
+@dataclass(frozen=True)
+class Point:
+    """A time step, and what runs with it took."""
+
+    step_min: float
+    sections: int
+    nodes: int
+    trains: float
+    """On their way at a time, on average."""
+    steps: int
+    passes: float
+    """Evaluations of the network a step."""
+    run_ms: float
+    """Median of the processor time of a run."""
+    train_step_ns: float
+    """Least processor time of a train and step."""
+
+
+def measure(step_min: float, runs: int) -> Point:
+    """Run the network several times with a time step."""
     model, _ = build_model(scenario(step_min))
     start = start_of(scenario(step_min), model)
-    prepared_s = time.perf_counter() - started
     times = []
     for _ in range(runs):
         run = run_of(start)
         began = time.process_time()
         status = advance_to_end(run, start)
         times.append(time.process_time() - began)
+        assert status == "finished"
     state = run.recording.train_state[: run.step]
     train_steps = int(((state >= 0) & (state != TrainState.ARRIVED)).sum())
-    print(
-        f"steps of {step_min:g} min, {status}: {len(model.network.sections)} sections, "
-        f"{model.network.source_of_node.size} nodes, {train_steps / run.step:.0f} trains at a time, "
-        f"{run.step} steps, {run.recording.passes[: run.step].mean():.2f} passes a step; prepared in "
-        f"{prepared_s:.2f} s, a run takes {1e3 * statistics.median(times):.0f} ms, "
-        f"{min(times) / train_steps * 1e9:.0f} ns a train and step at least"
+    return Point(
+        step_min=step_min,
+        sections=len(model.network.sections),
+        nodes=model.network.source_of_node.size,
+        trains=train_steps / run.step,
+        steps=run.step,
+        passes=float(run.recording.passes[: run.step].mean()),
+        run_ms=1e3 * statistics.median(times),
+        train_step_ns=1e9 * min(times) / train_steps,
     )
 
 
 def main() -> None:
-    asked = arguments(__doc__, runs=5)
+    options = arguments(__doc__, runs=7)
+    where = machine()
     stay_on_one_core()
     make_ready(build_model(scenario(STEPS_MIN[0]))[0])
-    for step_min in STEPS_MIN:
-        measure(step_min, asked.runs)
+    points = [measure(step_min, options.runs) for step_min in STEPS_MIN]
+    head = ("step [min]", "sections", "nodes", "trains", "steps", "passes a step", "run [ms]",
+            "step and train [ns]")  # fmt: skip
+    rows = [
+        (f"{p.step_min:g}", f"{p.sections}", f"{p.nodes}", f"{p.trains:.0f}", f"{p.steps:,}",
+         f"{p.passes:.1f}", f"{p.run_ms:.0f}", f"{p.train_step_ns:.0f}")
+        for p in points
+    ]  # fmt: skip
+    text = f"{table(head, rows)}\n\nOf {options.runs} runs. {caption(where)}"
+    result = {"machine": where, "points": [asdict(p) for p in points]}
+    deliver("network", result, text, options.publish)
 
 
 if __name__ == "__main__":
