@@ -14,7 +14,8 @@ import pytest
 import xarray as xr
 
 import tpss
-from tpss.results.electrical_profiles import Track, electrical_profiles, read_tracks
+from tpss.results.electrical_profiles import electrical_profiles
+from tpss.results.osrd_tracks import OsrdTrack, read_tracks
 
 from scenarios import SHORT_LINE
 
@@ -80,7 +81,10 @@ def test_without_tracks_a_line_is_one_in_metres(result):
 
 def test_tracks_have_their_own_positions_falling_ones_where_they_run_the_other_way(result):
     """T1 lies on km 0 to 3, and begins at 100 m; T2 on km 3 to 20, from its end to its beginning."""
-    tracks = [Track("line", 0.0, 3.0, "T1", 100.0, 3100.0), Track("line", 3.0, 20.0, "T2", 17e3, 0)]
+    tracks = [
+        OsrdTrack("line", 0.0, 3.0, "T1", 100.0, 3100.0),
+        OsrdTrack("line", 3.0, 20.0, "T2", 17e3, 0),
+    ]
     (level,) = electrical_profiles(result, tracks)["levels"]
     assert level["track_ranges"] == [
         {"track": "T1", "begin": 100.0, "end": 3100.0},
@@ -95,7 +99,9 @@ HEADER = "line,from_km,to_km,track,begin_m,end_m\n"
 def test_tracks_are_read_from_the_table_of_an_import(result, tmp_path):
     table = tmp_path / "tracks.csv"
     table.write_text(HEADER + "line,0,3,T1,100,3100\n")
-    assert read_tracks(table, result) == [Track("line", 0.0, 3.0, "T1", 100.0, 3100.0)]
+    assert read_tracks(table, result.scenario.lines_by_name) == [
+        OsrdTrack("line", 0.0, 3.0, "T1", 100.0, 3100.0)
+    ]
 
 
 @pytest.mark.parametrize(
@@ -113,4 +119,4 @@ def test_a_table_of_something_else_is_told(result, tmp_path, text, words):
     if text is not None:
         (tmp_path / "tracks.csv").write_text(text)
     with pytest.raises(tpss.ResultError, match=words):
-        read_tracks(tmp_path / "tracks.csv", result)
+        read_tracks(tmp_path / "tracks.csv", result.scenario.lines_by_name)

@@ -8,9 +8,10 @@ from tpss.errors import ResultError
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.results.contents import TABLES
-from tpss.results.electrical_profiles import electrical_profiles, read_tracks
+from tpss.results.electrical_profiles import electrical_profiles
 from tpss.results.export import export
 from tpss.results.file_kinds import Kind
+from tpss.results.osrd_tracks import read_tracks
 from tpss.results.result import load_result
 from tpss.units import kilometres
 
@@ -51,7 +52,7 @@ def export_profiles_of(
     refuse_to_replace(out, force, "a file", Path.is_file)
     document = electrical_profiles(
         result,
-        read_tracks(tracks, result) if tracks else (),
+        read_tracks(tracks, result.scenario.lines_by_name) if tracks else (),
         stretch_km=stretch_km,
         band_v=band_v,
         lowest=lowest,

@@ -9,6 +9,7 @@ from typing import Any
 
 from tpss.importers.quantities import DIGITS
 from tpss.importers.timetable import Service, Train
+from tpss.results.osrd_tracks import OsrdTrack
 
 NO_LIMIT_KMH = 500.0
 """Where a format states no limit: the trains' own highest speeds count. [km/h]"""
@@ -50,19 +51,6 @@ class NetworkLine:
 
 
 @dataclass(frozen=True)
-class TrackRange:
-    """Where a track of the imported format lies on a line."""
-
-    line: str
-    from_km: float
-    to_km: float
-    track: str
-    begin_m: float
-    end_m: float
-    """Positions on the track at `from_km` and `to_km`: falling ones where it runs the other way."""
-
-
-@dataclass(frozen=True)
 class ImportedNetwork:
     """Lines and trains from files of another format, and how these were used."""
 
@@ -72,7 +60,7 @@ class ImportedNetwork:
     lines: list[NetworkLine]
     trains: list[Train] = field(default_factory=list)
     services: list[Service] = field(default_factory=list)
-    tracks: list[TrackRange] = field(default_factory=list)
+    tracks: list[OsrdTrack] = field(default_factory=list)
     system: str = ""
     """Electrification system of most of the lines, if it is known."""
     taken: list[str] = field(default_factory=list)

@@ -1,7 +1,5 @@
 """Files of a scenario from an imported network: lines, a timetable, and a scenario to complete."""
 
-import csv
-import io
 import json
 import math
 from typing import Any
@@ -14,6 +12,7 @@ from tpss.importers.services import EXAMPLE, service_tables
 from tpss.importers.texts import comments
 from tpss.importers.timetable import begin_of_day, clock, csv_text, end_of_day
 from tpss.importers.ways import example_way
+from tpss.results.osrd_tracks import tracks_text
 from tpss.scenario.scenario import Scenario
 
 TRACKS = "tracks.csv"
@@ -104,7 +103,7 @@ def files(network: ImportedNetwork) -> dict[str, str]:
     if network.trains:
         texts[TIMETABLE] = csv_text(network.trains)
     if network.tracks:
-        texts[TRACKS] = _tracks_text(network)
+        texts[TRACKS] = tracks_text(network.tracks)
     return texts
 
 
@@ -170,16 +169,6 @@ def _traffic(network: ImportedNetwork) -> str:
     begin, end, via = example_way(network.stations)
     passed = f"via = [{', '.join(map(_text, via))}]\n" if via else ""
     return EXAMPLE.format(begin=_text(begin), end=_text(end), via=passed)
-
-
-def _tracks_text(network: ImportedNetwork) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["line", "from_km", "to_km", "track", "begin_m", "end_m"])
-    for each in network.tracks:
-        km = (f"{each.from_km:.10g}", f"{each.to_km:.10g}")
-        writer.writerow([each.line, *km, each.track, f"{each.begin_m:.10g}", f"{each.end_m:.10g}"])
-    return text.getvalue()
 
 
 def _text(words: str) -> str:

@@ -9,7 +9,6 @@ from tpss.importers.network import (
     NO_LIMIT_KMH,
     NetworkLine,
     Range,
-    TrackRange,
     own_name,
     plain_name,
     stairs,
@@ -18,6 +17,7 @@ from tpss.importers.osrd_chains import Chain, Layout, Link
 from tpss.importers.osrd_infra import Infra
 from tpss.importers.osrd_stations import SHORTEST_M, Stations, station_names
 from tpss.importers.quantities import DIGITS
+from tpss.results.osrd_tracks import OsrdTrack
 from tpss.scenario.routes import EQUAL_KM
 
 RADII_M = (100.0, 100_000.0)
@@ -84,7 +84,7 @@ class Profiles:
 
 def lines_of(
     layout: Layout, profiles: Profiles, stations: Stations
-) -> tuple[list[NetworkLine], list[TrackRange]]:
+) -> tuple[list[NetworkLine], list[OsrdTrack]]:
     """Lines of all chains, and where the track sections are on them.
 
     A chain is cut where it comes to a station for the second time.
@@ -92,7 +92,7 @@ def lines_of(
     names = station_names(stations)
     taken = set(names.values())
     lines: list[NetworkLine] = []
-    tracks: list[TrackRange] = []
+    tracks: list[OsrdTrack] = []
     for i, chain in enumerate(layout.chains):
         if layout.length_m(i) < SHORTEST_M:
             continue
@@ -156,7 +156,7 @@ def _line(
     )
 
 
-def _track_ranges(name: str, chain: Chain, begin_m: float, end_m: float) -> list[TrackRange]:
+def _track_ranges(name: str, chain: Chain, begin_m: float, end_m: float) -> list[OsrdTrack]:
     ranges = []
     for link in chain:
         low, high = max(link.start_m, begin_m), min(link.end_m, end_m)
@@ -164,7 +164,7 @@ def _track_ranges(name: str, chain: Chain, begin_m: float, end_m: float) -> list
             zero_m = link.place_m(0.0)
             from_km, to_km = (round((each - begin_m) / 1e3, DIGITS) for each in (low, high))
             on_track = (round(abs(each - zero_m), 6) for each in (low, high))
-            ranges.append(TrackRange(name, from_km, to_km, link.section.id, *on_track))
+            ranges.append(OsrdTrack(name, from_km, to_km, link.section.id, *on_track))
     return ranges
 
 

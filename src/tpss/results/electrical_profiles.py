@@ -9,25 +9,19 @@ References
 https://osrd.fr: an ``electrical_profile_set`` is a public format.
 """
 
-import csv
-import io
 import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.errors import ResultError
-from tpss.results.places import line_names, train_lines
+from tpss.results.osrd_tracks import OsrdTrack
+from tpss.results.places import train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import step_values
 from tpss.scenario.supply.system import system_named
-
-TRACK_COLUMNS = ("line", "from_km", "to_km", "track", "begin_m", "end_m")
-"""Columns of a table that says where tracks lie on lines; importers write it as ``tracks.csv``."""
 
 ROUNDING = 1e-9
 """Share of a band by which a voltage may miss it."""
@@ -44,29 +38,9 @@ class Stretch(NamedTuple):
     band_v: float
 
 
-class Track(NamedTuple):
-    """Where a track lies on a line; positions on it fall where it runs against the kilometres."""
-
-    line: str
-    from_km: float
-    to_km: float
-    track: str
-    begin_m: float
-    end_m: float
-
-    def part(self, stretch: Stretch) -> dict[str, Any] | None:
-        """What of the track lies on a stretch, as OSRD writes it."""
-        low, high = max(self.from_km, stretch.from_km), min(self.to_km, stretch.to_km)
-        if self.line != stretch.line or high <= low:
-            return None
-        slope = (self.end_m - self.begin_m) / (self.to_km - self.from_km)
-        ends_m = sorted(round(self.begin_m + slope * (km - self.from_km), 3) for km in (low, high))
-        return {"track": self.track, "begin": ends_m[0], "end": ends_m[1]}
-
-
 def electrical_profiles(
     result: Result,
-    tracks: Sequence[Track] = (),
+    tracks: Sequence[OsrdTrack] = (),
     *,
     stretch_km: float = 1.0,
     band_v: float | None = None,
@@ -78,8 +52,8 @@ def electrical_profiles(
     Parameters
     ----------
     result : Result
-    tracks : sequence of Track
-        Tracks of OSRD; without them each line is a track of its name, in metres from its beginning.
+    tracks : sequence of OsrdTrack
+        Where they lie; without them each line is a track of its name, in metres from its beginning.
     stretch_km : float
         Length of the stretches. [km]
     band_v : float, optional
@@ -101,7 +75,7 @@ def electrical_profiles(
                 part
                 for stretch in stretches
                 for track in on
-                if stretch.band_v == band and (part := track.part(stretch)) is not None
+                if stretch.band_v == band and (part := _part(track, stretch)) is not None
             ]
             if parts:
                 levels.append(
@@ -112,15 +86,23 @@ def electrical_profiles(
     return {"levels": levels, "level_order": {_volts(nominal_v): order}}
 
 
+def _part(track: OsrdTrack, stretch: Stretch) -> dict[str, Any] | None:
+    """What of a track lies on a stretch, as OSRD writes it."""
+    if track.line != stretch.line:
+        return None
+    ends_m = track.part_m(stretch.from_km, stretch.to_km)
+    return ends_m and {"track": track.track, "begin": ends_m[0], "end": ends_m[1]}
+
+
 def _volts(voltage_v: float) -> str:
     return f"{voltage_v:.0f}V"
 
 
-def _lines_as_tracks(result: Result) -> list[Track]:
+def _lines_as_tracks(result: Result) -> list[OsrdTrack]:
     tracks = []
     for name, line in result.scenario.lines_by_name.items():
         length_m = 1e3 * line.length_km
-        tracks.append(Track(name, line.begins_at_km, line.end_km, name, 0.0, length_m))
+        tracks.append(OsrdTrack(name, line.begins_at_km, line.end_km, name, 0.0, length_m))
     return tracks
 
 
@@ -176,37 +158,3 @@ def _voltage_v(
     times = np.bincount(numbers, minlength=count).astype(float)
     total = np.bincount(numbers, values, minlength=count)
     return np.asarray(total / np.where(times > 0.0, times, np.nan))
-
-
-def read_tracks(path: Path, result: Result) -> list[Track]:
-    """Tracks of a table with the columns of `TRACK_COLUMNS`.
-
-    Raises
-    ------
-    ResultError
-        It cannot be read, is no such table, or names lines that the result does not have.
-    """
-    try:
-        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, ValueError, csv.Error) as error:
-        raise ResultError(
-            f"{path} cannot be read: {error}; name the tracks.csv of an import"
-        ) from error
-    if not rows or tuple(rows[0]) != TRACK_COLUMNS:
-        raise ResultError(f"{path} has not the header {','.join(TRACK_COLUMNS)}")
-    known = line_names(result.dataset)
-    known = list(result.scenario.lines_by_name) if known == [""] else known
-    tracks = []
-    for number, cells in enumerate(rows[1:], 2):
-        try:
-            line, from_km, to_km, track, begin_m, end_m = cells
-            found = Track(line, float(from_km), float(to_km), track, float(begin_m), float(end_m))
-            if not found.to_km > found.from_km:
-                raise ValueError("no length")
-        except ValueError as error:
-            raise ResultError(f"{path}: line {number} is not a track: {','.join(cells)}") from error
-        if line not in known:
-            place = f"{path}: line {number}: no line {line} in the result"
-            raise ResultError(f"{place}; lines: {', '.join(known)}")
-        tracks.append(found)
-    return tracks
