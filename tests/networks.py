@@ -1,8 +1,6 @@
 """Small supply networks with constant loads, for tests of the load flow."""
 
-import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +19,7 @@ from tpss.powerflow.system import system
 from tpss.record import Records
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.kinds import Source, SourceKind
-from tpss.track.leg import Leg
+from tpss.track.leg import along_one_line
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -41,13 +39,6 @@ ROTARY = {
     "generator_reactance_ohm": 0.53 * 16.5**2 / 10,
     "motor_reactance_ohm": 0.49 * 16.5**2 / 10.7,
 }
-
-
-def along_one_line(sections: int) -> Records[Leg]:
-    """The leg of a route along a line of so many sections, towards rising kilometres."""
-    legs: Any = Leg.array([(-math.inf, 1.0, 0.0, 0, 1, 0, sections)]).reshape(1, 1)
-    one: Records[Leg] = legs
-    return one
 
 
 @dataclass

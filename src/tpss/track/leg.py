@@ -9,6 +9,9 @@ with the sign σ of the direction and an offset.  The first leg has no offset: o
 position is the place, or minus it.
 """
 
+import math
+from typing import Any
+
 from tpss.kernel import at, fused, inlined, plain
 from tpss.record import Record, Records
 
@@ -29,6 +32,13 @@ class Leg(Record):
     first_section: int
     """Bounds of the sections of contact line above it."""
     end_section: int
+
+
+def along_one_line(sections: int) -> Records[Leg]:
+    """The leg of a route along a line of so many sections, towards rising kilometres."""
+    legs: Any = Leg.array([(-math.inf, 1.0, 0.0, 0, 1, 0, sections)]).reshape(1, 1)
+    one: Records[Leg] = legs
+    return one
 
 
 @inlined

@@ -10,8 +10,9 @@ import pytest
 
 from tpss.powerflow.network import SHORTEST_PIECE_M, Standing
 from tpss.powerflow.placing import section_at, stands_behind
+from tpss.track.leg import along_one_line
 
-from networks import BT, STIFF, along_one_line, constant_loads, network_of, place, sources
+from networks import BT, STIFF, constant_loads, network_of, place, sources
 
 SECTIONS = [(0, 1, 0.0, 10e3, BT, 0.0), (1, 2, 10e3, 30e3, BT, 0.0), (2, 3, 30e3, 40e3, BT, 0.0)]
 NETWORK = network_of(4, SECTIONS, [], sources((0, STIFF)))

@@ -9,9 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from tpss.track.leg import Leg, leg_at, leg_of, place_on_line
-
-from networks import along_one_line
+from tpss.track.leg import Leg, along_one_line, leg_at, leg_of, place_on_line
 
 LEGS = Leg.array(
     [
