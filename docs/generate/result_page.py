@@ -102,7 +102,8 @@ SUMMARY = {
     "result_format": "version of the format in which the result is written",
     "name": "of the scenario",
     "description": "of the scenario",
-    "status": "`finished`, `collapsed` (the line cannot carry its load), `stalled` or `interrupted`",
+    "status": "`finished`, `collapsed` (the line cannot carry its load), `stalled`, `deadlocked` "
+    "(trains wait for each other) or `interrupted`",
     "time_step_min": "time step",
     "duration_min": "simulated time",
     "studied_train": "first departure of the first traffic entry; its arrival ends the run by default",

@@ -95,7 +95,7 @@ MEANINGS = {
     "problem": "why it could not be run, or why its audit failed",
     "collapsed": "whether the line could not carry its load",
     "stalled": "whether a train could not continue",
-    "duration_min": "simulated time; when it collapsed or stalled",
+    "duration_min": "simulated time; of a run that ended early, when it did",
     "steps": "steps carried out",
     "carried_share": "share of the load that a collapsing line could carry, otherwise 1",
     "trip_time_min": "trip time of the studied train",

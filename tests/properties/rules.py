@@ -98,7 +98,7 @@ def judge_departures(result: Result) -> None:
     """A train departs at its time; in stepped motion, at the first instant no more than 1 µs before."""
     data, h = result.dataset, result.dataset.attrs["time_step_s"]
     continuous = result.scenario.simulation.how_trains_move == "continuous"
-    begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled"))
+    begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled", "deadlocked"))
     for entry in result.scenario.traffic:
         asked_min = entry.listed_departures_min
         if asked_min is None:

@@ -100,7 +100,7 @@ def test_a_train_waits_behind_one_that_dwells_and_that_is_told():
     document["signalling"] = {"separation": "moving-block"}
     result = run(document)
     (wait,) = result.waits.itertuples()
-    assert (wait.train, wait.ahead) == ("second 1", "first 1")
+    assert (wait.train, wait.waited_for) == ("second 1", "first 1")
     assert wait.position_km == pytest.approx(19.55, abs=0.01)
     leaves_min = result.stops.departure_min[result.stops.station == "M"].iloc[0]
     assert wait.to_min == pytest.approx(leaves_min, abs=1.0)
@@ -114,7 +114,7 @@ def test_a_train_waits_at_its_origin_until_the_one_ahead_has_left():
     document["signalling"] = {"separation": "moving-block"}
     result = run(document)
     assert np.nanmin(gaps_m(result)[20:]) >= 450.0 - 1e-3
-    assert result.waits.ahead.tolist() == ["up 1"]
+    assert result.waits.waited_for.tolist() == ["up 1"]
 
 
 def test_trains_are_kept_apart_beyond_the_station_where_lines_meet():

@@ -1,7 +1,7 @@
 """Entry point of the command line.
 
-Exit codes: 0 done, 2 bad input, 3 no solution or a stalled train (results up to then are saved),
-4 the audit failed, 130 interrupted (results are saved).
+Exit codes: 0 done, 2 bad input, 3 no solution, a stalled train or a deadlock (results up to then are
+saved), 4 the audit failed, 130 interrupted (results are saved).
 """
 
 import atexit
@@ -397,8 +397,8 @@ def outages(
     their mean useful voltage. In brackets stands what differs from the intact supply; late and lost
     count against it too. The CSV file holds more: trains, times, windows of loading, differences.
 
-    Exit codes: 0 done, 2 bad input, 3 a run did not solve or a train stalled, 4 the audit of a run
-    failed, 130 interrupted (the table holds the runs that were done).
+    Exit codes: 0 done, 2 bad input, 3 a run did not solve, a train stalled or trains deadlocked, 4 the
+    audit of a run failed, 130 interrupted (the table holds the runs that were done).
     """
     from tpss.cli.outages import run_outages
 

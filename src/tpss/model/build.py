@@ -8,6 +8,7 @@ import numpy as np
 
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
+from tpss.model.gates import build_gates, no_gates
 from tpss.model.legs import build_legs
 from tpss.model.outages import service_of
 from tpss.model.profiles import build_profiles, rows_seen
@@ -19,6 +20,8 @@ from tpss.record import Records
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model, RunControl
 from tpss.step.separation import Separation, Signalling
+from tpss.step.turns import Gates
+from tpss.track.gate import Precedence
 from tpss.track.leg import Leg
 from tpss.units import si
 
@@ -63,6 +66,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         network=service_of(scenario).network,
         legs=build_legs(routes, lines, plan.runs),
         signalling=_signalling(scenario),
+        rules=_rules(scenario, routes),
     )
     return model, Layout(
         supply=plan,
@@ -103,10 +107,19 @@ def _options(scenario: Scenario) -> Options:
     )
 
 
+def _rules(scenario: Scenario, routes: Sequence[Route]) -> Gates:
+    """Gates of the routes, if trains wait for others to pass."""
+    signalling = scenario.signalling
+    if not signalling.has_gates:
+        return no_gates(len(routes))
+    return build_gates(routes, scenario.lines_by_name, signalling.margin_m)
+
+
 def _signalling(scenario: Scenario) -> Signalling:
     given = scenario.signalling
     return Signalling(
         separation=switch(Separation[_member(given.separation)]),
+        precedence=switch(Precedence[_member(given.single_track)]),
         reaction_s=given.reaction_s,
         margin_m=given.margin_m,
         block_m=given.block_m or 0.0,

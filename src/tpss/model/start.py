@@ -1,9 +1,12 @@
 """What a run of a model begins with."""
 
+from tpss.errors import Finding, ScenarioError
 from tpss.model.build import steps_of
 from tpss.model.outages import service_of
 from tpss.model.supplements import with_supplements
 from tpss.model.traffic import build_services
+from tpss.run.dispatch import NoOrderError
+from tpss.run.order import with_order
 from tpss.run.run import Start, begin
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
@@ -16,7 +19,8 @@ def start_of(scenario: Scenario, model: Model) -> Start:
     Raises
     ------
     ScenarioError
-        A train that the scenario places on the line could not stop or slow down in time.
+        A train that the scenario places on the line could not stop or slow down in time, or trains
+        that keep an order on single tracks cannot all come through.
     TooLargeError
         The recording would not fit into memory.
     """
@@ -24,4 +28,16 @@ def start_of(scenario: Scenario, model: Model) -> Start:
     steps = None
     if scenario.simulation.duration_min is not None:
         steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    return begin(model, services, steps, service_of(scenario).switchings)
+    start = begin(model, services, steps, service_of(scenario).switchings)
+    try:
+        return with_order(start)
+    except NoOrderError as error:
+        one, other = (start.trains[i].name for i in (error.one, error.other))
+        problem = f"{one} and {other} are in each other's way: not all trains come through"
+        remedy = (
+            "let trains on the way at the start stand so that they can cross, or give crossing stations "
+            'more tracks; or write "free"'
+        )
+        source, key = str(scenario.source), "signalling.single_track"
+        value = repr(scenario.signalling.single_track)
+        raise ScenarioError([Finding(source, key, value, problem, remedy)]) from error

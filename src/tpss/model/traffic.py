@@ -1,5 +1,6 @@
 """The traffic of a scenario as services."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Profile
@@ -7,6 +8,7 @@ from tpss.driving.manners import stopping_distance
 from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
+from tpss.model.gates import crossing_places
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.numerics.staircase import index_at
 from tpss.run.delays import Delays
@@ -25,7 +27,8 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
     Raises
     ------
     ScenarioError
-        A train placed on the line is faster than its limit, or cannot stop or slow down in time.
+        A train placed on the line is faster than its limit, or cannot stop or slow down in time; a train
+        is longer than the tracks on which it may have to wait for others to cross.
     """
     routes, services = routes_of(scenario), []
     running = running_trains(scenario, routes)
@@ -52,9 +55,31 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
         for i in range(len(service.initial))
         for finding in _check_placed(service, route, i, model, str(scenario.source))
     ]
+    if scenario.signalling.has_gates:
+        findings += _too_long(scenario, routes)
     if findings:
         raise ScenarioError(findings)
     return services
+
+
+def _too_long(scenario: Scenario, routes: Sequence[Route]) -> list[Finding]:
+    """Trains that are longer than the tracks on which they may have to wait."""
+    found: dict[tuple[str, str], Finding] = {}
+    for entry, route in zip(scenario.traffic, routes, strict=True):
+        length_m = scenario.trains[entry.train].length_m
+        for station in crossing_places(route, scenario.lines_by_name):
+            room_m = station.track_length_m
+            if room_m is None or length_m <= room_m:
+                continue
+            problem = (
+                f"longer than the tracks of {station.name}, {room_m:g} m, where {entry.name} may have "
+                "to wait for others to cross"
+            )
+            remedy = f"shorten the train, or let nobody cross at {station.name}: tracks = 1"
+            key = f"trains.{entry.train}.length_m"
+            finding = Finding(str(scenario.source), key, f"{length_m:g}", problem, remedy)
+            found.setdefault((entry.train, station.name), finding)
+    return list(found.values())
 
 
 def _delays(entry: Traffic) -> Delays | None:

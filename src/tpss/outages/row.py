@@ -25,12 +25,13 @@ class Verdict(IntEnum):
     AUDIT_FAILED = 0
     NO_SOLUTION = 1
     STALLED = 2
-    NOT_FED = 3
-    STRANDED = 4
-    VOLTAGE = 5
-    USEFUL_VOLTAGE = 6
-    OVERLOAD = 7
-    KEPT = 8
+    DEADLOCKED = 3
+    NOT_FED = 4
+    STRANDED = 5
+    VOLTAGE = 6
+    USEFUL_VOLTAGE = 7
+    OVERLOAD = 8
+    KEPT = 9
 
     @property
     def words(self) -> str:
@@ -39,6 +40,7 @@ class Verdict(IntEnum):
             Verdict.AUDIT_FAILED: "audit failed",
             Verdict.NO_SOLUTION: "did not solve",
             Verdict.STALLED: "train stalled",
+            Verdict.DEADLOCKED: "trains deadlocked",
             Verdict.NOT_FED: "not fed, not run",
             Verdict.STRANDED: "trains stranded",
             Verdict.VOLTAGE: "voltage limit violated",
@@ -48,7 +50,11 @@ class Verdict(IntEnum):
         }[self]
 
 
-ENDINGS = {"collapsed": Verdict.NO_SOLUTION, "stalled": Verdict.STALLED}
+ENDINGS = {
+    "collapsed": Verdict.NO_SOLUTION,
+    "stalled": Verdict.STALLED,
+    "deadlocked": Verdict.DEADLOCKED,
+}
 
 FIGURES = (
     "lowest_voltage_kv", "useful_voltage_kv", "train_useful_voltage_kv", "peak_loading",

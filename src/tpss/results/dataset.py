@@ -12,6 +12,7 @@ from xarray.indexes import PandasIndex
 
 from tpss.model.build import Layout
 from tpss.results.contents import FORMAT, FORMAT_KEY
+from tpss.results.places import WAITS_FOR
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
@@ -36,6 +37,10 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         for each in RECORDED
     }
     variables |= _lines_and_tracks(outcome, layout)
+    if outcome.recording.waits_for.size:
+        words = {"units": "1", "long_name": "index of the train that it waits for; -1: none"}
+        waits_for = outcome.recording.waits_for
+        variables[WAITS_FOR] = xr.Variable(("time", "train"), waits_for, words)
     return xr.Dataset(variables, coords=_indexed(_coordinates(outcome, model, layout)))
 
 

@@ -51,7 +51,7 @@ _LIMITED = {
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
-    "too_near": "trains were nearer to others than they could brake for, where lines meet or as placed",
+    "too_near": "trains were nearer to others, or to where they had to wait, than they could brake for",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
 }
 
@@ -67,6 +67,8 @@ def explain(outcome: Outcome, model: Model, scenario: Scenario) -> dict[str, str
         return _collapse(outcome, model, time_min, stations, list(scenario.lines_by_name))
     if outcome.status == "stalled":
         return _stall(outcome, model, scenario, time_min)
+    if outcome.status == "deadlocked":
+        return _deadlock(outcome, model, scenario, time_min)
     if outcome.status == INTERRUPTED:
         problem = f"Stopped at {time_min:.2f} min; the result holds what was simulated until then."
         return {"problem": problem, "advice": "Run it again to the end."}
@@ -242,6 +244,27 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
     problem += f" The lowest voltage on the line is {voltages_v.min() / 1e3:.2f} kV."
     described = scenario.trains_by_service()[scheduled.service]
     return {"problem": problem, "advice": stall_advice(forces, demand, kind, described, model)}
+
+
+def _deadlock(
+    outcome: Outcome, model: Model, scenario: Scenario, time_min: float
+) -> dict[str, str]:
+    """Which trains wait for each other, in a circle, and where."""
+    holdings, lines = outcome.state.turns.holdings, list(scenario.lines_by_name)
+    chain = [int(outcome.state.clock[0].deadlocked_train)]
+    while (whom := int(holdings[chain[-1]].waits_for)) not in chain:
+        chain.append(whom)
+    circle = chain[chain.index(whom) :]
+    told = []
+    for i, other in zip(circle, [*circle[1:], circle[0]], strict=True):
+        line, place_km = _place(outcome.state.trains[i], model, lines)
+        here = on_line(line, f"{place_km:.2f} km")
+        told.append(f"{outcome.trains[i].name} at {here} for {outcome.trains[other].name}")
+    return {
+        "problem": f"At {time_min:.2f} min trains wait for each other: {', '.join(told)}.",
+        "advice": "Let them cross elsewhere: give stations where they meet more tracks, or change the "
+        "times of the trains that come first.",
+    }
 
 
 def warnings(summary: dict[str, Any], but: Collection[str] = ()) -> list[str]:

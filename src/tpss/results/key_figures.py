@@ -78,11 +78,11 @@ class KeyFigures:
     name : str
         Name of the scenario.
     status : str
-        ``finished``, ``collapsed``, ``stalled`` or ``interrupted``.
+        ``finished``, ``collapsed``, ``stalled``, ``deadlocked`` or ``interrupted``.
     steps : int
         Steps carried out.
     duration_min : float
-        Simulated time; of a run that collapsed or stalled, when it did.
+        Simulated time; of a run that ended early, when it did.
     carried_share : float
         Share of its load that the line could carry when it collapsed, otherwise 1.
     studied_train : str or None

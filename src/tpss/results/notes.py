@@ -144,7 +144,7 @@ def _passing(result: Result) -> Iterator[str]:
         where = "the line has one track" if single else "they run on one track"
         yield (
             f"trains passed through each other {times}, first {found[0].in_words}: {where}, and "
-            "nothing keeps trains apart"
+            "nothing keeps trains apart; signalling.single_track does"
         )
 
 

@@ -29,6 +29,10 @@ TRACK = "train_track"
 """Variable with the tracks of the trains; a dataset of single-track lines has none."""
 
 
+WAITS_FOR = "waits_for"
+"""Variable with the indices of the trains that others wait for, where trains are kept apart."""
+
+
 def train_tracks(dataset: xr.Dataset) -> Indices:
     """Track of each train at each instant, counted from 1, shape (time, train)."""
     if TRACK not in dataset:

@@ -46,7 +46,7 @@ class Result:
 
     @property
     def status(self) -> str:
-        """``finished``, ``collapsed``, ``stalled`` or ``interrupted``."""
+        """``finished``, ``collapsed``, ``stalled``, ``deadlocked`` or ``interrupted``."""
         return str(self.figures["status"])
 
     @property

@@ -8,6 +8,7 @@ Summary = Mapping[str, Any]
 _ENDS = {
     "finished": "the run finishes",
     "stalled": "a train stalls at {at:.2f} min",
+    "deadlocked": "trains wait for each other at {at:.2f} min",
     "collapsed": "the line cannot carry its load at {at:.2f} min",
 }
 """How a run ends, by its status."""

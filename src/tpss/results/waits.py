@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tpss.results.places import line_names, train_lines, train_tracks
+from tpss.results.places import WAITS_FOR, line_names, train_lines
 from tpss.results.standards.windows import table_of
 from tpss.step.state import TrainState
 from tpss.units import on_line
@@ -26,8 +26,10 @@ class Wait(NamedTuple):
     to_min: float
     waited_min: float
     """Without its dwell, if it stood at a stop."""
-    ahead: str
-    """The train that it waited for, the next one ahead of it on its track; empty: it had gone on."""
+    waited_for: str
+    """The train that it waited for longest: one ahead of it, or that has to pass a gate first; empty:
+    none is known.
+    """
 
 
 def waits(dataset: xr.Dataset) -> pd.DataFrame:
@@ -48,7 +50,7 @@ def waits(dataset: xr.Dataset) -> pd.DataFrame:
                         begin_s / 60.0,
                         end_s / 60.0,
                         waited_s / 60.0,
-                        _ahead(dataset, i, first),
+                        _whom(dataset, i, first, last),
                     )
                 )
     return table_of(rows, Wait)
@@ -60,7 +62,7 @@ def waits_in_words(waited: pd.DataFrame) -> list[str]:
         return []
     worst = waited.iloc[int(waited.waited_min.to_numpy().argmax())]
     place = on_line(worst.get("line", ""), f"{worst.position_km:.2f} km")
-    whom = f" for {worst.ahead}" if worst.ahead else ""
+    whom = f" for {worst.waited_for}" if worst.waited_for else ""
     return [
         f"Trains stood {waited.waited_min.sum():.2f} min for others, most {worst.train} at {place}, "
         f"{worst.waited_min:.2f} min{whom}"
@@ -89,19 +91,10 @@ def _dwelled_s(dataset: xr.Dataset, i: int, begin_s: float, end_s: float) -> flo
     return float(np.nansum(np.maximum(shared_s, 0.0)))
 
 
-def _ahead(dataset: xr.Dataset, i: int, instant: int) -> str:
-    """The nearest train ahead on the track of a train, in its direction."""
-    position_m, along_m = (
-        dataset[name].to_numpy()[instant] for name in ("position", "route_position")
-    )
-    lines, tracks = train_lines(dataset)[instant], train_tracks(dataset)[instant]
-    moved_m = np.nan_to_num(np.diff(dataset.route_position.to_numpy()[:, i]))
-    rising = np.nan_to_num(np.diff(dataset.position.to_numpy()[:, i])) * moved_m
-    sign = -1.0 if rising.sum() < 0.0 else 1.0
-    way_m = sign * (position_m - position_m[i])
-    with np.errstate(invalid="ignore"):  # trains that are not there
-        others = (lines == lines[i]) & (tracks == tracks[i]) & (way_m >= 0.0) & np.isfinite(along_m)
-    others[i] = False
-    if not others.any():
+def _whom(dataset: xr.Dataset, i: int, first: int, last: int) -> str:
+    """The train for which another one waited longest between two instants."""
+    if WAITS_FOR not in dataset:  # written by an earlier version
         return ""
-    return str(dataset.train.to_numpy()[np.where(others, way_m, np.inf).argmin()])
+    whom = dataset[WAITS_FOR].to_numpy()[first : last + 1, i]
+    found, steps = np.unique(whom[whom >= 0], return_counts=True)
+    return str(dataset.train.to_numpy()[found[steps.argmax()]]) if found.size else ""

@@ -30,6 +30,7 @@ from tpss.step.advance import advance
 from tpss.step.model import Model, RunControl
 from tpss.step.recording import Memory, Recording, new_recording, recording_bytes
 from tpss.step.state import State, Status, new_state
+from tpss.step.turns import Turn
 from tpss.vehicle.train import Phase, Train
 
 STRETCH_S = 0.05
@@ -46,7 +47,10 @@ STATUS_NAME = {
     Status.FINISHED: "finished",
     Status.COLLAPSED: "collapsed",
     Status.STALLED: "stalled",
+    Status.DEADLOCKED: "deadlocked",
 }
+NOT_CARRIED_OUT = (Status.COLLAPSED, Status.STALLED, Status.DEADLOCKED)
+"""How runs end whose last step has begun, but is not carried out."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,7 @@ class Run:
         records: Records[Train] | None = None,
         memory: Memory = np.empty,
         with_journeys: bool = False,
+        turns: Records[Turn] | None = None,
     ) -> None:
         self.model = model
         self.clock = clock
@@ -121,7 +126,7 @@ class Run:
         self.status = Status.RUNNING
         if records is None:
             records = train_records(trains, model.network.system.nominal_voltage_v)
-        self.state = new_state(model, copy_of_records(records))
+        self.state = new_state(model, copy_of_records(records), turns)
         self.with_journeys = with_journeys
         self.recording = new_recording(model, capacity, len(trains), memory, with_journeys)
         self.networks = [(0, model.network)]
@@ -156,7 +161,7 @@ class Run:
         A train that is due at the last instant has not departed, nor one that would have within the
         last step, had that not ended before.
         """
-        begun = self.step + (self.status in (Status.COLLAPSED, Status.STALLED))
+        begun = self.step + (self.status in NOT_CARRIED_OUT)
         departed = sum(train.departure_step < max(begun, 1) for train in self.trains)
         if begun == 0:
             return departed
@@ -191,12 +196,15 @@ class Run:
         records = train_records(self.trains, self.model.network.system.nominal_voltage_v)
         records[: state.trains.size] = state.trains
         self.state = new_state(self.model, records)
-        flow = self.state.flow
+        flow, turns = self.state.flow, self.state.turns
         for old, new in (
             (state.flow.nodes, flow.nodes),
             (state.flow.sections, flow.sections),
             (state.flow.sources, flow.sources),
             (state.clock, self.state.clock),
+            (state.turns.holdings, turns.holdings[: state.trains.size]),
+            (state.turns.uses, turns.uses),
+            (state.turns.places, turns.places),
         ):
             new[:] = old
         self.recording = new_recording(
@@ -297,6 +305,8 @@ class Start:
     """Place of the studied train among them, or -1."""
     switchings: tuple[Switching, ...] = ()
     """Networks that take the place of the model's, in the order of time."""
+    turns: Records[Turn] | None = None
+    """Planned order at gates, if trains keep one."""
 
 
 def begin(
@@ -346,7 +356,9 @@ def run_of(start: Start, clock: Clock = advance, memory: Memory = np.empty) -> R
     TooLargeError
         The recording would not fit into memory.
     """
-    return Run(start.model, start.trains, start.capacity, clock, start.records, memory)
+    return Run(
+        start.model, start.trains, start.capacity, clock, start.records, memory, turns=start.turns
+    )
 
 
 def advance_to_end(
@@ -442,6 +454,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         counters=kept.counters,
         journeys=kept.journeys,
         calls=kept.calls[:count],
+        waits_for=kept.waits_for[:rows, :count],
     )
     return Outcome(
         status=status,

@@ -53,10 +53,14 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Trains that are kept apart, with stepped motion, which knows no authorities."""
+    """Trains that are kept apart: with stepped motion, which knows no authorities, or without an end."""
     choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
     choices += made_of_stepped_motion(simulation.get)
-    wanted = table(document, "signalling").get("separation", "none")
+    signalling = table(document, "signalling")
+    if signalling.get("single_track") == "timetable-order" and "duration_min" not in simulation:
+        problem = "it is missing; the order of trains is planned for as long as the run lasts"
+        yield "simulation.duration_min", "", problem, "add it"
+    wanted = signalling.get("separation", "none")
     if choices and wanted != "none":
         problem = f"does not go with {choices[0]}"
         yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"

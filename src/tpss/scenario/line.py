@@ -123,6 +123,12 @@ class Station(Part):
         le=50,
         description="Tracks at the station: with more than one, trains may cross there.",
     )
+    track_length_m: Real | None = Field(
+        default=None,
+        ge=10,
+        le=10_000,
+        description="Length of its shortest track where trains cross; leave it out: any train has room.",
+    )
 
 
 class Line(Part):

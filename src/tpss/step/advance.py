@@ -11,12 +11,15 @@ from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
+from tpss.step.deadlock import find_deadlock
 from tpss.step.model import Model, driving_data, with_step
+from tpss.step.precedence import let_pass
 from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
+from tpss.track.gate import Precedence
 from tpss.vehicle.train import Course, Phase, Train
 
 ARRIVAL_S = 1e-6
@@ -63,11 +66,33 @@ def begin_step(step: int, model: Model, state: State, recording: Recording) -> i
     # 3. Where the trains stand, and how far that lets others go.
     count = place_trains(model, state)
     if model.signalling.separation != Separation.NONE:
-        recording.counters[Counter.TOO_NEAR] += keep_apart(
-            count, model.options.step_s, state.flow.standing, state.trains, model.types, model.legs,
-            state.occupancies, state.first_on_track, model.signalling,
-        )  # fmt: skip
+        separate_trains(step, count, model, state, recording)
     return count
+
+
+@kernel
+def separate_trains(
+    step: int, count: int, model: Model, state: State, recording: Recording
+) -> None:
+    """Let trains pass their gates, and go as far as others let them; note whom they wait for."""
+    step_s, signalling, standing = model.options.step_s, model.signalling, state.flow.standing
+    gated = signalling.precedence != Precedence.FREE
+    if gated:
+        let_pass(
+            count, step * step_s, step_s, signalling.reaction_s, signalling.margin_m, standing,
+            state.trains, model.types, model.stops, model.rules, state.turns,
+        )  # fmt: skip
+    recording.counters[Counter.TOO_NEAR] += keep_apart(
+        count, step_s, standing, state.trains, model.types, model.legs, model.rules, state.turns,
+        state.occupancies, state.first_on_track, signalling,
+    )  # fmt: skip
+    for n in range(count):
+        i = standing[at(n)].train
+        recording.waits_for[at(step), at(i)] = state.turns.holdings[at(i)].waits_for
+    if gated:
+        state.clock[0].deadlocked_train = find_deadlock(
+            count, standing, state.trains, model.rules, state.turns
+        )
 
 
 @kernel
@@ -250,6 +275,9 @@ def run_steps(
         if not goes_on:
             clock.on_line = begin_step(step, model, state, recording)
             clock.lengths_tried, clock.passes = 0, 0
+            if clock.deadlocked_train >= 0:
+                status = Status.DEADLOCKED
+                break
             if step > clock.fresh_step:
                 predict(state.flow)
         share = solve_lengths(step, goes_on, model, state, recording)

@@ -8,6 +8,7 @@ from tpss.numerics.curve import Points
 from tpss.powerflow.network import Network
 from tpss.record import Records
 from tpss.step.separation import Signalling
+from tpss.step.turns import Gates
 from tpss.track.leg import Leg
 from tpss.vehicle.train_type import TrainType
 
@@ -39,6 +40,8 @@ class Model(NamedTuple):
     legs: Records[Leg]
     """Shape (routes, most legs); what is left of a row begins nowhere."""
     signalling: Signalling
+    rules: Gates
+    """Gates of all routes; a route ends with one that is infinite."""
 
 
 @inlined
@@ -65,6 +68,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.network,
         model.legs,
         model.signalling,
+        model.rules,
     )
 
 

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tpss.record import Record, Records
 from tpss.step.model import Model
 from tpss.step.recorded import NodeRow, StationRow, TrainRow
+from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 from tpss.vehicle.train import Journey
 
@@ -45,6 +46,14 @@ class Recording(NamedTuple):
     """Shape (instants, trains); empty unless they are asked for."""
     calls: Records[Call]
     """Shape (trains, most stops): when each train stood at its stops, if it moves continuously."""
+    waits_for: npt.NDArray[np.int32]
+    """Shape (instants, trains): train for which each one waits; -1: none.  Empty unless trains are kept
+    apart."""
+
+
+def is_kept_apart(model: Model) -> bool:
+    """Whether trains look out for others."""
+    return model.signalling.separation != Separation.NONE
 
 
 def recording_bytes(model: Model, steps: int, trains: int) -> int:
@@ -54,6 +63,7 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += network.source_of_node.size * NodeRow.dtype.itemsize
     row += network.sources.size * StationRow.dtype.itemsize
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
+    row += 4 * trains * is_kept_apart(model)
     return (steps + 1) * row
 
 
@@ -104,4 +114,5 @@ def new_recording(
         counters=np.zeros(len(Counter), dtype=np.int64),
         journeys=Journey.blank(kept, trains),
         calls=_no_calls(trains, model.stops.shape[1]),
+        waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
     )

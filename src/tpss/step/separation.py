@@ -13,7 +13,9 @@ the end of its authority after a reaction time t_r of going on as before:
 the reaction time being a time step at least, in which the place that it aims at stays.
 
 Trains are kept in a list for each track, so that a train looks at those on its own way only.
-Trains that run towards each other on one track do not see each other.
+Trains that run towards each other on one track do not see each other: what keeps them apart are gates
+(`precedence`), at which a train brakes as for a stop.  Trains that wait beside each other at a crossing
+place, each on a track of its own, do not see each other either.
 """
 
 import math
@@ -23,9 +25,13 @@ from typing import NamedTuple
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Indices, Standing
 from tpss.record import Record, Records
+from tpss.step.deadlock import in_the_way
+from tpss.step.precedence import reach_of
+from tpss.step.turns import NOBODY, Gates, Holding, Turns
+from tpss.track.gate import Precedence
 from tpss.track.leg import Leg, place_on_line
 from tpss.vehicle.braking import braking_square
-from tpss.vehicle.train import Train
+from tpss.vehicle.train import Motion, Phase, Train
 from tpss.vehicle.train_type import TrainType
 
 MOST_TRACKS = 8
@@ -53,6 +59,8 @@ class Signalling(NamedTuple):
     """What keeps trains apart."""
 
     separation: Separation
+    precedence: Precedence
+    """What keeps trains apart that meet on a single track, or come together."""
     reaction_s: float
     """Time that a train goes on before it brakes. [s]"""
     margin_m: float
@@ -71,6 +79,8 @@ class Occupancy(Record):
     """Where it begins on the line. [m]"""
     high_m: float
     """Where it ends. [m]"""
+    place: int
+    """Crossing place at which it waits, or -1."""
     next: int
     """Next one on the track; -1: none."""
 
@@ -88,21 +98,22 @@ def _track(leg: Leg) -> int:
 
 @kernel
 def _occupy(
-    k: int, i: int, from_m: float, to_m: float, leg: Leg, occupancies: Records[Occupancy],
-    first: Indices,
+    k: int, i: int, from_m: float, to_m: float, place: int, leg: Leg,
+    occupancies: Records[Occupancy], first: Indices,
 ) -> None:  # fmt: skip
     """Note in the `k`-th entry that train `i` stands between two positions along its route. [m]"""
     entry, track = occupancies[at(k)], _track(leg)
     one_m, other_m = place_on_line(from_m, leg), place_on_line(to_m, leg)
     entry.train, entry.sign = i, leg.sign
-    entry.low_m, entry.high_m = min(one_m, other_m), max(one_m, other_m)
+    entry.low_m, entry.high_m, entry.place = min(one_m, other_m), max(one_m, other_m), place
     entry.next, first[at(track)] = first[at(track)], k
 
 
 @inlined
 def note_places(
     count: int, standing: Records[Standing], trains: Records[Train], types: Records[TrainType],
-    legs: Records[Leg], occupancies: Records[Occupancy], first: Indices,
+    legs: Records[Leg], holdings: Records[Holding], occupancies: Records[Occupancy],
+    first: Indices,
 ) -> None:  # fmt: skip
     """List what the first `count` trains of `standing` stand on, by tracks."""
     first[:] = -1
@@ -111,12 +122,18 @@ def note_places(
         train = trains[at(i)]
         head_m = train.motion.position_m
         rear_m = head_m - types[at(train.train_type)].length_m
-        leg = legs[at(train.route), at(train.leg)]
-        _occupy(2 * n, i, max(rear_m, leg.from_m), head_m, leg, occupancies, first)
+        leg, place = legs[at(train.route), at(train.leg)], holdings[at(i)].place
+        _occupy(2 * n, i, max(rear_m, leg.from_m), head_m, place, leg, occupancies, first)
         if rear_m < leg.from_m and train.leg > 0:
             before = legs[at(train.route), at(train.leg - 1)]
             rear_m = max(rear_m, before.from_m)
-            _occupy(2 * n + 1, i, rear_m, leg.from_m, before, occupancies, first)
+            _occupy(2 * n + 1, i, rear_m, leg.from_m, place, before, occupancies, first)
+
+
+@inlined
+def _rear(entry: Occupancy, leg: Leg) -> float:
+    """Where an occupied part of a track begins, along the route of a train behind it. [m]"""
+    return leg.sign * ((entry.low_m if leg.sign > 0.0 else entry.high_m) - leg.offset_m)
 
 
 @inlined
@@ -144,14 +161,19 @@ def _is_ahead(entry: Occupancy, i: int, position_m: float, own: bool, leg: Leg) 
 
 @kernel
 def end_of_authority(
-    i: int, reach_m: float, train: Train, legs: Records[Leg], occupancies: Records[Occupancy],
-    first: Indices, signalling: Signalling,
-) -> float:  # fmt: skip
-    """Position that train `i` may not pass because of others; infinite: none within its reach. [m]"""
-    end_m, position_m = math.inf, train.motion.position_m
+    i: int, reach_m: float, gate_m: float, beside: int, train: Train, legs: Records[Leg],
+    occupancies: Records[Occupancy], first: Indices, signalling: Signalling,
+) -> tuple[float, int]:  # fmt: skip
+    """Position that train `i` may not pass because of another one, and which; infinite: there is none
+    within its reach. [m]
+
+    Trains beyond a gate that it may not pass are not in its way, nor those that wait at the crossing
+    place `beside` it, where it has a track too.
+    """
+    end_m, whom, position_m = math.inf, NOBODY, train.motion.position_m
     for n in range(train.leg, legs.shape[1]):
         leg = legs[at(train.route), at(n)]
-        if leg.from_m > position_m + reach_m or end_m < leg.from_m:
+        if leg.from_m > position_m + reach_m or end_m < leg.from_m or gate_m <= leg.from_m:
             break
         until_m = math.inf
         if n + 1 < legs.shape[1]:
@@ -159,62 +181,103 @@ def end_of_authority(
         k = first[at(_track(leg))]
         while k >= 0:
             entry = occupancies[at(k)]
-            if _is_ahead(entry, i, position_m, n == train.leg, leg):
+            elsewhere = entry.place == NOBODY or entry.place != beside
+            if elsewhere and _is_ahead(entry, i, position_m, n == train.leg, leg):
                 before_m = _end_before(entry, leg, signalling)
-                if before_m < until_m:
-                    end_m = min(end_m, before_m)
+                if before_m < until_m and before_m < end_m and _rear(entry, leg) < gate_m:
+                    end_m, whom = before_m, entry.train
             k = entry.next
-    return end_m
+    return end_m, whom
+
+
+@inlined
+def _brake_for(end_m: float, motion: Motion, kind: TrainType) -> tuple[float, bool]:
+    """Let a train go no further than a position, if it can brake for that; return how far it may go
+    now, and whether it is too near. [m]
+    """
+    room_m, v, b = end_m - motion.position_m, motion.speed_m_s, kind.highest_retardation_m_s2
+    if v <= 0.0:
+        at_end = room_m < RESTART_M
+        motion.authority_m = min(motion.authority_m, motion.position_m if at_end else end_m)
+        return room_m, False
+    braking_m = braking_square(v, b, kind.braking) / (2.0 * b)
+    too_near = room_m < braking_m - ROUNDING_M
+    if too_near:
+        room_m, end_m = braking_m, motion.position_m + braking_m
+    motion.authority_m = min(motion.authority_m, end_m)
+    return room_m, too_near
 
 
 @inlined
 def give_authority(
-    end_m: float, step_s: float, train: Train, kind: TrainType, signalling: Signalling
+    end_m: float,
+    gate_m: float,
+    step_s: float,
+    train: Train,
+    kind: TrainType,
+    signalling: Signalling,
 ) -> bool:
-    """Set how far and how fast a train may go; return whether it is nearer than it can brake for."""
-    motion = train.motion
-    motion.authority_m, motion.ceiling_m_s = end_m, math.inf
+    """Set how far and how fast a train may go; return whether it is nearer than it can brake for.
+
+    Parameters
+    ----------
+    end_m : float
+        Position that it may not pass because of the train ahead. [m]
+    gate_m : float
+        Position of a gate that it may not pass, for which it brakes as for a stop. [m]
+    """
+    motion, too_near = train.motion, False
+    motion.authority_m, motion.ceiling_m_s = math.inf, math.inf
+    if gate_m < math.inf:
+        _, too_near = _brake_for(gate_m, motion, kind)
     if end_m == math.inf:
-        return False
-    room_m, v, b = end_m - motion.position_m, motion.speed_m_s, kind.highest_retardation_m_s2
-    if v <= 0.0:
-        if room_m < RESTART_M:
-            motion.authority_m = motion.position_m
-        return False
-    braking_m = braking_square(v, b, kind.braking) / (2.0 * b)
-    too_near = room_m < braking_m - ROUNDING_M
-    if too_near:
-        room_m = braking_m
-        motion.authority_m = motion.position_m + braking_m
-    reach_s = max(signalling.reaction_s, step_s)
-    calm = math.sqrt((b * reach_s) ** 2 + 2.0 * b * max(0.0, room_m)) - b * reach_s
-    motion.ceiling_m_s = max(SLOWEST_M_S, calm)
-    return too_near
+        return too_near
+    room_m, ahead_too_near = _brake_for(end_m, motion, kind)
+    if motion.speed_m_s > 0.0:
+        b, reach_s = kind.highest_retardation_m_s2, max(signalling.reaction_s, step_s)
+        calm = math.sqrt((b * reach_s) ** 2 + 2.0 * b * max(0.0, room_m)) - b * reach_s
+        motion.ceiling_m_s = max(SLOWEST_M_S, calm)
+    return too_near or ahead_too_near
+
+
+@inlined
+def _waits(motion: Motion, gate_m: float, whom: int) -> bool:
+    """Whether a train stands where it may not go on, because of others."""
+    held = motion.authority_m <= motion.position_m and motion.speed_m_s <= 0.0
+    return held and motion.phase == Phase.DRIVING and (gate_m < math.inf or whom != NOBODY)
 
 
 @kernel
 def keep_apart(
     count: int, step_s: float, standing: Records[Standing], trains: Records[Train],
-    types: Records[TrainType], legs: Records[Leg], occupancies: Records[Occupancy],
-    first: Indices, signalling: Signalling,
+    types: Records[TrainType], legs: Records[Leg], rules: Gates, turns: Turns,
+    occupancies: Records[Occupancy], first: Indices, signalling: Signalling,
 ) -> int:  # fmt: skip
     """Give the first `count` trains of `standing` their authorities in a step.
 
     Returns
     -------
     int
-        Number of trains that are nearer to another one than they can brake for.
+        Number of trains that are nearer to another one, or to a gate, than they can brake for.
     """
-    note_places(count, standing, trains, types, legs, occupancies, first)
+    note_places(count, standing, trains, types, legs, turns.holdings, occupancies, first)
     too_near = 0
     for n in range(count):
         i = standing[at(n)].train
-        train = trains[at(i)]
+        train, held = trains[at(i)], turns.holdings[at(i)]
         kind = types[at(train.train_type)]
-        b = kind.highest_retardation_m_s2
-        fastest = kind.highest_speed_m_s
-        reach_m = braking_square(fastest, b, kind.braking) / (2.0 * b) + signalling.margin_m
-        reach_m += fastest * (signalling.reaction_s + 2.0 * step_s) + signalling.block_m
-        end_m = end_of_authority(i, reach_m, train, legs, occupancies, first, signalling)
-        too_near += give_authority(end_m, step_s, train, kind, signalling)
+        reach_m = reach_of(kind, signalling.reaction_s, step_s)
+        reach_m += signalling.margin_m + signalling.block_m
+        beside = NOBODY
+        if held.next > 0:
+            beside = rules.gates[at(train.route), at(held.next - 1)].place
+        end_m, whom = end_of_authority(
+            i, reach_m, held.end_m, beside, train, legs, occupancies, first, signalling
+        )
+        too_near += give_authority(end_m, held.end_m, step_s, train, kind, signalling)
+        held.waits_for = NOBODY
+        if _waits(train.motion, held.end_m, whom):
+            held.waits_for = whom
+            if held.end_m - train.motion.position_m < RESTART_M:
+                held.waits_for = in_the_way(i, count, standing, trains, rules, turns)
     return too_near

@@ -12,6 +12,7 @@ from tpss.powerflow.network import Flow, Indices, Loads, new_flow
 from tpss.record import Record, Records
 from tpss.step.model import Model, driving_data
 from tpss.step.separation import Occupancy, tracks_of
+from tpss.step.turns import Turn, Turns, new_turns
 from tpss.vehicle.breaches import BREACHES, Breach
 from tpss.vehicle.train import Train
 
@@ -28,6 +29,8 @@ class Status(IntEnum):
     FINISHED = 1
     COLLAPSED = 2
     STALLED = 3
+    DEADLOCKED = 5
+    """Trains wait for each other in a circle."""
     SEARCHING = 4
     """A step waits for the answer of a search."""
 
@@ -91,6 +94,8 @@ class Clock(Record):
     """Trains on the line that no station reaches."""
     carried_share: float
     """Share of the load that the line carries, where it cannot carry all of it. [1]"""
+    deadlocked_train: int
+    """A train that waits in a circle, or -1."""
 
 
 class State(NamedTuple):
@@ -106,6 +111,8 @@ class State(NamedTuple):
     """Parts of tracks that trains stand on: of each one below its head, and one on the leg before."""
     first_on_track: Indices
     """First one on each track; -1: none."""
+    turns: Turns
+    """What trains hold of gates, and whom they wait for."""
 
 
 @inlined
@@ -114,11 +121,17 @@ def loads_of(model: Model, state: State) -> Loads:
     return Loads(state.trains, model.types, state.scratch, driving_data(model), model.points)
 
 
-def new_state(model: Model, trains: Records[Train]) -> State:
-    """State before the first step."""
+def new_state(model: Model, trains: Records[Train], turns: Records[Turn] | None = None) -> State:
+    """State before the first step.
+
+    Parameters
+    ----------
+    turns : records of Turn, optional
+        The planned order at gates.
+    """
     clock = Clock.blank(1)
     clock[0].next_action_s = CONTROL_PERIOD_S
-    clock[0].stalled_train = -1
+    clock[0].stalled_train = clock[0].deadlocked_train = -1
     clock[0].carried_share = 1.0
     return State(
         trains=trains,
@@ -127,4 +140,5 @@ def new_state(model: Model, trains: Records[Train]) -> State:
         clock=clock,
         occupancies=Occupancy.blank(2 * trains.size),
         first_on_track=np.full(tracks_of(model.legs), -1, dtype=np.int64),
+        turns=new_turns(trains.size, model.rules, turns),
     )

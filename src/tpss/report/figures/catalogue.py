@@ -47,6 +47,7 @@ OF_A_TRAIN = [name for name, (of, _) in FIGURES.items() if of == "train"]
 ENDED = {
     "collapsed": "collapsed",
     "stalled": "ended by a stalled train",
+    "deadlocked": "ended by trains that wait for each other",
     "interrupted": "interrupted",
 }
 

@@ -1,0 +1,255 @@
+"""The order of trains at gates: who passes first, such that all come through.
+
+Trains are let through their gates one after another, as in the simulation, but by their planned times:
+each asks at its time, and of those that wait the one that asked first may pass, if the stretch and a
+track at the crossing place behind it are free; for one that waits for the stretch to be left by others,
+it is kept.  A train that has to wait is later from then on.  None is let in if those that are under way
+could not all come to their ends from there, one after another: so trains never block each other
+[Dijkstra1965]_.
+"""
+
+import heapq
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+
+class Passage(NamedTuple):
+    """What a train has planned at a gate."""
+
+    stretch: int
+    direction: int
+    place: int
+    """Crossing place behind the stretch, or -1."""
+    ready_s: float
+    """Time at which it comes to the gate and would go on; minus infinity: it has passed it. [s]"""
+    clear_s: float
+    """Time at which it has left the stretch. [s]"""
+
+
+class NoOrderError(ValueError):
+    """Trains cannot all come through: which ones are in each other's way."""
+
+    def __init__(self, one: int, other: int) -> None:
+        super().__init__(f"trains {one} and {other} are in each other's way")
+        self.one, self.other = one, other
+
+
+class Order(NamedTuple):
+    """Turns of all trains at their gates; -1 at a crossing place that is none."""
+
+    stretch: list[list[int]]
+    place: list[list[int]]
+
+
+@dataclass
+class _Train:
+    """A train on its way through its gates."""
+
+    passages: list[Passage]
+    late_s: float = 0.0
+    next: int = 0
+    """Next gate."""
+    on: dict[int, int] = field(default_factory=dict)
+    """Stretches on which it is, by the numbers of their gates."""
+    place: int = -1
+    """Crossing place at which it has a track, or to which it has been let."""
+
+
+class Dispatcher:
+    """Lets trains pass; see the module.
+
+    Parameters
+    ----------
+    passages : list of lists of Passage
+        Of each train, in its order.
+    tracks : list of int
+        Number of tracks of the crossing places.
+    """
+
+    def __init__(self, passages: list[list[Passage]], tracks: list[int]) -> None:
+        self.trains = [_Train(each) for each in passages]
+        self.tracks = tracks
+        self.users: dict[int, set[int]] = {}
+        """Trains on each stretch."""
+        self.taken: dict[int, set[int]] = {}
+        """Trains that have a track at each crossing place."""
+        self.under_way: set[int] = set()
+        """Trains on any stretch, or at a crossing place."""
+        self.cleared_s: dict[tuple[int, int], float] = {}
+        """When the last train leaves a stretch in a direction: the next one does not before."""
+        self.turns: dict[tuple[str, int], int] = {}
+        self.order = Order([[] for _ in passages], [[] for _ in passages])
+        self.waiting: list[tuple[float, int]] = []
+        """Trains at their gates, by the time at which they asked."""
+        self.events: list[tuple[float, int, int]] = []
+        """Time, train, and the gate whose stretch it leaves then; -1: it comes to its next gate."""
+
+    def run(self) -> Order:
+        """The order in which trains come through.
+
+        Raises
+        ------
+        NoOrderError
+            Trains that are on their way at the start cannot all come through.
+        """
+        for i in range(len(self.trains)):
+            self._place(i)
+        for i in sorted(self.under_way):
+            self._demand_no_opponent(i)
+        while self.events:
+            now_s, i, gate = heapq.heappop(self.events)
+            if gate < 0:
+                heapq.heappush(self.waiting, (now_s, i))
+            else:
+                self._leave(i, gate)
+            self._let_pass(now_s)
+        if self.waiting:
+            blocked = [i for _, i in self.waiting]
+            raise NoOrderError(blocked[0], self._opponent_of(blocked[0]))
+        return self.order
+
+    def _place(self, i: int) -> None:
+        """Let a train be where it stands at the start, and come to its next gate."""
+        train = self.trains[i]
+        while train.next < len(train.passages) and train.passages[train.next].ready_s == -math.inf:
+            self._enter(i, -math.inf)
+        self._plan_next(i)
+
+    def _plan_next(self, i: int) -> None:
+        train = self.trains[i]
+        if train.next < len(train.passages):
+            at_s = train.passages[train.next].ready_s + train.late_s
+            heapq.heappush(self.events, (at_s, i, -1))
+
+    def _enter(self, i: int, now_s: float) -> None:
+        """Let a train pass its next gate at a time, and plan when it leaves the stretch. [s]"""
+        train = self.trains[i]
+        number, here = train.next, train.passages[train.next]
+        self._leave_place(i)
+        train.next += 1
+        self.order.stretch[i].append(self._turn("stretch", here.stretch))
+        self.order.place[i].append(self._turn("place", here.place) if here.place >= 0 else -1)
+        if here.place >= 0:
+            train.place = here.place
+            self.taken.setdefault(here.place, set()).add(i)
+        self._note(i)
+        if here.clear_s == -math.inf:  # it has left it before the start
+            return
+        train.on[number] = here.stretch
+        self.users.setdefault(here.stretch, set()).add(i)
+        self._note(i)
+        if now_s > -math.inf:
+            train.late_s = max(train.late_s, now_s - here.ready_s)
+        before_s = self.cleared_s.get((here.stretch, here.direction), -math.inf)
+        train.late_s += max(0.0, before_s - here.clear_s - train.late_s)
+        clear_s = here.clear_s + train.late_s
+        self.cleared_s[here.stretch, here.direction] = clear_s
+        heapq.heappush(self.events, (clear_s, i, number))
+
+    def _turn(self, kind: str, index: int) -> int:
+        turn = self.turns.get((kind, index), 0)
+        self.turns[kind, index] = turn + 1
+        return turn
+
+    def _leave(self, i: int, gate: int) -> None:
+        """Let a train leave the stretch behind a gate; one that goes no further leaves all."""
+        train = self.trains[i]
+        stretch = train.on.pop(gate)
+        if stretch not in train.on.values():
+            self.users[stretch].discard(i)
+        self._note(i)
+
+    def _note(self, i: int) -> None:
+        """Note whether a train is under way."""
+        if self.trains[i].on or self.trains[i].place >= 0:
+            self.under_way.add(i)
+        else:
+            self.under_way.discard(i)
+
+    def _leave_place(self, i: int) -> None:
+        train = self.trains[i]
+        if train.place >= 0:
+            self.taken[train.place].discard(i)
+            train.place = -1
+
+    def _let_pass(self, now_s: float) -> None:
+        """Let trains that wait pass, those first that asked first, until none can."""
+        passed = True
+        while passed:
+            passed = False
+            kept = set[int]()  # stretches for trains that pass once the others have left them
+            for entry in sorted(self.waiting):
+                i = entry[1]
+                here = self.trains[i].passages[self.trains[i].next]
+                if self._is_against_others(i, here):
+                    kept.add(here.stretch)
+                elif here.stretch not in kept and self._has_room(i, here):
+                    self.waiting.remove(entry)
+                    self._enter(i, now_s)
+                    self._plan_next(i)
+                    passed = True
+                    break
+
+    def _is_against_others(self, i: int, here: Passage) -> bool:
+        """Whether others run on a stretch in the other direction."""
+        others = self.users.get(here.stretch, set()) - {i}
+        return any(self._runs_against(j, here) for j in others)
+
+    def _has_room(self, i: int, here: Passage) -> bool:
+        """Whether a track is free behind a stretch, such that all come through."""
+        if here.place >= 0 and len(self.taken.get(here.place, ())) >= self.tracks[here.place]:
+            return False
+        return self._all_come_through(i)
+
+    def _runs_against(self, j: int, here: Passage) -> bool:
+        """Whether a train is on a stretch in the other direction."""
+        other = self.trains[j]
+        return any(
+            stretch == here.stretch and other.passages[gate].direction != here.direction
+            for gate, stretch in other.on.items()
+        )
+
+    def _all_come_through(self, i: int) -> bool:
+        """Whether all trains under way could come to their ends after a train has passed its gate.
+
+        Each can come as far as the crossing place to which it has been let; from there on it needs a
+        free track at the places on its way, one after another.
+        """
+        at = {j: self.trains[j].place for j in self.under_way if self.trains[j].place >= 0}
+        here = self.trains[i].passages[self.trains[i].next].place
+        at.pop(i, None)
+        if here >= 0:
+            at[i] = here
+        taken = Counter(at.values())
+        found = True
+        while at and found:
+            found = False
+            for j in list(at):
+                taken[at[j]] -= 1
+                if all(taken[p] < self.tracks[p] for p in self._places_of(j, j == i) if p >= 0):
+                    del at[j]
+                    found = True
+                else:
+                    taken[at[j]] += 1
+        return not at
+
+    def _places_of(self, j: int, has_passed: bool) -> list[int]:
+        """Crossing places before a train, also beyond the gate that it is about to pass."""
+        train = self.trains[j]
+        return [each.place for each in train.passages[train.next + has_passed :]]
+
+    def _demand_no_opponent(self, i: int) -> None:
+        """Refuse trains that stand on a stretch head to head."""
+        train = self.trains[i]
+        for gate, stretch in train.on.items():
+            for j in self.users[stretch] - {i}:
+                if self._runs_against(j, train.passages[gate]):
+                    raise NoOrderError(i, j)
+
+    def _opponent_of(self, i: int) -> int:
+        """A train that is in the way of one at its gate."""
+        here = self.trains[i].passages[self.trains[i].next]
+        others = self.users.get(here.stretch, set()) | self.taken.get(here.place, set())
+        return next(iter(sorted(others - {i})), i)
