@@ -128,7 +128,7 @@ def judge_ending(result: Result) -> None:
     if result.status == "finished":
         assert exit_code(result) == DONE, result.audit["failures"]
         return
-    assert result.status in ("collapsed", "stalled")
+    assert result.status in ("collapsed", "stalled", "deadlocked")
     assert exit_code(result) == NO_SOLUTION
     assert result.summary["problem"]
     assert result.summary["advice"]

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,13 +11,12 @@ import numpy.typing as npt
 from tpss import Scenario
 from tpss.kernel import plain
 from tpss.model import build_model
-from tpss.model.outages import service_of
-from tpss.model.traffic import build_services
+from tpss.model.start import start_of
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
-from tpss.run.run import Run, switch, trains_on_line
+from tpss.run.run import Run, run_of, switch, trains_on_line
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide, pass_unfed, prepare_unfed
@@ -42,10 +42,13 @@ class Replay:
 
     def __init__(self, scenario: Scenario, steps: int) -> None:
         model, _ = build_model(scenario)
-        services = build_services(scenario, model)
-        self.switchings = service_of(scenario).switchings
-        trains = trains_on_line(model, services)
-        trains += departing_trains(services, model.options, 0, steps)
+        start = start_of(scenario, model)
+        self.switchings = start.switchings
+        if start.turns is not None:  # for the trains of the run, no others
+            self.run = run_of(replace(start, model=model))
+            return
+        trains = trains_on_line(model, start.services)
+        trains += departing_trains(start.services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
 
     def root_of_step(self, step: int, step_s: float) -> tuple[float, npt.NDArray[np.float64]]:

@@ -14,6 +14,7 @@ from tpss.scenario.machine import RetardationBands
 from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
 
+from .single_tracks import judge_single_tracks
 from .ways import along_way
 
 ROUNDING_M_S = 2e-9
@@ -28,6 +29,7 @@ def keep_the_rules(result: Result) -> None:
     judge_departures(result)
     judge_converters(result)
     judge_separation(result)
+    judge_single_tracks(result)
     judge_outage(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
@@ -41,7 +43,7 @@ def judge_values(result: Result) -> None:
     present, driven = state >= 0, (state >= 0) & (state != TrainState.ARRIVED)
     for name in {"train_line", "train_track"} & set(data.data_vars):
         assert ((data[name].to_numpy()[:steps] >= 0) == present).all(), f"{name} is not told"
-    codes = {"train_state", "load_flow_passes", "train_line", "train_track"}
+    codes = {"train_state", "load_flow_passes", "train_line", "train_track", "waits_for"}
     for name in set(data.data_vars) - codes:
         values = data[name].to_numpy()[:steps]
         if data[name].dims == ("time", "train"):
@@ -67,6 +69,15 @@ def judge_separation(result: Result) -> None:
     length_m = np.array([trains[str(service)].length_m for service in services])
     place_m, along_m = data.position.to_numpy(), data.route_position.to_numpy()
     moving = data.speed.to_numpy() > 0.0
+    (line,) = result.scenario.lines_by_name.values()
+    stations_m = np.array([1e3 * s.position_km for s in line.stations])
+    several = np.array([s.tracks > 1 for s in line.stations])
+
+    def have_tracks(pair_m: Any, stands: bool) -> bool:
+        """Whether one of two trains may wait beside the other: at an origin, or on several tracks."""
+        around = (stations_m >= pair_m.min() - 1e3) & (stations_m <= pair_m.max() + 1e3)
+        return bool((around & (several | stands)).any())
+
     for sign in (1.0, -1.0):
         with np.errstate(invalid="ignore"):
             own = np.isfinite(along_m) & (
@@ -81,6 +92,10 @@ def judge_separation(result: Result) -> None:
                     before_m = (
                         along_m[step - 1, ahead] - length_m[ahead] - along_m[step - 1, behind]
                     )
+                    if signalling.has_gates and have_tracks(
+                        place_m[step, [behind, ahead]], not moving[step, ahead]
+                    ):
+                        continue
                     assert room_m >= min(signalling.margin_m, before_m) - 0.01, (
                         f"{data.train.to_numpy()[behind]} is {room_m} m behind another at step {step}"
                     )

@@ -17,6 +17,7 @@ from .machines import EMUS, ODD_TRAINS, TRAINS
 from .networks import into_network
 from .outages import outages
 from .ranges import numbers
+from .single_tracks import with_single_tracks
 
 Draw = Any
 Document = dict[str, Any]
@@ -285,11 +286,13 @@ def sound_scenarios(draw: Draw) -> Document:
         span_min = longest_min + 10.0
     entries = draw(st.sampled_from([2, 1, 3]))
     document["traffic"] = [draw(services(i, document, span_min)) for i in range(entries)]
-    if moves_continuously(document["simulation"]) and draw(st.integers(0, 4)) == 4:
+    if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
         document["signalling"] = draw(SIGNALLING)
     document = document if begin_km is None else moved(document, begin_km)
     if draw(st.integers(0, 3)) == 3:
         document = into_network(draw, document, lines())
+    if "signalling" in document and draw(st.booleans()):
+        with_single_tracks(draw, document)
     if draw(st.integers(0, 3)) == 3:
         document["outages"] = [draw(outages(document["supply"], span_min))]
         document["simulation"]["outage"] = "random"

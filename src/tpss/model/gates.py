@@ -26,8 +26,6 @@ class SingleTrack(NamedTuple):
     line: str
     begin_km: float
     end_km: float
-    stations: tuple[Station | None, Station | None]
-    """Stations of several tracks at its ends."""
 
 
 class _Gate(NamedTuple):
@@ -38,24 +36,22 @@ class _Gate(NamedTuple):
     clears_whole: bool
     stretch: object
     direction: int
-    station: Station | None = None
-    """At the end of a single track, of several tracks."""
+    station: Station | None
+    """At the end of a single track."""
+    aside: bool
 
 
 def single_tracks(name: str, line: Line) -> list[SingleTrack]:
     """Single tracks of a line, in ascending order."""
-    found = []
+    found: list[SingleTrack] = []
     for begin_km, end_km, count in line.tracks_by_stretch:
         if count > 1:
             continue
-        inside = [s for s in line.stations if s.tracks > 1 and _lies(s, begin_km, end_km)]
-        ends: list[tuple[float, Station | None]] = [(s.position_km, s) for s in inside]
-        for km in (begin_km, end_km):
-            if all(abs(km - place_km) > CLOSEST_KM for place_km, _ in ends):
-                ends.append((km, None))
-        ends.sort(key=lambda end: end[0])
-        for (one_km, one), (other_km, other) in pairwise(ends):
-            found.append(SingleTrack(name, one_km, other_km, (one, other)))
+        inside = [
+            s.position_km for s in line.stations if s.tracks > 1 and _lies(s, begin_km, end_km)
+        ]
+        ends = [km for km in (begin_km, end_km) if all(abs(km - s) > CLOSEST_KM for s in inside)]
+        found += [SingleTrack(name, *pair) for pair in pairwise(sorted([*inside, *ends]))]
     return found
 
 
@@ -78,11 +74,13 @@ def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: fl
     entries = _entries(routes, singles)
     rows = []
     for route in routes:
-        own = [*_before_singles(route, singles), *_at_entries(route, entries, margin_m)]
+        own = [
+            *_before_singles(route, singles, lines),
+            *_at_entries(route, entries, margin_m, lines),
+        ]
         rows.append(sorted(own, key=lambda gate: gate.from_m))
     stretches = _numbered(gate.stretch for row in rows for gate in row)
     places: dict[str, int] = {}
-    tracks: list[int] = []
     gates: Any = _blank(len(routes), max(map(len, rows), default=0) + 1)
     for i, row in enumerate(rows):
         for k, gate in enumerate(row):
@@ -90,9 +88,14 @@ def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: fl
             if _meets_there(gate, row[k + 1 :]):
                 assert gate.station is not None
                 place = places.setdefault(gate.station.name, len(places))
-                tracks += [gate.station.tracks] * (len(places) - len(tracks))
-            gates[i, k] = (*gate[:3], stretches[gate.stretch], gate.direction, place)
+            gates[i, k] = (*gate[:3], stretches[gate.stretch], gate.direction, place, gate.aside)
+    tracks = [_most_tracks(name, lines) for name in places]
     return Gates(gates, np.array(tracks, dtype=np.int64))
+
+
+def _most_tracks(station: str, lines: Mapping[str, Line]) -> int:
+    """Number of tracks of a station, that of the line which says most."""
+    return max(s.tracks for line in lines.values() for s in line.stations if s.name == station)
 
 
 def no_gates(routes: int) -> Gates:
@@ -111,11 +114,11 @@ def _blank(routes: int, gates: int) -> Records[Gate]:
 def crossing_places(route: Route, lines: Mapping[str, Line]) -> list[Station]:
     """Stations at which trains of a route may have to wait between two single tracks."""
     singles = {name: single_tracks(name, line) for name, line in lines.items()}
-    row = sorted(_before_singles(route, singles), key=lambda gate: gate.from_m)
+    row = sorted(_before_singles(route, singles, lines), key=lambda gate: gate.from_m)
     return [
         gate.station
         for k, gate in enumerate(row)
-        if gate.station is not None and _meets_there(gate, row[k + 1 :])
+        if gate.station is not None and gate.station.tracks > 1 and _meets_there(gate, row[k + 1 :])
     ]
 
 
@@ -138,7 +141,9 @@ def _courses(route: Route) -> Iterator[tuple[Course, Hop]]:
     yield from zip(route.courses, route.way.stretches, strict=True)
 
 
-def _before_singles(route: Route, singles: Mapping[str, Sequence[SingleTrack]]) -> Iterator[_Gate]:
+def _before_singles(
+    route: Route, singles: Mapping[str, Sequence[SingleTrack]], lines: Mapping[str, Line]
+) -> Iterator[_Gate]:
     """Gates before the single tracks of a route."""
     for course, hop in _courses(route):
         low_km, high_km = sorted((hop.begin_km, hop.end_km))
@@ -148,18 +153,28 @@ def _before_singles(route: Route, singles: Mapping[str, Sequence[SingleTrack]]) 
                 continue
             up = course.sign > 0.0
             first_km, last_km = (begin_km, end_km) if up else (end_km, begin_km)
-            station = single.stations[1 if up else 0]
-            if station is not None and abs(station.position_km - last_km) > CLOSEST_KM:
-                station = None
+            station = _station_at(last_km, lines[course.line])
             from_m = max(course.position_m(1e3 * first_km), route.start_m)
             until_m = course.position_m(1e3 * last_km)
-            whole = station is None and until_m not in _turns_m(route)
-            yield _Gate(from_m, until_m, whole, single, 0 if up else 1, station)
+            crosses = station is not None and station.tracks > 1
+            whole = not crosses and until_m not in _turns_m(route)
+            aside = from_m == route.start_m or _has_tracks(lines[course.line], first_km)
+            yield _Gate(from_m, until_m, whole, single, 0 if up else 1, station, aside)
 
 
 def _turns_m(route: Route) -> list[float]:
     """Positions at which a route turns round."""
     return [after.from_m for before, after in pairwise(route.courses) if before.line == after.line]
+
+
+def _station_at(place_km: float, line: Line) -> Station | None:
+    return next((s for s in line.stations if abs(s.position_km - place_km) <= CLOSEST_KM), None)
+
+
+def _has_tracks(line: Line, place_km: float) -> bool:
+    """Whether there is a station of several tracks."""
+    station = _station_at(place_km, line)
+    return station is not None and station.tracks > 1
 
 
 class _Entry(NamedTuple):
@@ -205,7 +220,9 @@ def _is_single(entry: _Entry, singles: Sequence[SingleTrack]) -> bool:
     return any(single.begin_km <= ahead_km <= single.end_km for single in singles)
 
 
-def _at_entries(route: Route, entries: Sequence[_Entry], margin_m: float) -> Iterator[_Gate]:
+def _at_entries(
+    route: Route, entries: Sequence[_Entry], margin_m: float, lines: Mapping[str, Line]
+) -> Iterator[_Gate]:
     """Gates of a route where routes come together."""
     for course, hop in _courses(route):
         for entry in entries:
@@ -214,4 +231,5 @@ def _at_entries(route: Route, entries: Sequence[_Entry], margin_m: float) -> Ite
             ) <= CLOSEST_KM
             if starts or _runs_through(entry, course, hop):
                 from_m = course.position_m(1e3 * entry.place_km)
-                yield _Gate(from_m, from_m + margin_m, True, entry, 0)
+                aside = from_m == route.start_m or _has_tracks(lines[course.line], entry.place_km)
+                yield _Gate(from_m, from_m + margin_m, True, entry, 0, None, aside)

@@ -12,6 +12,7 @@ import heapq
 import math
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 
@@ -26,6 +27,10 @@ class Passage(NamedTuple):
     """Time at which it comes to the gate and would go on; minus infinity: it has passed it. [s]"""
     clear_s: float
     """Time at which it has left the stretch. [s]"""
+    aside: bool = True
+    """Whether it waits at the gate on a track of its own."""
+    entry_m: float = 0.0
+    """Where it comes to the stretch. [m]"""
 
 
 class NoOrderError(ValueError):
@@ -43,6 +48,16 @@ class Order(NamedTuple):
     place: list[list[int]]
 
 
+class _Event(NamedTuple):
+    """What a train comes to."""
+
+    time_s: float
+    train: int
+    gate: int
+    leaves: bool
+    """Whether it leaves the stretch behind the gate; otherwise it comes to the gate."""
+
+
 @dataclass
 class _Train:
     """A train on its way through its gates."""
@@ -53,6 +68,8 @@ class _Train:
     """Next gate."""
     on: dict[int, int] = field(default_factory=dict)
     """Stretches on which it is, by the numbers of their gates."""
+    leaves: set[int] = field(default_factory=set)
+    """Numbers of gates for which it is planned when it leaves the stretch."""
     place: int = -1
     """Crossing place at which it has a track, or to which it has been let."""
 
@@ -77,14 +94,17 @@ class Dispatcher:
         """Trains that have a track at each crossing place."""
         self.under_way: set[int] = set()
         """Trains on any stretch, or at a crossing place."""
-        self.cleared_s: dict[tuple[int, int], float] = {}
-        """When the last train leaves a stretch in a direction: the next one does not before."""
+        self.queues: dict[tuple[int, int], list[int]] = {}
+        """Trains on a stretch in a direction, in the order in which they leave it."""
+        self.coming: dict[tuple[int, int], list[int]] = {}
+        """Trains on their way to a gate where they stand in each other's way, in their order."""
+        self.behind: dict[tuple[int, int], list[_Event]] = {}
+        """What trains come to once those before them have left a stretch in their direction."""
         self.turns: dict[tuple[str, int], int] = {}
         self.order = Order([[] for _ in passages], [[] for _ in passages])
         self.waiting: list[tuple[float, int]] = []
         """Trains at their gates, by the time at which they asked."""
-        self.events: list[tuple[float, int, int]] = []
-        """Time, train, and the gate whose stretch it leaves then; -1: it comes to its next gate."""
+        self.events: list[_Event] = []
 
     def run(self) -> Order:
         """The order in which trains come through.
@@ -98,17 +118,28 @@ class Dispatcher:
             self._place(i)
         for i in sorted(self.under_way):
             self._demand_no_opponent(i)
+        for (stretch, _), queue in self.queues.items():
+            queue.sort(key=partial(self._leaves_s, stretch))
         while self.events:
-            now_s, i, gate = heapq.heappop(self.events)
-            if gate < 0:
-                heapq.heappush(self.waiting, (now_s, i))
+            event = heapq.heappop(self.events)
+            if self._is_later(event) or self._follows_another(event):
+                continue
+            if event.leaves:
+                self._leave(event)
             else:
-                self._leave(i, gate)
-            self._let_pass(now_s)
+                self._come(event.train)
+                heapq.heappush(self.waiting, (event.time_s, event.train))
+            self._let_pass(event.time_s)
         if self.waiting:
             blocked = [i for _, i in self.waiting]
             raise NoOrderError(blocked[0], self._opponent_of(blocked[0]))
         return self.order
+
+    def _leaves_s(self, stretch: int, i: int) -> float:
+        """When a train leaves a stretch on which it is. [s]"""
+        train = self.trains[i]
+        clear_s = [train.passages[k].clear_s for k, other in train.on.items() if other == stretch]
+        return min(clear_s) + train.late_s
 
     def _place(self, i: int) -> None:
         """Let a train be where it stands at the start, and come to its next gate."""
@@ -117,17 +148,62 @@ class Dispatcher:
             self._enter(i, -math.inf)
         self._plan_next(i)
 
+    def _line_up(self, i: int, gate: int) -> None:
+        """Let a train come to a stretch behind those before it: at one place they keep their order."""
+        here = self.trains[i].passages[gate]
+        queue = self.queues.setdefault((here.stretch, here.direction), [])
+        leaves_s = self._leaves_s(here.stretch, i)
+        k = len(queue)
+        while k > 0 and self._leaves_s(here.stretch, queue[k - 1]) > leaves_s:
+            others = self.trains[queue[k - 1]]
+            entries = [p.entry_m for g, p in enumerate(others.passages) if g in others.on]
+            if here.entry_m in entries:
+                break
+            k -= 1
+        queue.insert(k, i)
+
+    def _come(self, i: int) -> None:
+        """Let a train come to a gate where it cannot pass others: behind those that left its last
+        stretch before it, otherwise by their times.
+        """
+        train = self.trains[i]
+        if train.next == len(train.passages) or train.passages[train.next].aside:
+            return
+        here = train.passages[train.next]
+        queue = self.coming.setdefault((here.stretch, here.direction), [])
+        if i in queue:
+            return
+        k = len(queue)
+        while k > 0:
+            other = self.trains[queue[k - 1]]
+            if self._last_gate(other) == self._last_gate(train) or (
+                other.passages[other.next].ready_s + other.late_s <= here.ready_s + train.late_s
+            ):
+                break
+            k -= 1
+        queue.insert(k, i)
+
+    def _last_gate(self, train: _Train) -> object:
+        """What gate a train has passed last; one that has passed none shares it with nobody."""
+        if train.next == 0:
+            return id(train)
+        last = train.passages[train.next - 1]
+        return last.stretch, last.direction
+
     def _plan_next(self, i: int) -> None:
         train = self.trains[i]
         if train.next < len(train.passages):
             at_s = train.passages[train.next].ready_s + train.late_s
-            heapq.heappush(self.events, (at_s, i, -1))
+            heapq.heappush(self.events, _Event(at_s, i, train.next, leaves=False))
 
     def _enter(self, i: int, now_s: float) -> None:
         """Let a train pass its next gate at a time, and plan when it leaves the stretch. [s]"""
         train = self.trains[i]
         number, here = train.next, train.passages[train.next]
         self._leave_place(i)
+        coming = self.coming.get((here.stretch, here.direction), [])
+        if i in coming:
+            coming.remove(i)
         train.next += 1
         self.order.stretch[i].append(self._turn("stretch", here.stretch))
         self.order.place[i].append(self._turn("place", here.place) if here.place >= 0 else -1)
@@ -140,25 +216,64 @@ class Dispatcher:
         train.on[number] = here.stretch
         self.users.setdefault(here.stretch, set()).add(i)
         self._note(i)
+        self._line_up(i, number)
         if now_s > -math.inf:
             train.late_s = max(train.late_s, now_s - here.ready_s)
-        before_s = self.cleared_s.get((here.stretch, here.direction), -math.inf)
-        train.late_s += max(0.0, before_s - here.clear_s - train.late_s)
-        clear_s = here.clear_s + train.late_s
-        self.cleared_s[here.stretch, here.direction] = clear_s
-        heapq.heappush(self.events, (clear_s, i, number))
+        self._plan_leaving(i)
+
+    def _plan_leaving(self, i: int) -> None:
+        """Plan when a train leaves stretches, of those that it leaves before it comes to a gate."""
+        train = self.trains[i]
+        gate_s = math.inf
+        if train.next < len(train.passages):
+            gate_s = train.passages[train.next].ready_s
+        for number in train.on:
+            clear_s = train.passages[number].clear_s
+            if clear_s <= gate_s and number not in train.leaves:
+                train.leaves.add(number)
+                event = _Event(clear_s + train.late_s, i, number, leaves=True)
+                heapq.heappush(self.events, event)
+
+    def _is_later(self, event: _Event) -> bool:
+        """Put what a train comes to off that has become later since that was planned."""
+        train = self.trains[event.train]
+        here = train.passages[event.gate]
+        time_s = (here.clear_s if event.leaves else here.ready_s) + train.late_s
+        if time_s <= event.time_s:
+            return False
+        heapq.heappush(self.events, event._replace(time_s=time_s))
+        return True
+
+    def _follows_another(self, event: _Event) -> bool:
+        """Keep what a train comes to on a stretch until those before it have left that."""
+        train = self.trains[event.train]
+        for number, stretch in train.on.items():
+            if event.leaves and number != event.gate:
+                continue
+            queue = stretch, train.passages[number].direction
+            if self.queues[queue][0] != event.train:
+                self.behind.setdefault(queue, []).append(event)
+                return True
+        return False
 
     def _turn(self, kind: str, index: int) -> int:
         turn = self.turns.get((kind, index), 0)
         self.turns[kind, index] = turn + 1
         return turn
 
-    def _leave(self, i: int, gate: int) -> None:
-        """Let a train leave the stretch behind a gate; one that goes no further leaves all."""
-        train = self.trains[i]
-        stretch = train.on.pop(gate)
+    def _leave(self, event: _Event) -> None:
+        """Let a train leave the stretch behind a gate, and those behind it come on."""
+        i, train = event.train, self.trains[event.train]
+        train.late_s = max(train.late_s, event.time_s - train.passages[event.gate].clear_s)
+        stretch = train.on.pop(event.gate)
         if stretch not in train.on.values():
             self.users[stretch].discard(i)
+        queue = stretch, train.passages[event.gate].direction
+        self.queues[queue].remove(i)
+        if not train.on:
+            self._come(i)
+        for kept in self.behind.pop(queue, []):
+            heapq.heappush(self.events, kept._replace(time_s=max(kept.time_s, event.time_s)))
         self._note(i)
 
     def _note(self, i: int) -> None:
@@ -183,6 +298,8 @@ class Dispatcher:
             for entry in sorted(self.waiting):
                 i = entry[1]
                 here = self.trains[i].passages[self.trains[i].next]
+                if not here.aside and self.coming[here.stretch, here.direction][0] != i:
+                    continue
                 if self._is_against_others(i, here):
                     kept.add(here.stretch)
                 elif here.stretch not in kept and self._has_room(i, here):

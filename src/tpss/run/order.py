@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import switch
+from tpss.kernel import plain, switch
 from tpss.run.dispatch import Dispatcher, Passage
 from tpss.run.run import Run, Start, advance_to_end, run_of
-from tpss.step.model import RunControl
+from tpss.run.services import ScheduledTrain
+from tpss.step.model import Model, RunControl
 from tpss.step.turns import AT_GATE_M, no_turns
 from tpss.track.gate import Gate, Precedence
+from tpss.track.leg import leg_of, place_on_line
 
 Floats = npt.NDArray[np.float64]
 
@@ -64,9 +66,16 @@ def _passages(run: Run) -> list[list[Passage]]:
     found = []
     for i, train in enumerate(run.trains):
         kind = model.types[train.train_type]
-        course = _Course(instants_s, position_m[:, i], kind.highest_speed_m_s, train)
+        course = _Course(instants_s, position_m[:, i], kind.highest_speed_m_s, train, model)
         own = [gates[train.route, k] for k in range(gates.shape[1] - 1)]
-        found.append([_passage(g, course, kind.length_m) for g in own if g.from_m < math.inf])
+        own = [gate for gate in own if gate.from_m < math.inf]
+        ready_s = [course.time_behind(gate.from_m) for gate in own]
+        found.append(
+            [
+                _passage(gate, course, here_s, next_s, kind.length_m)
+                for gate, here_s, next_s in zip(own, ready_s, [*ready_s, math.inf][1:], strict=True)
+            ]
+        )
     return found
 
 
@@ -74,13 +83,20 @@ class _Course:
     """When a train comes past positions; beyond where the run ends, it goes on at its highest speed."""
 
     def __init__(
-        self, instants_s: Floats, position_m: Floats, fastest_m_s: float, train: Any
-    ) -> None:
+        self, instants_s: Floats, position_m: Floats, fastest_m_s: float, train: ScheduledTrain,
+        model: Model,
+    ) -> None:  # fmt: skip
+        self.route, self.legs = train.route, model.legs
         there = np.isfinite(position_m)
         self.time_s, self.position_m = instants_s[there], position_m[there]
         if not there.any():  # it departs after the end
             self.time_s, self.position_m = instants_s[-1:], np.array([train.position_m])
         self.fastest_m_s = fastest_m_s
+
+    def place_m(self, gate: Gate) -> float:
+        """Where a gate is on its line, to a metre. [m]"""
+        leg = leg_of(float(gate.from_m), self.route, self.legs)
+        return float(round(plain(place_on_line)(gate.from_m, leg)))
 
     def time_behind(self, place_m: float) -> float:
         """When a train leaves a position for what lies behind it. [s]"""
@@ -106,9 +122,12 @@ class _Course:
         return float(before_s + min(1.0, share) * (self.time_s[reached] - before_s))
 
 
-def _passage(gate: Gate, course: _Course, length_m: float) -> Passage:
-    ready_s = course.time_behind(gate.from_m)
+def _passage(
+    gate: Gate, course: _Course, ready_s: float, next_s: float, length_m: float
+) -> Passage:
+    """What a train has planned at a gate that it passes at a time, and the next one at another. [s]"""
     clear_s = course.time_at(gate.until_m + length_m * gate.clears_whole)
-    return Passage(
-        int(gate.stretch), int(gate.direction), int(gate.place), ready_s, max(ready_s, clear_s)
-    )
+    if not gate.clears_whole:  # it is in the crossing place before it leaves that
+        clear_s = min(clear_s, next_s)
+    numbers = int(gate.stretch), int(gate.direction), int(gate.place)
+    return Passage(*numbers, ready_s, max(ready_s, clear_s), bool(gate.aside), course.place_m(gate))

@@ -132,7 +132,7 @@ def in_the_way(
             return j
         if obstacle == Obstacle.PLACE and _has_place(gate.place, train, other, rules):
             return j
-        if obstacle == Obstacle.NO_WAY and other.place != NOBODY:
+        if obstacle == Obstacle.NO_WAY and other.foreseen != NOBODY:
             return j
     return NOBODY
 

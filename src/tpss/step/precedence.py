@@ -14,7 +14,8 @@ its braking distance.  A train may pass
 Those that asked first are let in first; a stretch is kept for one that has to wait for 2 or 3 only.
 
 What a train has been granted it keeps until its head, or its rear, has left the stretch.  It does not
-ask for what lies behind its next stop, nor at a stop before the step in which it may leave.
+ask for what lies behind its next stop, nor at a stop before the step in which it may leave, nor behind
+another train that is still before the gate.
 """
 
 import math
@@ -177,7 +178,8 @@ def _ask(
     within = gate.from_m - train.motion.position_m <= reach_m
     held.end_m = gate.from_m if within else math.inf
     held.tried, held.obstacle = False, Obstacle.NONE
-    held.asked = min(held.asked, now_s) if asks(train, gate, reach_m, step_s, stops) else math.inf
+    wants = held.ahead_m >= gate.from_m and asks(train, gate, reach_m, step_s, stops)
+    held.asked = min(held.asked, now_s) if wants else math.inf
 
 
 @inlined
@@ -204,14 +206,12 @@ def _next_to_try(count: int, standing: Records[Standing], turns: Turns) -> int:
 
 
 @inlined
-def _stands_at(train: Train, held: Holding, rules: Gates) -> int:
-    """Crossing place at which a train stands before a gate that it may not pass yet, or -1."""
-    if train.motion.speed_m_s > 0.0 or held.next == 0:
-        return NOBODY
+def _note_standing(train: Train, held: Holding, rules: Gates) -> None:
+    """Note whether a train stands before a gate that it may not pass yet."""
     gate = rules.gates[at(train.route), at(held.next)]
-    if abs(gate.from_m - train.motion.position_m) > AT_GATE_M:
-        return NOBODY
-    return rules.gates[at(train.route), at(held.next - 1)].place
+    there = abs(gate.from_m - train.motion.position_m) <= AT_GATE_M
+    held.stands = there and train.motion.speed_m_s <= 0.0
+    held.aside = held.stands and gate.aside
 
 
 @kernel
@@ -252,5 +252,4 @@ def let_pass(
                 turns.uses[at(gate.stretch)].kept_for = i
     for n in range(count):
         i = standing[at(n)].train
-        held = turns.holdings[at(i)]
-        held.place = _stands_at(trains[at(i)], held, rules)
+        _note_standing(trains[at(i)], turns.holdings[at(i)], rules)

@@ -14,8 +14,8 @@ the reaction time being a time step at least, in which the place that it aims at
 
 Trains are kept in a list for each track, so that a train looks at those on its own way only.
 Trains that run towards each other on one track do not see each other: what keeps them apart are gates
-(`precedence`), at which a train brakes as for a stop.  Trains that wait beside each other at a crossing
-place, each on a track of its own, do not see each other either.
+(`precedence`), at which a train brakes as for a stop.  Nor is anybody's way blocked by a train that
+waits at a gate at a station of several tracks, or at its origin.
 """
 
 import math
@@ -27,7 +27,7 @@ from tpss.powerflow.network import Indices, Standing
 from tpss.record import Record, Records
 from tpss.step.deadlock import in_the_way
 from tpss.step.precedence import reach_of
-from tpss.step.turns import NOBODY, Gates, Holding, Turns
+from tpss.step.turns import AT_GATE_M, NOBODY, Gates, Holding, Turns
 from tpss.track.gate import Precedence
 from tpss.track.leg import Leg, place_on_line
 from tpss.vehicle.braking import braking_square
@@ -79,8 +79,12 @@ class Occupancy(Record):
     """Where it begins on the line. [m]"""
     high_m: float
     """Where it ends. [m]"""
-    place: int
-    """Crossing place at which it waits, or -1."""
+    stands: bool
+    """Whether it waits there for others to pass."""
+    aside: bool
+    """Whether it does so on a track of its own."""
+    tail: bool
+    """Whether its head is on another leg already."""
     next: int
     """Next one on the track; -1: none."""
 
@@ -98,14 +102,15 @@ def _track(leg: Leg) -> int:
 
 @kernel
 def _occupy(
-    k: int, i: int, from_m: float, to_m: float, place: int, leg: Leg,
+    k: int, i: int, from_m: float, to_m: float, held: Holding, tail: bool, leg: Leg,
     occupancies: Records[Occupancy], first: Indices,
 ) -> None:  # fmt: skip
     """Note in the `k`-th entry that train `i` stands between two positions along its route. [m]"""
     entry, track = occupancies[at(k)], _track(leg)
     one_m, other_m = place_on_line(from_m, leg), place_on_line(to_m, leg)
     entry.train, entry.sign = i, leg.sign
-    entry.low_m, entry.high_m, entry.place = min(one_m, other_m), max(one_m, other_m), place
+    entry.low_m, entry.high_m, entry.aside = min(one_m, other_m), max(one_m, other_m), held.aside
+    entry.tail, entry.stands = tail, held.stands
     entry.next, first[at(track)] = first[at(track)], k
 
 
@@ -120,14 +125,22 @@ def note_places(
     for n in range(count):
         i = standing[at(n)].train
         train = trains[at(i)]
-        head_m = train.motion.position_m
+        head_m, held, number = train.motion.position_m, holdings[at(i)], train.leg
         rear_m = head_m - types[at(train.train_type)].length_m
-        leg, place = legs[at(train.route), at(train.leg)], holdings[at(i)].place
-        _occupy(2 * n, i, max(rear_m, leg.from_m), head_m, place, leg, occupancies, first)
-        if rear_m < leg.from_m and train.leg > 0:
-            before = legs[at(train.route), at(train.leg - 1)]
+        if held.stands and number > 0:  # it has not come to the leg that begins at its gate
+            number -= legs[at(train.route), at(number)].from_m >= head_m - AT_GATE_M
+        leg = legs[at(train.route), at(number)]
+        _occupy(2 * n, i, max(rear_m, leg.from_m), head_m, held, False, leg, occupancies, first)
+        if rear_m < leg.from_m and number > 0:
+            before = legs[at(train.route), at(number - 1)]
             rear_m = max(rear_m, before.from_m)
-            _occupy(2 * n + 1, i, rear_m, leg.from_m, place, before, occupancies, first)
+            _occupy(2 * n + 1, i, rear_m, leg.from_m, held, True, before, occupancies, first)
+
+
+@inlined
+def _head(entry: Occupancy, leg: Leg) -> float:
+    """Where an occupied part of a track ends, along the route of a train behind it. [m]"""
+    return leg.sign * ((entry.high_m if leg.sign > 0.0 else entry.low_m) - leg.offset_m)
 
 
 @inlined
@@ -153,22 +166,24 @@ def _is_ahead(entry: Occupancy, i: int, position_m: float, own: bool, leg: Leg) 
     """Whether a part of a track is ahead of train `i`, on the leg where it is (its own) or later."""
     if entry.train == i or entry.sign != leg.sign:
         return False
-    head_m = leg.sign * ((entry.high_m if leg.sign > 0.0 else entry.low_m) - leg.offset_m)
-    if not own:
-        return head_m >= leg.from_m
+    head_m = _head(entry, leg)
+    if entry.stands and head_m <= (position_m if own else leg.from_m) + AT_GATE_M:
+        return False  # beside it, it waits for others to pass
+    if not own:  # a tail that ends where the leg begins has come from elsewhere, and left it there
+        return head_m > leg.from_m + ROUNDING_M if entry.tail else head_m >= leg.from_m
     return head_m > position_m or (head_m == position_m and entry.train < i)
 
 
 @kernel
 def end_of_authority(
-    i: int, reach_m: float, gate_m: float, beside: int, train: Train, legs: Records[Leg],
+    i: int, reach_m: float, gate_m: float, aside: bool, train: Train, legs: Records[Leg],
     occupancies: Records[Occupancy], first: Indices, signalling: Signalling,
 ) -> tuple[float, int]:  # fmt: skip
     """Position that train `i` may not pass because of another one, and which; infinite: there is none
     within its reach. [m]
 
-    Trains beyond a gate that it may not pass are not in its way, nor those that wait at the crossing
-    place `beside` it, where it has a track too.
+    Trains beyond a gate that it may not pass are not in its way, nor those that wait aside; if it would
+    wait `aside` there too, nor those whose head is beyond it.
     """
     end_m, whom, position_m = math.inf, NOBODY, train.motion.position_m
     for n in range(train.leg, legs.shape[1]):
@@ -181,10 +196,10 @@ def end_of_authority(
         k = first[at(_track(leg))]
         while k >= 0:
             entry = occupancies[at(k)]
-            elsewhere = entry.place == NOBODY or entry.place != beside
-            if elsewhere and _is_ahead(entry, i, position_m, n == train.leg, leg):
+            if not entry.aside and _is_ahead(entry, i, position_m, n == train.leg, leg):
                 before_m = _end_before(entry, leg, signalling)
-                if before_m < until_m and before_m < end_m and _rear(entry, leg) < gate_m:
+                begins_m = _head(entry, leg) + AT_GATE_M if aside else _rear(entry, leg) - AT_GATE_M
+                if before_m < until_m and before_m < end_m and begins_m < gate_m:
                     end_m, whom = before_m, entry.train
             k = entry.next
     return end_m, whom
@@ -268,12 +283,11 @@ def keep_apart(
         kind = types[at(train.train_type)]
         reach_m = reach_of(kind, signalling.reaction_s, step_s)
         reach_m += signalling.margin_m + signalling.block_m
-        beside = NOBODY
-        if held.next > 0:
-            beside = rules.gates[at(train.route), at(held.next - 1)].place
+        gate = rules.gates[at(train.route), at(held.next)]
         end_m, whom = end_of_authority(
-            i, reach_m, held.end_m, beside, train, legs, occupancies, first, signalling
+            i, reach_m, held.end_m, gate.aside, train, legs, occupancies, first, signalling
         )
+        held.ahead_m = end_m
         too_near += give_authority(end_m, held.end_m, step_s, train, kind, signalling)
         held.waits_for = NOBODY
         if _waits(train.motion, held.end_m, whom):

@@ -44,8 +44,10 @@ class Holding(Record):
     """Next gate, which it may not pass yet."""
     asked: float
     """Time at which it asked for it first; infinite: it has not. [s]"""
-    place: int
-    """Crossing place at which it stands and may not leave yet, or -1."""
+    stands: bool
+    """Whether it stands at a gate that it may not pass yet."""
+    aside: bool
+    """Whether it does so on a track of its own."""
     waits_for: int
     """Train that is in its way while it stands, or -1."""
     obstacle: Obstacle
@@ -58,6 +60,8 @@ class Holding(Record):
     """Crossing place to which it will come, see `all_come_through`; -1: to its end."""
     end_m: float
     """Position of the gate that it may not pass; infinite: it may go on. [m]"""
+    ahead_m: float
+    """End of its authority behind a train ahead, in the step before; infinite: there was none. [m]"""
 
 
 class Use(Record):
@@ -119,8 +123,8 @@ def new_turns(trains: int, gates: Gates, turns: Records[Turn] | None = None) -> 
         turns = no_turns(trains, gates)
     holdings = Holding.blank(trains)
     holdings["asked"] = math.inf
-    holdings["place"] = holdings["waits_for"] = NOBODY
-    holdings["end_m"] = math.inf
+    holdings["waits_for"] = NOBODY
+    holdings["end_m"] = holdings["ahead_m"] = math.inf
     uses = Use.blank(int(rows["stretch"].max(initial=-1)) + 1)
     return Turns(turns, holdings, uses, PlaceUse.blank(gates.tracks.size))
 

@@ -4,8 +4,9 @@ Behind a gate lies a **stretch**, of which trains of both directions use one tra
 where they may cross, that is a single track.  Trains run on a stretch in one direction at a time.  Where
 routes come together on one track there is a stretch without length, which trains enter one by one.
 
-A train that may not pass waits with its head at the gate.  Between two single tracks lies a **crossing
-place**, a station of several tracks: a train whose head has come there stands in it as a whole.
+A train that may not pass waits with its head at the gate; at a station of several tracks it is in
+nobody's way there.  Between two single tracks lies a **crossing place**, such a station: a train whose
+head has come there stands in it as a whole.
 """
 
 from enum import IntEnum
@@ -37,3 +38,6 @@ class Gate(Record):
     """Direction in which the route uses the stretch, 0 or 1."""
     place: int
     """Index of the crossing place at its end, where there is another gate; -1: there is none."""
+    aside: bool
+    """Whether trains that wait at it stand on tracks of their own: at a station of several tracks, or at
+    their origin."""

@@ -46,7 +46,7 @@ def kind() -> Any:
 
 def occupied(*parts: tuple[int, float, float, float]) -> tuple[Any, Any]:
     """Entries (train, direction, low, high) of the only track, and the list of it."""
-    entries = Occupancy.array((*part, -1, k - 1) for k, part in enumerate(parts))
+    entries = Occupancy.array((*part, False, False, False, k - 1) for k, part in enumerate(parts))
     first = np.full(tracks_of(LEGS), -1)
     first[1] = len(parts) - 1
     return entries, first
@@ -69,7 +69,7 @@ def test_authority_ends_before_the_next_train_ahead(
 ):
     train = train_at(position_m, route=route)
     found, whom = as_run(end_of_authority)(
-        0, 1e5, NOWHERE, -1, train, LEGS, *occupied(part), signalling
+        0, 1e5, NOWHERE, False, train, LEGS, *occupied(part), signalling
     )
     assert (found, whom) == (end_m, -1 if end_m == math.inf else part[0])
 
@@ -77,29 +77,26 @@ def test_authority_ends_before_the_next_train_ahead(
 def test_of_several_trains_ahead_the_nearest_counts(as_run):
     parts = [(1, UP, 9000.0, 9100.0), (2, UP, 4000.0, 4100.0), (3, UP, 6000.0, 6100.0)]
     found = as_run(end_of_authority)(
-        0, 1e5, NOWHERE, -1, train_at(0.0), LEGS, *occupied(*parts), MOVING
+        0, 1e5, NOWHERE, False, train_at(0.0), LEGS, *occupied(*parts), MOVING
     )
     assert found == (3950.0, 2)
 
 
-def test_trains_that_wait_at_one_crossing_place_are_not_in_each_others_way(as_run):
-    """Train 1 waits on a track of place 3; for one that has a track there too only train 2 counts."""
+def test_trains_that_wait_aside_are_in_nobodys_way(as_run):
+    """Train 1 waits on a track of its own, so that only train 2 counts."""
     entries, first = occupied((1, UP, 2600.0, 3000.0), (2, UP, 4600.0, 5000.0))
-    entries[0].place = 3
-    ends = [
-        as_run(end_of_authority)(
-            0, 1e5, NOWHERE, beside, train_at(0.0), LEGS, entries, first, MOVING
-        )
-        for beside in (-1, 2, 3)
-    ]
-    assert ends == [(2550.0, 1), (2550.0, 1), (4550.0, 2)]
+    entries[0].aside = True
+    found = as_run(end_of_authority)(
+        0, 1e5, NOWHERE, False, train_at(0.0), LEGS, entries, first, MOVING
+    )
+    assert found == (4550.0, 2)
 
 
 def test_of_trains_at_one_place_the_one_that_departed_first_is_ahead(as_run):
     parts = [(0, UP, 0.0, 0.0), (1, UP, 0.0, 0.0)]
     ends = [
         as_run(end_of_authority)(
-            i, 1e5, NOWHERE, -1, train_at(0.0), LEGS, *occupied(*parts), MOVING
+            i, 1e5, NOWHERE, False, train_at(0.0), LEGS, *occupied(*parts), MOVING
         )
         for i in (0, 1)
     ]
@@ -160,7 +157,16 @@ def test_trains_beyond_a_gate_that_a_train_may_not_pass_do_not_matter(as_run):
     """The rear of one is at 2600 m; for a train before a gate at 2500 m it is not in the way."""
     parts = occupied((1, UP, 2600.0, 3000.0))
     ends = [
-        as_run(end_of_authority)(0, 1e5, gate_m, -1, train_at(0.0), LEGS, *parts, MOVING)[0]
+        as_run(end_of_authority)(0, 1e5, gate_m, False, train_at(0.0), LEGS, *parts, MOVING)[0]
         for gate_m in (2500.0, 2700.0)
     ]
     assert ends == [math.inf, 2550.0]
+
+
+def test_nor_does_one_whose_head_is_beyond_a_gate_where_a_train_has_a_track_of_its_own(as_run):
+    parts = occupied((1, UP, 2300.0, 2700.0))
+    ends = [
+        as_run(end_of_authority)(0, 1e5, 2500.0, aside, train_at(0.0), LEGS, *parts, MOVING)[0]
+        for aside in (False, True)
+    ]
+    assert ends == [2250.0, math.inf]
