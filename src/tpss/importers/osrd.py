@@ -21,7 +21,7 @@ from tpss.importers.osrd_trains import (
     read_trains,
 )
 from tpss.importers.track_network import TrackNetwork, network_of
-from tpss.importers.track_stations import PLACE, POINT, Stations, station_names
+from tpss.importers.track_stations import PLACE, POINT
 from tpss.importers.ways import with_passes
 from tpss.units import kilometres
 
@@ -59,28 +59,22 @@ def read(infra_path: Path, trains_path: Path | None = None) -> ImportedNetwork:
         left_out=_left_out(infra, made),
         assumed=made.assumed(),
     )
-    _add_trains(network, trains, places, made.stations)
+    _add_trains(network, trains, places, made)
     if given:
         network.left_out.extend(left_out_of_trains(given, places))
     return network
 
 
 def _add_trains(
-    network: ImportedNetwork, trains: list[TrainSchedule], places: Places, stations: Stations
+    network: ImportedNetwork, trains: list[TrainSchedule], places: Places, made: TrackNetwork
 ) -> None:
-    names = station_names(stations)
-    on_lines = {name for line in network.lines for name in line.stations}
-
     def station_of(item: PathItem) -> str | None:
         point, spot = places.point(item), places.on_track(item)
         if point is not None:
-            label = (POINT, point.id)
-        elif spot is not None:
-            label = (PLACE, f"{spot[0]} at {spot[1] / 1e3:.3f} km")
-        else:
-            return None
-        name = names[stations.root(label)] if label in stations.parent else None
-        return name if name in on_lines else None
+            return made.station_of((POINT, point.id))
+        if spot is not None:
+            return made.station_of((PLACE, f"{spot[0]} at {spot[1] / 1e3:.3f} km"))
+        return None
 
     timetable = as_timetable(trains, station_of)
     found, lost = with_passes(timetable, network.stations)

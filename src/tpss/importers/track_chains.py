@@ -1,8 +1,8 @@
 """Track sections in a row: which of them make a line.
 
-Sections of one line, or of one line and track, of a register follow each other; without a register the
-maximal chains do.  Over a switch a chain goes on along one of its ways only: where sections of the same
-name meet, else along the way that is listed first.
+Sections of one line, or of one line and track, of a register follow each other, and those of none follow
+any; without a register the maximal chains do.  Over a switch a chain goes on along one of its ways only:
+where sections of the same name meet, else along the way that is listed first.
 """
 
 from collections import defaultdict
@@ -75,8 +75,9 @@ def joins_of(tracks: Tracks) -> dict[End, End]:
     candidates = []
     for number, joint in enumerate(tracks.joints):
         for order, (a, b) in enumerate(joint.pairs):
-            if tracks.sections[a[0]].joins_as == tracks.sections[b[0]].joins_as:
-                candidates.append((not joint.is_link, order, number, a, b))
+            one, other = (tracks.sections[end[0]].joins_as for end in (a, b))
+            if one == other or not one or not other:
+                candidates.append((not joint.is_link, one != other, order, number, a, b))
     joins: dict[End, End] = {}
     for *_, a, b in sorted(candidates):
         if a not in joins and b not in joins and a != b:

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
-from tpss.importers.network import NO_LIMIT_KMH, NetworkLine
+from tpss.importers.network import NO_LIMIT_KMH, NetworkLine, stairs
 from tpss.importers.track_chains import Layout, chains_of, joins_of
 from tpss.importers.track_kilometres import has_kilometres, jumps_km
 from tpss.importers.track_lines import Profiles, lines_of
-from tpss.importers.track_stations import Stations, find_stations
+from tpss.importers.track_stations import Label, Stations, find_stations, station_names
 from tpss.importers.tracks import Tracks
 from tpss.results.osrd_tracks import OsrdTrack
 from tpss.units import kilometres
@@ -23,6 +25,21 @@ class TrackNetwork:
     profiles: Profiles
     lines: list[NetworkLine]
     ranges: list[OsrdTrack]
+
+    def station_of(self, label: Label) -> str | None:
+        """Name of the station that a place became; None if it is on no line."""
+        if label not in self.stations.parent:
+            return None
+        name = self._names[self.stations.root(label)]
+        return name if name in self._on_lines else None
+
+    @cached_property
+    def _names(self) -> dict[Label, str]:
+        return station_names(self.stations)
+
+    @cached_property
+    def _on_lines(self) -> set[str]:
+        return {name for line in self.lines for name in line.stations}
 
     def taken(self) -> list[str]:
         """What was taken."""
@@ -104,3 +121,19 @@ def network_of(tracks: Tracks, further: Iterable[tuple[str, float]] = ()) -> Tra
     profiles = Profiles(tracks, layout)
     lines, ranges = lines_of(layout, profiles, stations)
     return TrackNetwork(tracks, layout, stations, profiles, lines, ranges)
+
+
+def level_track(tracks: Tracks) -> list[str]:
+    """What is assumed where a format that tells all gradients tells none."""
+    given_m = whole_m = 0.0
+    for section in tracks.sections.values():
+        whole_m += section.length_m
+        spans = [(begin, end, 1.0) for begin, end, _ in section.gradients]
+        steps = [*stairs(0.0, section.length_m, spans, 0.0, max), (section.length_m, 0.0)]
+        given_m += sum((b - a) * value for (a, value), (b, _) in pairwise(steps))
+    lacking_km = round((whole_m - given_m) / 1e3, 3)
+    if not given_m:
+        return ["level track: the file has no gradients"]
+    if lacking_km > 0.0:
+        return [f"level track on {kilometres(lacking_km)} km: the file has no gradients there"]
+    return []

@@ -101,7 +101,7 @@ def find_stations(
             _close(stations, layout, i)
     _unite_close_ones(stations, layout)
     for i in range(len(layout.chains)):
-        _add_ends(stations, layout, i)
+        _add_ends(stations, layout, i, everywhere=not tracks.places)
     return stations
 
 
@@ -122,10 +122,11 @@ def _close(stations: Stations, layout: Layout, chain: int) -> None:
         stations.add(Spot(chain, place_m), (END, track), f"Begin of {track}")
 
 
-def _add_ends(stations: Stations, layout: Layout, chain: int) -> None:
-    """Stations at the ends of a chain that has fewer than two, where there is none."""
+def _add_ends(stations: Stations, layout: Layout, chain: int, everywhere: bool) -> None:
+    """Stations at the ends of a chain, where there is none, if it has fewer than two or everywhere."""
     marks, length_m = stations.at(chain), layout.length_m(chain)
-    if length_m < SHORTEST_M or len({label for _, label in marks}) >= 2:
+    enough = len({label for _, label in marks}) >= 2 and not everywhere
+    if length_m < SHORTEST_M or enough:
         return
     links = layout.chains[chain]
     for place_m, word, link in ((0.0, "Begin", links[0]), (length_m, "End", links[-1])):

@@ -24,7 +24,8 @@ class Section:
     id: str
     length_m: float
     joins_as: tuple[str, ...] = ()
-    """Line, or line and track, of a register: sections of the same follow each other in a chain."""
+    """Line, or line and track, of a register: sections of the same follow each other in a chain; empty:
+    they follow any."""
     name: str = ""
     """Name for a line that is made of it."""
     gradients: tuple[Stretch, ...] = ()
