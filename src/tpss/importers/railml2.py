@@ -35,8 +35,14 @@ class ImportedTrains:
     assumed: list[str] = field(default_factory=list)
 
 
-def trains_of(file: RailmlFile) -> ImportedTrains:
+def trains_of(file: RailmlFile, with_tracks: bool = False) -> ImportedTrains:
     """Trains of a file of railML 2.
+
+    Parameters
+    ----------
+    file : RailmlFile
+    with_tracks : bool
+        Whether the tracks of the file are imported as well.
 
     Raises
     ------
@@ -54,7 +60,7 @@ def trains_of(file: RailmlFile) -> ImportedTrains:
         path,
         trains,
         [f"trains: {len(trains)}", f"their stations: {', '.join(sorted(stations))}"],
-        reader.left_out(),
+        reader.left_out(with_tracks),
         ["all trains run on the same day: operating periods are not read"],
     )
 
@@ -89,10 +95,11 @@ class _Reader:
             raise ScenarioError(self.findings)
         return found
 
-    def left_out(self) -> list[str]:
+    def left_out(self, with_tracks: bool) -> list[str]:
         """What was left out, with counts."""
+        tracks = "tracks of the infrastructure: write the lines, with stations of these names"
         counts = {
-            "tracks of the infrastructure: write the lines, with stations of these names": "track",
+            **({} if with_tracks else {tracks: "track"}),
             "vehicles": "vehicle",
             "reserves of running times": "runTimes",
             "operating periods": "operatingPeriod",

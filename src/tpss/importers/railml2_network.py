@@ -51,7 +51,7 @@ def network_from(file: RailmlFile) -> ImportedNetwork:
     )
     if file.count("trainPart"):
         stations = {name: made.station_of((POINT, ident)) for ident, name in names.items()}
-        _add_trains(network, trains_of(file), stations)
+        _add_trains(network, trains_of(file, with_tracks=True), stations)
     return network
 
 

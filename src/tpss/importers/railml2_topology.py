@@ -199,5 +199,5 @@ def tracks_with_topology(file: RailmlFile) -> list[Element]:
     return [
         track
         for track in file.root.iter("track")
-        if any(track.iter("trackBegin")) and any(track.iter("trackEnd"))
+        if all(track.find(f".//{tag}") is not None for tag in ("trackBegin", "trackEnd"))
     ]

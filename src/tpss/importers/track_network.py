@@ -89,7 +89,9 @@ class TrackNetwork:
         if without == len(self.layout.chains):
             told.append("kilometres: they count from the beginning of each line; the file has none")
         elif without:
-            told.append(f"kilometres of {without} lines: they count from 0; the file has none")
+            told.append(
+                f"kilometres that count from 0, as the file has none there: on {without} of the lines"
+            )
         if any(speed == NO_LIMIT_KMH for line in self.lines for _, speed in line.limits):
             told.append(
                 f"{NO_LIMIT_KMH:g} km/h where no speed section applies: the trains' own highest speeds "
