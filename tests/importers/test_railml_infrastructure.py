@@ -297,6 +297,7 @@ def test_a_system_of_railml_3_is_that_of_the_scenario(network):
     ("text", "old", "new", "key", "problem"),
     [
         (RAILML_3, 'version="3.2"', 'version="4.0"', "version", "not railML 2 or 3, but railML 4.0"),
+        (RAILML_3, 'encoding="UTF-8"', 'encoding="none"', "line 1", "unknown encoding: none"),
         (RAILML_3, "</railML>", "", f"line {LAST_LINE}", "no element found"),
         (RAILML_3, 'id="ne_a" length="6000"', 'id="ne_a" length="long"', "netElement ne_a, length",
          "not a number"),

@@ -10,6 +10,7 @@ track's end, "incoming" if it joins it in that direction.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from tpss.importers.railml_file import RailmlFile, name_of
@@ -37,6 +38,15 @@ class Piece:
     """Where it begins and ends on its track. [m]"""
 
 
+class Branch(NamedTuple):
+    """A branch of a switch."""
+
+    switch: Element
+    connection: Element
+    track: str
+    """Track on which the switch is."""
+
+
 class Topology:
     """Tracks with a topology, their pieces, and the ways between these."""
 
@@ -48,9 +58,8 @@ class Topology:
         self.pieces = {ident: self._pieces(track) for ident, track in self.tracks.items()}
         self._at_ends: dict[str, End] = {}
         """Ends of pieces by the connections there."""
-        self._branches: dict[str, Element] = {}
-        """Branches of switches by their connections, and the tracks that these are on."""
-        self._track_of: dict[str, str] = {}
+        self._branches: dict[str, Branch] = {}
+        """Branches of switches by their connections."""
         for ident, track in self.tracks.items():
             self._note_connections(ident, track)
         self.ways = [*self._through(), *self._links(), *self._branching(), *self._crossing()]
@@ -94,8 +103,7 @@ class Topology:
                     self._at_ends[connection.get("id", "")] = (piece.id, end)
         for switch in switches_of(track):
             for connection in switch.iter("connection"):
-                self._branches[connection.get("id", "")] = switch
-                self._track_of[connection.get("id", "")] = ident
+                self._branches[connection.get("id", "")] = Branch(switch, connection, ident)
 
     def _through(self) -> Iterator[Way]:
         """Along a track, past its switches."""
@@ -132,24 +140,21 @@ class Topology:
     def _branching(self) -> Iterator[Way]:
         """Over the branches of switches."""
         seen: set[frozenset[End]] = set()
-        for branch, switch in self._branches.items():
-            connection = next(
-                each for each in switch.iter("connection") if each.get("id") == branch
-            )
-            ref = connection.get("ref", "")
+        for branch in self._branches.values():
+            ref = branch.connection.get("ref", "")
             if ref in self._at_ends:
                 theirs = [self._at_ends[ref]]
             elif ref in self._branches:
-                theirs = self._stems(ref)
+                theirs = self._stems(self._branches[ref])
             else:
                 self.broken += 1
                 continue
+            ident, name = branch.switch.get("id", ""), name_of(branch.switch)
+            is_open = branch.connection.get("passable", "true") != "false"
             for here in self._stems(branch):
                 for there in theirs:
                     if frozenset((here, there)) not in seen:
                         seen.add(frozenset((here, there)))
-                        is_open = connection.get("passable", "true") != "false"
-                        ident, name = switch.get("id", ""), name_of(switch)
                         yield Way(ident, (here, there), name, BRANCH, is_open)
 
     def _crossing(self) -> Iterator[Way]:
@@ -164,19 +169,15 @@ class Topology:
                 for here, there in zip(ends["incoming"], ends["outgoing"], strict=False):
                     yield Way(crossing.get("id", ""), (here, there), name_of(crossing), STRAIGHT)
 
-    def _stems(self, ident: str) -> list[End]:
+    def _stems(self, branch: Branch) -> list[End]:
         """Ends from which a branch of a switch is travelled: on its track, or on what that leads to."""
-        switch, track = self._branches[ident], self._track_of[ident]
-        connection = next(each for each in switch.iter("connection") if each.get("id") == ident)
-        pos_m = self.file.number(switch, "pos") or 0.0
-        pieces = self.pieces[track]
-        if connection.get("orientation") == "incoming":
+        pos_m = self.file.number(branch.switch, "pos") or 0.0
+        pieces = self.pieces[branch.track]
+        if branch.connection.get("orientation") == "incoming":
             after = next((each for each in pieces if each.begin_m >= pos_m - CLOSE_M), None)
-            if after is not None:
-                return [(after.id, "BEGIN")]
-            return self._beyond(track, "trackEnd")
+            return [(after.id, "BEGIN")] if after else self._beyond(branch.track, "trackEnd")
         before = next((each for each in pieces[::-1] if each.end_m <= pos_m + CLOSE_M), None)
-        return [(before.id, "END")] if before is not None else self._beyond(track, "trackBegin")
+        return [(before.id, "END")] if before else self._beyond(branch.track, "trackBegin")
 
     def _beyond(self, track: str, tag: str) -> list[End]:
         """Ends of other tracks to which an end of a track leads."""
