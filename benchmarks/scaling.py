@@ -16,7 +16,8 @@ import tpss
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.run.kernels import make_ready
-from tpss.run.run import advance_to_end, begin, run_of
+from tpss.run.run import advance_to_end, run_of
+from tpss.run.start import begin
 
 from report import FIGURES, arguments, caption, deliver, machine, stay_on_one_core, table
 

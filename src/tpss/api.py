@@ -19,7 +19,8 @@ from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
-from tpss.run.run import Clock, Progress, Run, Start, advance_to_end, outcome_of, run_of
+from tpss.run.run import Clock, Progress, Run, advance_to_end, outcome_of, run_of
+from tpss.run.start import Start
 from tpss.run.stiff import LostTime, lost_to_voltage
 from tpss.scenario.open_step import LADDER_MIN, with_step
 from tpss.scenario.scenario import Scenario

@@ -11,7 +11,7 @@ from tpss.accuracy.check import MOST_HALVINGS, agree, check_step
 from tpss.accuracy.trial import Trial
 from tpss.api import prepare
 from tpss.many import key_figures
-from tpss.run import run as runs
+from tpss.run import limits
 from tpss.run.run import INTERRUPTED, Run
 from tpss.step.recording import recording_bytes
 
@@ -149,7 +149,7 @@ def test_half_the_step_that_needs_too_much_memory_is_left_out(monkeypatch):
     prepared = prepare(at(0.2))
     start = prepared.start
     needed = recording_bytes(start.model, start.capacity, len(start.trains))
-    monkeypatch.setattr(runs, "MOST_MEMORY_BYTES", 1.5 * needed)
+    monkeypatch.setattr(limits, "MOST_MEMORY_BYTES", 1.5 * needed)
     check = prepared.run(step_check=True).summary["step_check"]
     assert check["not_made"] == "the run at half the step needs too much memory"
 

@@ -7,7 +7,7 @@ import pytest
 
 import tpss
 from tpss.cli.main import main
-from tpss.importers.railml2 import read
+from tpss.importers.railml import read
 from tpss.importers.timetable import Train
 
 FILE = """\
@@ -145,7 +145,7 @@ def test_the_command_writes_a_timetable(tmp_path, monkeypatch, capsys):
         ('ocpRef="ocp_f"', 'ocpRef="ocp_x"', "trainPart p1, ocpTT", "no such ocp"),
         ('"PT5M"', '"5 min"', "trainPart p2, minimalTime", "not a duration"),
         ('ref="p2"', 'ref="p9"', "trainPartRef p9", "no such trainPart"),
-        ('version="2.4"', 'version="3.2"', "version", "not railML 2, but railml 3.2"),
+        ('version="2.4"', 'version="3.2"', "version", "not railML 2 or 3, but railml 3.2"),
         ("</timetable>", "", "line 56", "mismatched tag"),
         ("<trainParts>", "<trainParts>" + "<a>" * 300, "line 14", "more than 200 elements"),
     ],

@@ -17,7 +17,7 @@ from tpss.errors import TooLargeError
 from tpss.model import build_model
 from tpss.model.build import steps_of
 from tpss.model.traffic import build_services
-from tpss.run.run import foreseen_steps
+from tpss.run.start import foreseen_steps
 
 from .roots import Replay
 from .rules import keep_the_rules

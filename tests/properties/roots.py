@@ -16,7 +16,8 @@ from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
-from tpss.run.run import Run, run_of, switch, trains_on_line
+from tpss.run.already_running import trains_on_line
+from tpss.run.run import Run, run_of, switch
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide, pass_unfed, prepare_unfed

@@ -11,7 +11,8 @@ from tpss.audit.verdict import JUDGED, Audit, limits_of, usual_limits
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.results.key_figures import frame_of, key_figures_of
-from tpss.run.run import advance_to_end, begin, outcome_of, run_of
+from tpss.run.run import advance_to_end, outcome_of, run_of
+from tpss.run.start import begin
 
 from conftest import EXAMPLE_SCENARIOS, EXAMPLES
 from scenarios import gradients, limits, short_line

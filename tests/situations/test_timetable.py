@@ -37,7 +37,7 @@ def entry(name: str, train: str, begin: str, end: str, *departures_min: float) -
     return {"name": name, "train": train, "from": begin, "to": end, "departures_min": times}
 
 
-def test_the_last_fields_of_a_train_are_those_of_a_journey():
+def test_the_last_fields_of_a_train_are_those_of_its_motion_and_its_plan():
     """So a train that already runs takes them over one after the other."""
     fields = [*Motion.dtype.names, *(f"plan_{name}" for name in Plan.dtype.names)]
     assert list(ScheduledTrain._fields[-len(fields) :]) == fields

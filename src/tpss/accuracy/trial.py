@@ -10,7 +10,8 @@ from tpss.errors import ScenarioError, TooLargeError
 from tpss.model.build import at_step
 from tpss.model.start import start_of
 from tpss.results.key_figures import Frame, KeyFigures, run_for_figures
-from tpss.run.run import INTERRUPTED, Clock, Progress, Start
+from tpss.run.run import INTERRUPTED, Clock, Progress
+from tpss.run.start import Start
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 

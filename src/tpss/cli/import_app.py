@@ -87,16 +87,18 @@ def gtfs(
     import_gtfs(feed, route, date.date() if date else None, out, force)
 
 
-@app.command(epilog="Example:  tpss import railml timetable.railml --out planned")
+@app.command(epilog="Example:  tpss import railml network.railml --out network")
 def railml(
-    file: Annotated[Path, argument(metavar="FILE", help="Timetable of railML 2 (XML).")],
-    out: Annotated[Path, option(help="Folder for the file.")],
+    file: Annotated[Path, argument(metavar="FILE", help="File of railML 2 or 3 (XML).")],
+    out: Annotated[Path, option(help="Folder for the files.")],
     force: Force = False,
 ) -> None:
-    """Turn the trains of a railML 2 file into a timetable.
+    """Turn the tracks of a railML file into lines, and the trains of railML 2 into a timetable.
 
-    timetable.csv has a row for each place of a train; scheduled times are preferred to published and
-    calculated ones. Infrastructure is not imported: the lines have to have stations of these names.
+    Tracks in a row become a line in its own kilometres, operational points and switches its stations;
+    lines meet at stations of one name. tracks.csv says which track lies where. Signalling is left out.
+    In scenario.toml the supply and the types of train are assumed, and marked as such. Of a railML 2
+    file without tracks the trains alone are read, as timetable.csv: the lines have to have its stations.
     """
     from tpss.cli.imports import import_railml
 

@@ -60,10 +60,13 @@ def import_gtfs(feed: Path, routes: list[str], day: date | None, out: Path, forc
 
 
 def import_railml(file: Path, out: Path, force: bool) -> None:
-    """Write a timetable from a file of railML 2, and print what was done."""
-    from tpss.importers.railml2 import read as read_railml
+    """Write lines, a timetable, or both, from a file of railML, and print what was done."""
+    from tpss.importers.railml import read as read_railml
 
     found = read_railml(file)
+    if isinstance(found, ImportedNetwork):
+        _write_network(found, out, force)
+        return
     head = comments(f"Imported from {file.name} of railML 2.", found).rstrip("\n") + "\n"
     written = write({TIMETABLE: csv_text(found.trains, head)}, out, force)
     console = Console()

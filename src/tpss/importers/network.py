@@ -23,7 +23,7 @@ Stair = tuple[float, float]
 
 @dataclass(frozen=True)
 class NetworkLine:
-    """A line; positions are from its beginning. [km]"""
+    """A line; positions are from its beginning, wherever its kilometres begin. [km]"""
 
     name: str
     length_km: float
@@ -34,20 +34,32 @@ class NetworkLine:
     limits_down: list[Stair] = field(default_factory=list)
     """Limits of trains towards falling kilometres, if they are others."""
     curves: list[Range] = field(default_factory=list)
+    begins_at_km: float = 0.0
 
     @property
     def document(self) -> dict[str, Any]:
-        """The line as in a scenario."""
-        down = {"speed_limits_down": _rows(self.limits_down, "speed_kmh")}
-        curves = {"curves": [{"from_km": a, "to_km": b, "radius_m": r} for a, b, r in self.curves]}
+        """The line as in a scenario, in its kilometres."""
+        down = {"speed_limits_down": self._rows(self.limits_down, "speed_kmh")}
+        curves = [
+            {"from_km": self._km(a), "to_km": self._km(b), "radius_m": r} for a, b, r in self.curves
+        ]
         return {
+            **({"begins_at_km": self.begins_at_km} if self.begins_at_km else {}),
             "length_km": self.length_km,
-            "stations": [{"name": name, "position_km": km} for name, km in self.stations.items()],
-            "speed_limits": _rows(self.limits, "speed_kmh"),
+            "stations": [
+                {"name": name, "position_km": self._km(km)} for name, km in self.stations.items()
+            ],
+            "speed_limits": self._rows(self.limits, "speed_kmh"),
             **(down if self.limits_down else {}),
-            "gradients": _rows(self.gradients, "permille"),
-            **(curves if self.curves else {}),
+            "gradients": self._rows(self.gradients, "permille"),
+            **({"curves": curves} if curves else {}),
         }
+
+    def _km(self, position_km: float) -> float:
+        return round(self.begins_at_km + position_km, DIGITS) if self.begins_at_km else position_km
+
+    def _rows(self, stairs: Iterable[Stair], key: str) -> list[dict[str, float]]:
+        return [{"from_km": self._km(km), key: value} for km, value in stairs]
 
 
 @dataclass(frozen=True)
@@ -87,10 +99,6 @@ class ImportedNetwork:
                     apart.append(each)
             islands = [*apart, (names, lines)]
         return [lines for _, lines in islands]
-
-
-def _rows(stairs: Iterable[Stair], key: str) -> list[dict[str, float]]:
-    return [{"from_km": km, key: value} for km, value in stairs]
 
 
 def stairs(

@@ -14,8 +14,9 @@ from xml.etree.ElementTree import Element
 
 from tpss.errors import Finding, ScenarioError
 from tpss.importers.network import own_name, plain_name
+from tpss.importers.railml_file import RailmlFile
 from tpss.importers.timetable import DAY_S, Call, Train, ends_told, seconds_of
-from tpss.importers.xml_tree import REMEDY, read_xml
+from tpss.importers.xml_tree import REMEDY
 
 SCOPES = ("scheduled", "published", "calculated", "expected", "actual")
 """Scopes of times, those that are preferred first."""
@@ -34,20 +35,22 @@ class ImportedTrains:
     assumed: list[str] = field(default_factory=list)
 
 
-def read(path: Path) -> ImportedTrains:
+def trains_of(file: RailmlFile, with_tracks: bool = False) -> ImportedTrains:
     """Trains of a file of railML 2.
+
+    Parameters
+    ----------
+    file : RailmlFile
+    with_tracks : bool
+        Whether the tracks of the file are imported as well.
 
     Raises
     ------
     ScenarioError
-        The file cannot be read, is of another format, or has faults.
+        There are none, or it has faults.
     """
-    root = read_xml(path)
-    version = root.get("version", "")
-    if root.tag != "railml" or not version.startswith("2"):
-        problem = f"not railML 2, but {root.tag} {version}".rstrip()
-        raise ScenarioError([Finding(str(path), "version", version, problem, REMEDY)])
-    reader = _Reader(path, root)
+    path = file.path
+    reader = _Reader(path, file.root)
     trains = reader.trains()
     if not trains:
         problem = "there is no train with two places in it"
@@ -57,7 +60,7 @@ def read(path: Path) -> ImportedTrains:
         path,
         trains,
         [f"trains: {len(trains)}", f"their stations: {', '.join(sorted(stations))}"],
-        reader.left_out(),
+        reader.left_out(with_tracks),
         ["all trains run on the same day: operating periods are not read"],
     )
 
@@ -69,8 +72,8 @@ class _Reader:
         self.path = path
         self.root = root
         self.findings: list[Finding] = []
-        self.stations = _names(root.iter("ocp"))
-        self.formations = _names(root.iter("formation"))
+        self.stations = names_of(root.iter("ocp"))
+        self.formations = names_of(root.iter("formation"))
         self.parts = {part.get("id", ""): part for part in root.iter("trainPart")}
         self.coupled = 0
         """Parts of trains that run coupled to others."""
@@ -92,10 +95,11 @@ class _Reader:
             raise ScenarioError(self.findings)
         return found
 
-    def left_out(self) -> list[str]:
+    def left_out(self, with_tracks: bool) -> list[str]:
         """What was left out, with counts."""
+        tracks = "tracks of the infrastructure: write the lines, with stations of these names"
         counts = {
-            "tracks of the infrastructure: write the lines, with stations of these names": "track",
+            **({} if with_tracks else {tracks: "track"}),
             "vehicles": "vehicle",
             "reserves of running times": "runTimes",
             "operating periods": "operatingPeriod",
@@ -190,7 +194,7 @@ class _Reader:
         self.findings.append(Finding(str(self.path), key, value, problem, REMEDY))
 
 
-def _names(elements: Iterable[Element]) -> dict[str, str]:
+def names_of(elements: Iterable[Element]) -> dict[str, str]:
     """Names by ids, each only once."""
     names: dict[str, str] = {}
     for element in elements:

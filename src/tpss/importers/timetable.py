@@ -3,7 +3,7 @@
 import csv
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from typing import Any
@@ -45,6 +45,11 @@ class Train:
     def departure_s(self) -> float:
         """When it departs at its origin. [s]"""
         return self.calls[0].departure_s or 0.0
+
+    def renamed(self, stations: Mapping[str, str]) -> "Train":
+        """The same with other names of its stations."""
+        calls = (replace(call, station=stations[call.station]) for call in self.calls)
+        return replace(self, calls=tuple(calls))
 
 
 @dataclass(frozen=True)

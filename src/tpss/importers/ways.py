@@ -52,7 +52,10 @@ def _passed(hops: Mapping[str, Sequence[Hop]], begin: str, end: str) -> list[str
         return None
     if _is_unique(hops, begin, end, []):
         return []
-    passed = _stations_between(hops, begin, end) or []
+    # A way without a station between its ends cannot be named; then another one is taken.
+    passed = (
+        _stations_between(hops, begin, end) or _stations_between(hops, begin, end, most=True) or []
+    )
     for name in list(passed):
         fewer = [each for each in passed if each != name]
         if _is_unique(hops, begin, end, fewer):
@@ -71,13 +74,15 @@ def _is_unique(
     return True
 
 
-def _stations_between(hops: Mapping[str, Sequence[Hop]], begin: str, end: str) -> list[str] | None:
-    """Stations of the shortest way, the first one found where several are equally long."""
+def _stations_between(
+    hops: Mapping[str, Sequence[Hop]], begin: str, end: str, most: bool = False
+) -> list[str] | None:
+    """Stations of the shortest way; of equally long ones the first, or that with most stations."""
     came: dict[str, str] = {}
-    waiting = [(0.0, 0, begin, begin)]
+    waiting = [(0.0, 0, 0, begin, begin)]
     count = 0
     while waiting:
-        reached_km, _, here, before = heapq.heappop(waiting)
+        reached_km, fewer, _, here, before = heapq.heappop(waiting)
         if here in came:
             continue
         came[here] = before
@@ -86,7 +91,7 @@ def _stations_between(hops: Mapping[str, Sequence[Hop]], begin: str, end: str) -
         for hop in hops[here]:
             count += 1
             total_km = round(reached_km + hop.length_km, DECIMALS)
-            heapq.heappush(waiting, (total_km, count, hop.end, here))
+            heapq.heappush(waiting, (total_km, fewer - most, count, hop.end, here))
     if end not in came:
         return None
     way = [came[end]]

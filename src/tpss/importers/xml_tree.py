@@ -55,7 +55,7 @@ def read_xml(path: Path) -> Element:
         return builder.close()
     except OSError as error:
         problem, place = f"the file cannot be read: {reason(error)}", ""
-    except (expat.ExpatError, _RefusedError) as error:
+    except (expat.ExpatError, LookupError, _RefusedError) as error:  # of the encoding, the second
         problem, place = f"not XML as expected: {error}", f"line {parser.CurrentLineNumber}"
     raise ScenarioError([Finding(str(path), place, "", problem, REMEDY)])
 

@@ -7,7 +7,7 @@ from tpss.model.supplements import with_supplements
 from tpss.model.traffic import build_services
 from tpss.run.dispatch import NoOrderError
 from tpss.run.order import with_order
-from tpss.run.run import Start, begin
+from tpss.run.start import Start, begin
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.units import si
@@ -22,7 +22,7 @@ def start_of(scenario: Scenario, model: Model) -> Start:
         A train that the scenario places on the line could not stop or slow down in time, or trains
         that keep an order on single tracks cannot all come through.
     TooLargeError
-        The recording would not fit into memory.
+        The recording would not fit into memory, or trains already running would take too long.
     """
     model, services = with_supplements(scenario, model, build_services(scenario, model))
     steps = None

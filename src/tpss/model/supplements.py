@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tpss.driving.data import Floats, Profile, Profiles, Stop
-from tpss.run.run import arrivals_s, lone_run
+from tpss.run.lone import EmptyLine
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
@@ -126,7 +126,10 @@ def running_time(model: Model, stretch: Stretch, route: int, speed_m_s: float) -
         stops_m=(stretch.to_m,),
         departures_s=(0.0,),
     )
-    return float(arrivals_s(lone_run(trial, alone, 0.0))[0])
+    line = EmptyLine(trial)
+    lone = line.train_of(alone)
+    line.advance_to_end(lone)
+    return line.arrival_s(lone)
 
 
 def with_types(model: Model, rows: Sequence[tuple[int, Sequence[Held]]]) -> Model:

@@ -18,7 +18,8 @@ from tpss.powerflow.system import System
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
-from tpss.run.run import Clock, Progress, Run, Start, advance_to_end, arrivals_s, run_of
+from tpss.run.run import Clock, Progress, Run, advance_to_end, arrivals_s, run_of
+from tpss.run.start import Start
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 from tpss.step.recording import Memory

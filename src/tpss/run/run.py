@@ -4,43 +4,28 @@ The kernel works in stretches of steps, so that progress can be shown and a run 
 recording grows when a run is longer than was foreseen.
 """
 
-import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.driving.data import MotionModel, Options
-from tpss.errors import TooLargeError
 from tpss.powerflow.network import Network
 from tpss.record import Records, copy_of_records
-from tpss.run.services import (
-    DEPARTURE_ROUNDING_S,
-    ScheduledTrain,
-    Service,
-    departing_trains,
-    placed_trains,
-    train_at,
-    train_records,
-)
+from tpss.run.limits import LONGEST_RUN_S, demand_room, has_room
+from tpss.run.services import ScheduledTrain, departing_trains, train_records
+from tpss.run.start import Start
 from tpss.run.switching import Switching, take_over
 from tpss.step.advance import advance
-from tpss.step.model import Model, RunControl
-from tpss.step.recording import Memory, Recording, new_recording, recording_bytes
+from tpss.step.model import Model
+from tpss.step.recording import Memory, Recording, new_recording
 from tpss.step.state import State, Status, new_state
 from tpss.step.turns import Turn
 from tpss.vehicle.train import Phase, Train
 
 STRETCH_S = 0.05
 """Time between two reports of progress, about. [s]"""
-
-LONGEST_RUN_S = 7 * 24 * 3600.0
-"""A run that waits for a train to arrive gives up after this simulated time. [s]"""
-
-MOST_MEMORY_BYTES = 8 * 2**30
-"""A recording larger than this is refused. [byte]"""
 
 INTERRUPTED = "interrupted"
 STATUS_NAME = {
@@ -87,22 +72,6 @@ Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
 """What runs steps, as `advance` does; a clock with another load flow may take its place."""
 
 
-def demand_room(model: Model, steps: int, trains: int) -> None:
-    """Refuse a run whose recording would not fit into memory.
-
-    Raises
-    ------
-    TooLargeError
-    """
-    needed = recording_bytes(model, steps, trains)
-    if needed > MOST_MEMORY_BYTES:
-        raise TooLargeError(
-            f"{steps} steps with {trains} trains need {needed / 2**30:.0f} GiB of memory, more than "
-            f"{MOST_MEMORY_BYTES / 2**30:.0f}; take a longer time step, a shorter duration or a longer "
-            "headway"
-        )
-
-
 class Run:
     """A run in progress: the state at `step`, and the recording up to it."""
 
@@ -114,7 +83,6 @@ class Run:
         clock: Clock = advance,
         records: Records[Train] | None = None,
         memory: Memory = np.empty,
-        with_journeys: bool = False,
         turns: Records[Turn] | None = None,
     ) -> None:
         self.model = model
@@ -127,8 +95,7 @@ class Run:
         if records is None:
             records = train_records(trains, model.network.system.nominal_voltage_v)
         self.state = new_state(model, copy_of_records(records), turns)
-        self.with_journeys = with_journeys
-        self.recording = new_recording(model, capacity, len(trains), memory, with_journeys)
+        self.recording = new_recording(model, capacity, len(trains), memory)
         self.networks = [(0, model.network)]
         """Steps from which networks hold, and these."""
 
@@ -207,145 +174,10 @@ class Run:
             (state.turns.places, turns.places),
         ):
             new[:] = old
-        self.recording = new_recording(
-            self.model, capacity, len(self.trains), with_journeys=self.with_journeys
-        )
+        self.recording = new_recording(self.model, capacity, len(self.trains))
         for name, kept in before._asdict().items():
             getattr(self.recording, name)[tuple(slice(n) for n in kept.shape)] = kept
         self.capacity = capacity
-
-
-def trains_already_running(model: Model, service: Service) -> list[ScheduledTrain]:
-    """Trains of a service as if it had run for ever: those that departed before the start.
-
-    The n-th stands where a lone train at nominal voltage is n headways after its departure, with its
-    speed and its progress in a dwell or a braking plan.  Where trains depart within a step, the lone
-    train departs so that the start is one of its instants.
-    """
-    found: list[ScheduledTrain] = []
-    lone, number = lone_run(model, service, 0.0), 1
-    while True:
-        since_s = number * service.headway_s - service.first_s
-        step, wait_s = _instant_after(since_s, model.options)
-        if wait_s != lone.trains[0].departure_wait_s:
-            lone = lone_run(model, service, wait_s)
-        if step > (lone.step - 1 if lone.status == Status.FINISHED else lone.step):
-            return found
-        if step >= 1:
-            found.append(train_at(lone.recording.journeys[step, 0], lone.trains[0], len(found) + 1))
-        number += 1
-
-
-def _instant_after(since_s: float, options: Options) -> tuple[int, float]:
-    """Step at whose start a train has been under way for a time, and its wait before. [s]"""
-    steps = since_s / options.step_s
-    if options.motion == MotionModel.STEPPED:
-        return round(steps), 0.0
-    step = math.ceil(steps - DEPARTURE_ROUNDING_S / options.step_s)
-    wait_s = step * options.step_s - since_s
-    return step, wait_s if wait_s > DEPARTURE_ROUNDING_S else 0.0
-
-
-def lone_run(model: Model, service: Service, wait_s: float) -> Run:
-    """Run of a lone train at nominal voltage, which departs after a wait in the first step."""
-    h = model.options.step_s
-    control = RunControl(model.network.system.nominal_voltage_v, studied_train=0)
-    on_time = replace(service, first_s=wait_s, delays=None)
-    lone = departing_trains([on_time], model.options, 0, 1)[:1]
-    capacity = foreseen_steps(model, service)
-    run = Run(model._replace(control=control), lone, capacity, with_journeys=True)
-    run.advance_to(capacity)
-    while run.status == Status.RUNNING and run.step * h < LONGEST_RUN_S:
-        run.grow(2 * run.capacity, [])
-        run.advance_to(run.capacity)
-    return run
-
-
-def trains_on_line(model: Model, services: list[Service]) -> list[ScheduledTrain]:
-    """Trains that stand along the line at the start."""
-    return [
-        train
-        for service in services
-        for train in (
-            trains_already_running(model, service)
-            if service.already_running
-            else placed_trains(service)
-        )
-    ]
-
-
-def foreseen_steps(model: Model, service: Service) -> int:
-    """Steps that a train of a service takes if little slows it down, with some to spare."""
-    fastest = min(
-        float(model.limits.value.max()), float(model.types[service.train_type].highest_speed_m_s)
-    )
-    travel_s = (service.stops_m[-1] - service.start_m) / fastest
-    dwell = int(model.stops["dwell_steps"][service.route].sum())
-    return (
-        int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
-    )
-
-
-@dataclass(frozen=True)
-class Start:
-    """All that a run begins with; the same start may be run again and again."""
-
-    model: Model
-    """With its studied train, if the run ends with the arrival of one."""
-    services: list[Service]
-    steps: int | None
-    """Number of steps; None: until the studied train arrives."""
-    capacity: int
-    """Steps that are foreseen."""
-    trains: list[ScheduledTrain]
-    """Those on the line, then those that depart within the capacity."""
-    records: Records[Train]
-    """Their state at the start."""
-    studied: int
-    """Place of the studied train among them, or -1."""
-    switchings: tuple[Switching, ...] = ()
-    """Networks that take the place of the model's, in the order of time."""
-    turns: Records[Turn] | None = None
-    """Planned order at gates, if trains keep one."""
-
-
-def begin(
-    model: Model,
-    services: list[Service],
-    steps: int | None,
-    switchings: tuple[Switching, ...] = (),
-) -> Start:
-    """Find out which trains stand on the line at the start, and which depart.
-
-    Parameters
-    ----------
-    model : Model
-    services : list of Service
-        The first departure of the first one is the studied train.
-    steps : int or None
-        Number of steps; None: until the studied train arrives.
-    switchings : tuple of Switching, optional
-        Networks that take the place of the model's, in the order of time.
-
-    Raises
-    ------
-    TooLargeError
-        The recording would not fit into memory.
-    """
-    h = model.options.step_s
-    on_line = trains_on_line(model, services)
-    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
-    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
-    departures = sum(service.departures_before(capacity * h) for service in services)
-    demand_room(model, capacity, len(on_line) + departures)
-    trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
-    names = [train.name for train in trains]
-    studied_name = services[0].name_of(1)
-    studied = names.index(studied_name) if studied_name in names else -1
-    ends_with = studied if steps is None else -1
-    model = model._replace(control=RunControl(studied_train=ends_with))
-    records = train_records(trains, model.network.system.nominal_voltage_v)
-    return Start(model, services, steps, capacity, trains, records, studied, switchings)
 
 
 def run_of(start: Start, clock: Clock = advance, memory: Memory = np.empty) -> Run:
@@ -380,7 +212,7 @@ def advance_to_end(
             more = min(last, run.capacity + run.capacity // 2 + 1)
             departing = departing_trains(start.services, run.model.options, run.capacity, more)
             trains = len(run.trains) + len(departing)
-            if recording_bytes(run.model, more, trains) > MOST_MEMORY_BYTES:
+            if not has_room(run.model, more, trains):
                 break
             run.grow(more, departing)
         started = time.perf_counter()
@@ -452,7 +284,6 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         network_losses=kept.network_losses[:rows],
         passes=kept.passes[:rows],
         counters=kept.counters,
-        journeys=kept.journeys,
         calls=kept.calls[:count],
         waits_for=kept.waits_for[:rows, :count],
     )

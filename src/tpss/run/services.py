@@ -67,7 +67,7 @@ class Service:
 
 
 class ScheduledTrain(NamedTuple):
-    """A train as it enters a run; from `phase` on the fields are those of `Journey`, in their order."""
+    """A train as it enters a run; from `phase` on the fields are those of `Motion`, then of `Plan`."""
 
     name: str
     service: str
@@ -168,9 +168,10 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     return records
 
 
-def train_at(journey: Any, train: ScheduledTrain, number: int) -> ScheduledTrain:
-    """A train where it once was, a row of `Journey`, ready to enter another run at its start."""
-    name, (motion, plan) = f"{train.service} initial {number}", journey.tolist()
+def train_at(record: Any, train: ScheduledTrain, number: int) -> ScheduledTrain:
+    """A train where it once was, by its record, ready to enter another run at its start."""
+    name = f"{train.service} initial {number}"
+    motion, plan = record["motion"].tolist(), record["plan"].tolist()
     return ScheduledTrain(
         name, train.service, train.train_type, train.route, 0, 0.0, 0.0, *motion, *plan
     )

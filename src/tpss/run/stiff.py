@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tpss.run.run import INTERRUPTED, Progress, Run, Start, advance_to_end, arrivals_s, run_of
+from tpss.run.run import INTERRUPTED, Progress, Run, advance_to_end, arrivals_s, run_of
+from tpss.run.start import Start
 from tpss.step.model import RunControl
 
 

@@ -22,25 +22,11 @@ from tpss.vehicle.demand import armature_demand
 from tpss.vehicle.train import (
     MOST_CALLS,
     Course,
-    Journey,
     Phase,
     Train,
-    copy_motion,
     is_on_line,
 )
 from tpss.vehicle.train_type import TrainType
-
-
-@inlined
-def note_journey(train: Train, row: Journey) -> None:
-    """Keep how a train would continue."""
-    copy_motion(train.motion, row.motion)
-    plan = row.plan
-    plan.step = train.plan.step
-    plan.hold_steps = train.plan.hold_steps
-    plan.first = train.plan.first
-    plan.full_steps = train.plan.full_steps
-    plan.last = train.plan.last
 
 
 @kernel
@@ -54,8 +40,6 @@ def record_instant(step: int, trains: Records[Train], recording: Recording) -> N
             recording.trains[at(step), at(i)].speed = motion.speed_m_s
             if arrived:
                 recording.train_state[at(step), at(i)] = TrainState.ARRIVED
-            if recording.journeys.size > 0:
-                note_journey(train, recording.journeys[at(step), at(i)])
 
 
 @inlined

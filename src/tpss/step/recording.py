@@ -11,7 +11,6 @@ from tpss.step.model import Model
 from tpss.step.recorded import NodeRow, StationRow, TrainRow
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
-from tpss.vehicle.train import Journey
 
 Indices = npt.NDArray[np.int64]
 
@@ -42,8 +41,6 @@ class Recording(NamedTuple):
     """Evaluations of the network."""
     counters: Indices
     """By `Counter`."""
-    journeys: Records[Journey]
-    """Shape (instants, trains); empty unless they are asked for."""
     calls: Records[Call]
     """Shape (trains, most stops): when each train stood at its stops, if it moves continuously."""
     waits_for: npt.NDArray[np.int32]
@@ -77,17 +74,13 @@ Memory = Callable[[int], Floats]
 """What gives an array of so many numbers, whatever they are."""
 
 
-def new_recording(
-    model: Model, steps: int, trains: int, memory: Memory = np.empty, with_journeys: bool = False
-) -> Recording:
+def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.empty) -> Recording:
     """Recording with room for `steps` steps and one instant more.
 
     Parameters
     ----------
     memory : callable
         Allocates the arrays.
-    with_journeys : bool
-        Whether it is also kept how each train would continue.
     """
     network, rows = model.network, steps + 1
 
@@ -101,7 +94,6 @@ def new_recording(
         return unknown(size).view(kind.dtype).reshape(rows, columns).view(np.recarray)
 
     ends = network.branches.size + 2 * network.sections.size
-    kept = rows if with_journeys else 0
 
     return Recording(
         trains=blank(trains, TrainRow),
@@ -112,7 +104,6 @@ def new_recording(
         network_losses=unknown(rows),
         passes=np.zeros(rows, dtype=np.int64),
         counters=np.zeros(len(Counter), dtype=np.int64),
-        journeys=Journey.blank(kept, trains),
         calls=_no_calls(trains, model.stops.shape[1]),
         waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
     )

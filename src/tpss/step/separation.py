@@ -198,7 +198,8 @@ def end_of_authority(
             entry = occupancies[at(k)]
             if not entry.aside and _is_ahead(entry, i, position_m, n == train.leg, leg):
                 before_m = _end_before(entry, leg, signalling)
-                begins_m = _head(entry, leg) + AT_GATE_M if aside else _rear(entry, leg) - AT_GATE_M
+                begins_m = _head(entry, leg) if aside else _rear(entry, leg)
+                begins_m += -AT_GATE_M if entry.stands and not aside else AT_GATE_M
                 if before_m < until_m and before_m < end_m and begins_m < gate_m:
                     end_m, whom = before_m, entry.train
             k = entry.next

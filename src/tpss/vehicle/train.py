@@ -223,13 +223,6 @@ class Train(Record):
     """The same at a voltage close by, for the slopes."""
 
 
-class Journey(Record):
-    """What a train needs to continue from an instant."""
-
-    motion: Motion
-    plan: Plan
-
-
 @kernel
 def copy_motion(source: Motion, target: Motion) -> None:
     """Copy field by field; copying a whole record at once takes seconds to compile."""

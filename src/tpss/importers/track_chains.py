@@ -1,22 +1,20 @@
-"""Track sections of OSRD in a row: which of them make a line.
+"""Track sections in a row: which of them make a line.
 
-Sections of one line and track of the register follow each other; without a register the maximal chains
-do.  Over a switch a chain goes on along one of its ways only: where sections of the same name meet, else
-along the way that the file lists first.
+Sections of one line, or of one line and track, of a register follow each other, and those of none follow
+any; without a register the maximal chains do.  Over a switch a chain goes on along one of its ways only:
+where sections of the same name meet, else along the way that is listed first.
 """
 
 from collections import defaultdict
 from typing import NamedTuple
 
-from tpss.importers.osrd_infra import End, Infra, TrackSection
-
-OTHER_END = {"BEGIN": "END", "END": "BEGIN"}
+from tpss.importers.tracks import OTHER_END, End, Section, Tracks
 
 
 class Link(NamedTuple):
     """A track section in a chain."""
 
-    section: TrackSection
+    section: Section
     sign: int
     """1 from its beginning to its end, -1 the other way."""
     start_m: float
@@ -25,7 +23,7 @@ class Link(NamedTuple):
     @property
     def end_m(self) -> float:
         """Where it ends in the chain. [m]"""
-        return self.start_m + self.section.length
+        return self.start_m + self.section.length_m
 
     def place_m(self, position_m: float) -> float:
         """Position in the chain of a position on the section. [m]"""
@@ -60,29 +58,26 @@ class Layout:
     def spot(self, track: str, position_m: float) -> Spot:
         """Place of a position on a track section, of its nearer end if it lies beyond."""
         i, link = self._links[track]
-        return Spot(i, link.place_m(min(max(position_m, 0.0), link.section.length)))
+        return Spot(i, link.place_m(min(max(position_m, 0.0), link.section.length_m)))
 
     def end(self, end: End) -> Spot:
         """Place of an end of a track section."""
         track, name = end
-        return self.spot(track, 0.0 if name == "BEGIN" else self._links[track][1].section.length)
+        return self.spot(track, 0.0 if name == "BEGIN" else self._links[track][1].section.length_m)
 
     def length_m(self, chain: int) -> float:
         """Length of a chain. [m]"""
         return self.chains[chain][-1].end_m
 
 
-def joins_of(infra: Infra) -> dict[End, End]:
+def joins_of(tracks: Tracks) -> dict[End, End]:
     """Ends of sections that follow each other in a chain, both ways."""
-    sections = {section.id: section for section in infra.track_sections}
     candidates = []
-    for number, switch in enumerate(infra.switches):
-        for order, (a, b) in enumerate(infra.connections(switch)):
-            names = [sections[end[0]].names for end in (a, b)]
-            if names[0].line_code == names[1].line_code and (
-                names[0].track_name == names[1].track_name
-            ):
-                candidates.append((switch.switch_type != "link", order, number, a, b))
+    for number, joint in enumerate(tracks.joints):
+        for order, (a, b) in enumerate(joint.pairs):
+            one, other = (tracks.sections[end[0]].joins_as for end in (a, b))
+            if one == other or not one or not other:
+                candidates.append((not joint.is_link, one != other, order, number, a, b))
     joins: dict[End, End] = {}
     for *_, a, b in sorted(candidates):
         if a not in joins and b not in joins and a != b:
@@ -90,9 +85,12 @@ def joins_of(infra: Infra) -> dict[End, End]:
     return joins
 
 
-def chains_of(infra: Infra, joins: dict[End, End]) -> list[Chain]:
-    """Chains of all the track sections, in the order of the file; each runs as most of it does."""
-    sections = {section.id: section for section in infra.track_sections}
+def chains_of(tracks: Tracks, joins: dict[End, End]) -> list[Chain]:
+    """Chains of all the track sections, in the order of the file.
+
+    Each runs towards rising kilometres, as most of it does; without any as most of it does.
+    """
+    sections = tracks.sections
     seen: set[str] = set()
     chains: list[Chain] = []
     for track in sections:
@@ -121,10 +119,10 @@ def _walk(end: End, joins: dict[End, End]) -> list[tuple[str, int]]:
     return walk
 
 
-def _chain(walk: list[tuple[TrackSection, int]]) -> Chain:
+def _chain(walk: list[tuple[Section, int]]) -> Chain:
     lengths: dict[int, float] = defaultdict(float)
     for section, sign in walk:
-        lengths[sign] += section.length
+        lengths[sign * section.rises] += section.length_m
     if lengths[-1] > lengths[1]:
         walk = [(section, -sign) for section, sign in reversed(walk)]
     chain: Chain = []

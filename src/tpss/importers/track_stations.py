@@ -1,4 +1,4 @@
-"""Stations of the lines that are made of OSRD's tracks: operational points, and where lines meet.
+"""Stations of the lines that are made of tracks: places with names, and where lines meet.
 
 A switch at which chains of track sections meet is a station of all of them, so that trains may change
 from one to another.  What is closer together than stations may be is one station.
@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from tpss.importers.network import own_name
-from tpss.importers.osrd_chains import Layout, Spot
-from tpss.importers.osrd_infra import End, Infra, Part
+from tpss.importers.track_chains import Layout, Spot
+from tpss.importers.tracks import End, Place, Tracks
 
 CLOSEST_M = 1.0
 """Stations that are closer are one. [m]"""
@@ -22,6 +22,7 @@ Label = tuple[int, str]
 """What a station is made of: its rank, lower ones give the name, and its own name or id."""
 
 POINT, SWITCH, PLACE, END = range(4)
+"""Ranks: places with names, switches, places of timetables, ends of tracks."""
 
 
 @dataclass
@@ -34,7 +35,7 @@ class Stations:
     merged: int = 0
     """Places that became one with others."""
     extra_parts: int = 0
-    """Further parts of operational points on one chain, which were left out."""
+    """Further parts of places on one chain, which were left out."""
 
     def add(self, spot: Spot, label: Label, wanted: str) -> None:
         """Note a station at a place."""
@@ -69,28 +70,30 @@ class Stations:
 
 
 def find_stations(
-    infra: Infra, layout: Layout, joins: Mapping[End, End], places: Iterable[tuple[str, float]]
+    tracks: Tracks,
+    layout: Layout,
+    joins: Mapping[End, End],
+    further: Iterable[tuple[str, float]] = (),
 ) -> Stations:
     """Stations of all the chains.
 
     Parameters
     ----------
-    infra : Infra
+    tracks : Tracks
     layout : Layout
     joins : mapping
         Ends that follow each other in a chain.
-    places : iterable of tuple
+    further : iterable of tuple
         Further places, of timetables: track section and position. [m]
     """
     stations = Stations()
-    for point in infra.operational_points:
-        _add_point(stations, layout, point.id, point.name, point.parts)
-    for switch in infra.switches:
-        pairs = infra.connections(switch)
-        if any(joins.get(a) != b for a, b in pairs):
-            for end in {end for pair in pairs for end in pair}:
-                stations.add(layout.end(end), (SWITCH, switch.id), switch.name)
-    for track, position_m in places:
+    for place in tracks.places:
+        _add_place(stations, layout, place)
+    for joint in tracks.joints:
+        if any(joins.get(a) != b for a, b in joint.pairs):
+            for end in {end for pair in joint.pairs for end in pair}:
+                stations.add(layout.end(end), (SWITCH, joint.id), joint.name)
+    for track, position_m in further:
         wanted = f"{track} at {position_m / 1e3:.3f} km"
         stations.add(layout.spot(track, position_m), (PLACE, wanted), wanted)
     for i, chain in enumerate(layout.chains):
@@ -98,20 +101,18 @@ def find_stations(
             _close(stations, layout, i)
     _unite_close_ones(stations, layout)
     for i in range(len(layout.chains)):
-        _add_ends(stations, layout, i)
+        _add_ends(stations, layout, i, everywhere=not tracks.places)
     return stations
 
 
-def _add_point(
-    stations: Stations, layout: Layout, ident: str, name: str, parts: Iterable[Part]
-) -> None:
-    """An operational point: one station on each chain that it has parts on."""
-    spots = sorted(layout.spot(part.track, part.position) for part in parts)
+def _add_place(stations: Stations, layout: Layout, place: Place) -> None:
+    """A place with a name: one station on each chain that it has parts on."""
+    spots = sorted(layout.spot(*part) for part in place.parts)
     for i, spot in enumerate(spots):
         if i and spots[i - 1].chain == spot.chain:
             stations.extra_parts += 1
         else:
-            stations.add(spot, (POINT, ident), name)
+            stations.add(spot, (POINT, place.id), place.name)
 
 
 def _close(stations: Stations, layout: Layout, chain: int) -> None:
@@ -121,10 +122,11 @@ def _close(stations: Stations, layout: Layout, chain: int) -> None:
         stations.add(Spot(chain, place_m), (END, track), f"Begin of {track}")
 
 
-def _add_ends(stations: Stations, layout: Layout, chain: int) -> None:
-    """Stations at the ends of a chain that has fewer than two, where there is none."""
+def _add_ends(stations: Stations, layout: Layout, chain: int, everywhere: bool) -> None:
+    """Stations at the ends of a chain, where there is none, if it has fewer than two or everywhere."""
     marks, length_m = stations.at(chain), layout.length_m(chain)
-    if length_m < SHORTEST_M or len({label for _, label in marks}) >= 2:
+    enough = len({label for _, label in marks}) >= 2 and not everywhere
+    if length_m < SHORTEST_M or enough:
         return
     links = layout.chains[chain]
     for place_m, word, link in ((0.0, "Begin", links[0]), (length_m, "End", links[-1])):
@@ -145,7 +147,7 @@ def _unite_close_ones(stations: Stations, layout: Layout) -> None:
 
 
 def station_names(stations: Stations) -> dict[Label, str]:
-    """Names of the stations, each only once, those of operational points first."""
+    """Names of the stations, each only once, those of places with names first."""
     names: dict[Label, str] = {}
     taken: set[str] = set()
     for label in sorted(stations.names):

@@ -1,4 +1,4 @@
-"""Lines from chains of OSRD's track sections: their gradients, curves, limits and stations."""
+"""Lines from chains of track sections: their gradients, curves, limits and stations."""
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
@@ -13,10 +13,11 @@ from tpss.importers.network import (
     plain_name,
     stairs,
 )
-from tpss.importers.osrd_chains import Chain, Layout, Link
-from tpss.importers.osrd_infra import Infra
-from tpss.importers.osrd_stations import SHORTEST_M, Stations, station_names
 from tpss.importers.quantities import DIGITS
+from tpss.importers.track_chains import Chain, Layout, Link
+from tpss.importers.track_kilometres import kilometre_at
+from tpss.importers.track_stations import SHORTEST_M, Stations, station_names
+from tpss.importers.tracks import Tracks
 from tpss.results.osrd_tracks import OsrdTrack
 from tpss.scenario.routes import EQUAL_KM
 
@@ -27,15 +28,12 @@ LEAST_LIMIT_KMH = 1.0
 Mark = tuple[float, str]
 """Position of a station in a chain [m], and its name."""
 
-BOTH_WAYS = {"BOTH": (1, -1), "START_TO_STOP": (1,), "STOP_TO_START": (-1,)}
-"""Signs of the directions of a track section."""
-
 
 class Profiles:
     """What applies along chains, in their kilometres, and what of it was left out."""
 
-    def __init__(self, infra: Infra, layout: Layout) -> None:
-        self.counts: Counter[str] = Counter()
+    def __init__(self, tracks: Tracks, layout: Layout) -> None:
+        self.counts: Counter[str] = Counter(tracks.counts)
         """Ranges by why they were left out."""
         self.gradients: dict[int, list[Range]] = defaultdict(list)
         self.curves: dict[int, list[Range]] = defaultdict(list)
@@ -44,42 +42,32 @@ class Profiles:
         for i, chain in enumerate(layout.chains):
             for link in chain:
                 self._add_slopes_and_curves(i, link)
-        self._add_limits(infra, layout)
+        self._add_limits(tracks, layout)
 
     def _range(self, link: Link, begin_m: float, end_m: float, value: float) -> Range:
         """A range of a section in its chain; what lies beyond the section is cut off, and counted."""
-        low, high = max(begin_m, 0.0), min(end_m, link.section.length)
+        low, high = max(begin_m, 0.0), min(end_m, link.section.length_m)
         if (low, high) != (begin_m, end_m):
             self.counts["cut"] += 1
         ends = sorted(round(link.place_m(each) / 1e3, DIGITS) for each in (low, max(high, low)))
         return ends[0], ends[1], value
 
     def _add_slopes_and_curves(self, chain: int, link: Link) -> None:
-        for slope in link.section.slopes:
-            gradient = slope.gradient * link.sign
-            self.gradients[chain].append(self._range(link, slope.begin, slope.end, gradient))
-        for curve in link.section.curves:
-            radius_m = abs(curve.radius)
+        for begin_m, end_m, gradient in link.section.gradients:
+            self.gradients[chain].append(self._range(link, begin_m, end_m, gradient * link.sign))
+        for begin_m, end_m, radius in link.section.curves:
+            radius_m = abs(radius)
             if RADII_M[0] <= radius_m <= RADII_M[1]:
-                self.curves[chain].append(self._range(link, curve.begin, curve.end, radius_m))
+                self.curves[chain].append(self._range(link, begin_m, end_m, radius_m))
             elif radius_m:
                 self.counts["radius"] += 1
 
-    def _add_limits(self, infra: Infra, layout: Layout) -> None:
-        for section in infra.speed_sections:
-            speed_kmh = round((section.speed_limit or 0.0) * 3.6, DIGITS)
-            if section.on_routes is not None:
-                self.counts["route"] += 1
-            elif section.speed_limit is None:
-                self.counts["tag"] += 1
-            elif speed_kmh < LEAST_LIMIT_KMH:
-                self.counts["slow"] += 1
-            elif speed_kmh < NO_LIMIT_KMH:
-                for each in section.track_ranges:
-                    chain, link = layout.link(each.track)
-                    part = self._range(link, each.begin, each.end, speed_kmh)
-                    for sign in BOTH_WAYS[each.applicable_directions]:
-                        self.limits[chain, sign * link.sign].append(part)
+    def _add_limits(self, tracks: Tracks, layout: Layout) -> None:
+        for limit in tracks.limits:
+            chain, link = layout.link(limit.section)
+            part = self._range(link, limit.begin_m, limit.end_m, limit.speed_kmh)
+            for sign in limit.signs:
+                self.limits[chain, sign * link.sign].append(part)
 
 
 def lines_of(
@@ -102,15 +90,15 @@ def lines_of(
                 profiles.counts["short"] += 1
                 continue
             name = own_name(_wanted_name(chain), [line.name for line in lines])
-            lines.append(_line(name, i, (begin_m, end_m), places, profiles))
-            tracks += _track_ranges(name, chain, begin_m, end_m)
+            begins_at_km = kilometre_at(chain, begin_m)
+            line = _line(name, i, (begin_m, end_m), places, profiles)
+            lines.append(replace(line, begins_at_km=begins_at_km))
+            tracks += _track_ranges(name, chain, (begin_m, end_m), begins_at_km)
     return _told_apart(lines), tracks
 
 
 def _wanted_name(chain: Chain) -> str:
-    given = chain[0].section.names
-    words = [each for each in (given.line_name or str(given.line_code), given.track_name) if each]
-    return plain_name("_".join(words))
+    return plain_name(max((link.section for link in chain), key=lambda each: each.length_m).name)
 
 
 def _pieces(
@@ -156,13 +144,18 @@ def _line(
     )
 
 
-def _track_ranges(name: str, chain: Chain, begin_m: float, end_m: float) -> list[OsrdTrack]:
+def _track_ranges(
+    name: str, chain: Chain, ends_m: tuple[float, float], begins_at_km: float
+) -> list[OsrdTrack]:
     ranges = []
+    begin_m, end_m = ends_m
     for link in chain:
         low, high = max(link.start_m, begin_m), min(link.end_m, end_m)
         if high > low:
             zero_m = link.place_m(0.0)
-            from_km, to_km = (round((each - begin_m) / 1e3, DIGITS) for each in (low, high))
+            from_km, to_km = (
+                round(begins_at_km + (each - begin_m) / 1e3, DIGITS) for each in (low, high)
+            )
             on_track = (round(abs(each - zero_m), 6) for each in (low, high))
             ranges.append(OsrdTrack(name, from_km, to_km, link.section.id, *on_track))
     return ranges

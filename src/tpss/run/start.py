@@ -1,0 +1,87 @@
+"""What a run begins with: who stands on the line, who departs, and how many steps are foreseen."""
+
+import math
+from dataclasses import dataclass
+
+from tpss.record import Records
+from tpss.run.already_running import trains_on_line
+from tpss.run.limits import demand_room
+from tpss.run.services import ScheduledTrain, Service, departing_trains, train_records
+from tpss.run.switching import Switching
+from tpss.step.model import Model, RunControl
+from tpss.step.turns import Turn
+from tpss.vehicle.train import Train
+
+
+def foreseen_steps(model: Model, service: Service) -> int:
+    """Steps that a train of a service takes if little slows it down, with some to spare."""
+    fastest = min(
+        float(model.limits.value.max()), float(model.types[service.train_type].highest_speed_m_s)
+    )
+    travel_s = (service.stops_m[-1] - service.start_m) / fastest
+    dwell = int(model.stops["dwell_steps"][service.route].sum())
+    return (
+        int(1.1 * travel_s / model.options.step_s) + dwell + math.ceil(600 / model.options.step_s)
+    )
+
+
+@dataclass(frozen=True)
+class Start:
+    """All that a run begins with; the same start may be run again and again."""
+
+    model: Model
+    """With its studied train, if the run ends with the arrival of one."""
+    services: list[Service]
+    steps: int | None
+    """Number of steps; None: until the studied train arrives."""
+    capacity: int
+    """Steps that are foreseen."""
+    trains: list[ScheduledTrain]
+    """Those on the line, then those that depart within the capacity."""
+    records: Records[Train]
+    """Their state at the start."""
+    studied: int
+    """Place of the studied train among them, or -1."""
+    switchings: tuple[Switching, ...] = ()
+    """Networks that take the place of the model's, in the order of time."""
+    turns: Records[Turn] | None = None
+    """Planned order at gates, if trains keep one."""
+
+
+def begin(
+    model: Model,
+    services: list[Service],
+    steps: int | None,
+    switchings: tuple[Switching, ...] = (),
+) -> Start:
+    """Find out which trains stand on the line at the start, and which depart.
+
+    Parameters
+    ----------
+    model : Model
+    services : list of Service
+        The first departure of the first one is the studied train.
+    steps : int or None
+        Number of steps; None: until the studied train arrives.
+    switchings : tuple of Switching, optional
+        Networks that take the place of the model's, in the order of time.
+
+    Raises
+    ------
+    TooLargeError
+        The recording would not fit into memory.
+    """
+    h = model.options.step_s
+    on_line = trains_on_line(model, services)
+    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
+    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
+    departures = sum(service.departures_before(capacity * h) for service in services)
+    demand_room(model, capacity, len(on_line) + departures)
+    trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
+    names = [train.name for train in trains]
+    studied_name = services[0].name_of(1)
+    studied = names.index(studied_name) if studied_name in names else -1
+    ends_with = studied if steps is None else -1
+    model = model._replace(control=RunControl(studied_train=ends_with))
+    records = train_records(trains, model.network.system.nominal_voltage_v)
+    return Start(model, services, steps, capacity, trains, records, studied, switchings)
