@@ -45,6 +45,9 @@ SHORTEST_PIECE_M = 1.0
 UNFED = -2
 """In `Network.source_of_node`: a node that no source reaches; its voltage is 0."""
 
+FOLLOWS = -3
+"""In `Network.source_of_node`: this, or less by the number of a node, is one that follows that node."""
+
 EPSILON = float(np.finfo(float).eps)
 
 
@@ -234,7 +237,8 @@ class Network(NamedTuple):
     branches: Records[Branch]
     sources: Records[Source]
     source_of_node: Indices
-    """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to."""
+    """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to,
+    `FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
     """What the branches put into each block of the linear system. [S]"""
@@ -338,6 +342,7 @@ def assemble(
     branches: Sequence[BranchPart],
     sources: Records[Source],
     system: System,
+    coupled: Sequence[tuple[int, int]] = (),
 ) -> Network:
     """Network from its parts.
 
@@ -349,9 +354,13 @@ def assemble(
     sources : records of Source
         At most one a node.
     system : System
+    coupled : sequence of (int, int)
+        Further pairs of nodes for which the linear system has room: networks of the same edges and
+        further pairs have the same shapes.
     """
     edges = [(part.start_node, part.end_node) for part in sections]
     edges += [(part.start_node, part.end_node) for part in branches]
+    edges += coupled
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]

@@ -7,6 +7,7 @@ kinds of equation, all complex:
     node without source:    Σ leaving currents = 0
     node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
     node that is not fed:   V = 0
+    node that follows:      V = V of another node, of which it is a second name
 
 f is the converter law (2.1)-(2.4).  The trains' equations stand inside the chains, so forces,
 accelerations and powers are solved together with the voltages.
@@ -59,7 +60,7 @@ from tpss.powerflow.chain import (
     Pass,
     run_chain,
 )
-from tpss.powerflow.network import UNFED, Flow, Loads, Network
+from tpss.powerflow.network import FOLLOWS, UNFED, Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
 
 CLOSE = 1e-4
@@ -161,6 +162,14 @@ def hold_at_zero(n: int, derivatives: bool, network: Network, flow: Flow) -> flo
     return squared(voltage_v) * network.system.per_square_volt
 
 
+@kernel
+def follow(n: int, other: int, network: Network, flow: Flow) -> float:
+    """`evaluate_node` of one that follows another; its row stands in `Network.admittance_s`."""
+    apart_v = flow.nodes[at(n)].voltage_v - flow.nodes[at(other)].voltage_v
+    flow.nodes[at(n)].right_side -= apart_v
+    return squared(apart_v) * network.system.per_square_volt
+
+
 @inlined
 def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> float:
     """Square of the residual of node `n` [p.u.], and its row of the linear system.
@@ -173,6 +182,8 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
     if s < 0:
         if s == UNFED:
             return hold_at_zero(n, derivatives, network, flow)
+        if s <= FOLLOWS:
+            return follow(n, FOLLOWS - s, network, flow)
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
     running = flow.sources[at(s)].running
