@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import pandas as pd
 
@@ -27,6 +28,8 @@ class Comparison:
     rows: tuple[Row, ...]
     cases: int
     """How many there are if it was not interrupted."""
+    scenario: Scenario
+    """With the step that was chosen, if it gave none."""
 
     @property
     def intact(self) -> Row:
@@ -36,6 +39,25 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """One row per case: verdict, figures, and their differences to those of the intact supply."""
         return pd.DataFrame([_flat(row, self.intact) for row in self.rows])
+
+    def write_report(self, file: str | Path, *, force: bool = False) -> Path:
+        """Write a report into one HTML file, and return the file.
+
+        Parameters
+        ----------
+        file : path
+            File to write.
+        force : bool
+            Whether a report that is there may be replaced.
+
+        Raises
+        ------
+        ResultError
+            The file exists, or cannot be written.
+        """
+        from tpss.outages.report import write_outages_report  # which takes long to import
+
+        return write_outages_report(self, file, force=force)
 
 
 def compare_outages(
@@ -82,7 +104,7 @@ def compare_outages(
             report(done, len(outages))
     ranked = sorted(rows[1:], key=lambda row: row.rank)
     lost = [replace(row, lost=lost_against(row, rows[0])) for row in (*rows[:1], *ranked)]
-    return Comparison(tuple(lost), len(outages))
+    return Comparison(tuple(lost), len(outages), prepared.scenario)
 
 
 def _run(
