@@ -291,7 +291,8 @@ def sound_scenarios(draw: Draw) -> Document:
     if draw(st.integers(0, 3)) == 3:
         document = into_network(draw, document, lines())
     if draw(st.integers(0, 3)) == 3:
-        document["outages"] = [draw(outages(document["supply"], span_min))]
+        continuous = moves_continuously(document["simulation"])
+        document["outages"] = [draw(outages(document, span_min, continuous))]
         document["simulation"]["outage"] = "random"
     return document
 

@@ -8,9 +8,10 @@ import pytest
 
 import tpss
 from lines import STAR, line, network, scenario_of, service
-from tpss.model.outages import service_of
+from tpss.model.outages import layout_of, service_of
 from tpss.outages.cases import single_outages
 from tpss.results.stranded import stranded_trains
+from tpss.scenario.outages import Outage
 
 SAME = 1e-9
 """Where a node more or less divides a section, voltages are found to a tolerance."""
@@ -129,6 +130,18 @@ def test_a_whole_line_that_is_out_strands_its_trains():
     assert {each.train for each in stranded_trains(out.dataset)} == {"up 1", "down 1"}
 
 
+def test_stepped_motion_is_refused_with_a_section_and_taken_with_a_station_switched_off():
+    """A train may come to stand without power on the one, and none under the busbar of the other."""
+    document = one_track()
+    document["simulation"]["motion"] = "stepped"
+    with pytest.raises(tpss.ScenarioError) as caught:
+        with_outage(document, sections=[{"from_km": 15.0, "to_km": 25.0}])
+    (finding,) = caught.value.findings
+    assert finding.key == "outages.0"
+    assert "contact line at 15 km, out" in finding.problem
+    with_outage(document, stations=["mid"], opens=["mid>main"])
+
+
 def all_nodes(
     result: tpss.Result, step: int, posts_km: list[float], gone: tuple[int, float, float] | None
 ) -> tuple[Any, Any]:
@@ -206,6 +219,17 @@ def test_a_section_is_out_for_a_time_and_back_after_it():
     assert_same_trains(result, run(two_tracks()), slice(0, 80))
     assert_as_all_nodes(result, [50, 79, 160, 200], POSTS_KM)
     assert_as_all_nodes(result, [80, 120, 159], POSTS_KM, (2, 8.0, 20.0))
+
+
+def test_nodes_stand_in_the_order_of_the_line():
+    """As drawn along it: before the section, its beginning; its end, behind it."""
+    outage = {"name": "out", "sections": [{"from_km": 15.0, "to_km": 25.0}]}
+    laid = layout_of(scenario_of({**one_track(), "outages": [outage]}), Outage(**outage))
+    assert laid.plan.nodes == [
+        "contact line at 0 km", "contact line at 15 km", "contact line at 15 km, out",
+        "contact line at 20 km, out", "contact line at 20 km", "contact line at 25 km, out",
+        "contact line at 25 km", "contact line at 40 km",
+    ]  # fmt: skip
 
 
 # Switches for a time

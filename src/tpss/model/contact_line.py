@@ -159,14 +159,20 @@ def lay_contact_line(
     joints: list[Joint] = []
     for km, before, behind in zip(points, [None, *pieces], [*pieces, None], strict=True):
         sides = [each for each in (before, behind) if each is not None]
-        made, parted = _nodes_at(km, sides, marks, make_node)
-        if len({each for side in made for each in side}) == 1:
-            node[km] = made[0][0]
+        words, parted = _words_at(km, sides, marks)
+        tied = len({each for side in words for each in side}) == 1
         if marks.out:
             are_out = [[marks.is_out(each, k) for k in range(each.conductors)] for each in sides]
-            made, more = set_apart(km, made, are_out, km in feeding_km, make_node)
+            words, more = set_apart(words, are_out, km in feeding_km)
             parted += more
-        joints += parted
+        # In the order of the words: what is drawn along the line goes from one to the next.
+        known = [each for side in words for each in side]
+        known += [each for pair in parted for each in pair]
+        named = {each: make_node(km, each) for each in dict.fromkeys(known)}
+        if tied:
+            node[km] = named[""]
+        joints += [(named[one], named[other]) for one, other in parted]
+        made = [[named[each] for each in side] for side in words]
         if before is not None:
             stops.append(made[0])
         if behind is not None:
@@ -221,24 +227,26 @@ def _marks_of(
     return _Marks(points_km, ties_km, posts_km, breaks, parting.switches, out)
 
 
-def _nodes_at(
-    km: float, sides: Sequence["_Piece"], marks: _Marks, make_node: Callable[[float, str], int]
-) -> tuple[list[list[int]], list[Joint]]:
-    """Nodes of the conductors before a place and behind it; and those that a switch joins. [km]"""
+def _words_at(
+    km: float, sides: Sequence["_Piece"], marks: _Marks
+) -> tuple[list[list[str]], list[tuple[str, str]]]:
+    """What tells the nodes of the conductors before a place and behind it; those that a switch joins.
+
+    Conductors of the same words have one node; without any words it is that of the whole place. [km]
+    """
     counts = [each.conductors for each in sides]
     if km in marks.breaks and len(sides) == 2:
         name = marks.breaks[km]
         before, behind = (
-            _nodes(km, count, f", {side} {name}", make_node)
+            _words(count, f", {side} {name}")
             for side, count in zip(("before", "behind"), counts, strict=True)
         )
         return [before, behind], joined_over(before, behind) if name in marks.closing else []
     if km in marks.ties_km or min(counts) == 1 or counts[0] != counts[-1]:
-        node = make_node(km, "")
-        return [[node] * count for count in counts], []
-    nodes = _nodes(km, counts[0], "", make_node)
-    joints = [(nodes[0], each) for each in nodes[1:]] if km in marks.posts_km else []
-    return [nodes] * len(sides), joints
+        return [[""] * count for count in counts], []
+    words = _words(counts[0], "")
+    joints = [(words[0], each) for each in words[1:]] if km in marks.posts_km else []
+    return [words] * len(sides), joints
 
 
 class _Piece(NamedTuple):
@@ -274,13 +282,9 @@ def _posts_km(line: LineLayout, stretches: Sequence[Stretch], posts: Sequence[Po
     }
 
 
-def _nodes(
-    place_km: float, count: int, words: str, make_node: Callable[[float, str], int]
-) -> list[int]:
-    """A node for each conductor."""
-    if count == 1:
-        return [make_node(place_km, words)]
-    return [make_node(place_km, f", track {k + 1}{words}") for k in range(count)]
+def _words(count: int, more: str) -> list[str]:
+    """What tells a node for each of so many conductors."""
+    return [more] if count == 1 else [f", track {k + 1}{more}" for k in range(count)]
 
 
 def _sections(

@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tpss.errors import Finding, ScenarioError
 from tpss.model.parting import parting_of
 from tpss.model.supply import (
@@ -92,11 +90,12 @@ def _is_at(position_km: float, outage: Outage) -> bool:
 def _demand_continuous_motion(
     network: Network, plan: SupplyPlan, outage: Outage | None, scenario: Scenario
 ) -> None:
-    """Refuse to leave something without a feeding station where trains move in steps.
+    """Refuse to leave contact line without a feeding station where trains move in steps.
 
     A train without power comes to stand anywhere within a step, which stepped motion does not know.
     """
-    unfed = np.flatnonzero(network.source_of_node == UNFED)
+    begins = network.sections["start_node"]
+    unfed = begins[network.source_of_node[begins] == UNFED]
     if unfed.size == 0 or scenario.simulation.how_trains_move == "continuous":
         return
     names = [each.name for each in scenario.outages]

@@ -4,7 +4,7 @@ A layout has the parted state: an open switch has a node on either side, and a s
 that is out has nodes of its own.  In the whole state, before and after an outage, such nodes are joined.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
 from tpss.powerflow.network import BranchPart, SectionPart
@@ -41,56 +41,46 @@ def parting_of(outage: Outage, supply: Supply) -> Parting:
     )
 
 
-def joined_over(before: Sequence[int], behind: Sequence[int]) -> list[Joint]:
-    """Joints of the conductors before a break with those behind it; all with all where they differ."""
+def joined_over(before: Sequence[str], behind: Sequence[str]) -> list[tuple[str, str]]:
+    """Pairs of conductors before a break and behind it; all with all where they differ."""
     if len(before) == len(behind):
         return list(zip(before, behind, strict=True))
-    return [(before[0], node) for node in (*before[1:], *behind)]
+    return [(before[0], each) for each in (*before[1:], *behind)]
 
 
 def set_apart(
-    place_km: float,
-    made: Sequence[Sequence[int]],
-    out: Sequence[Sequence[bool]],
-    anchored: bool,
-    make_node: Callable[[float, str], int],
-) -> tuple[list[list[int]], list[Joint]]:
+    words: Sequence[Sequence[str]], out: Sequence[Sequence[bool]], anchored: bool
+) -> tuple[list[list[str]], list[tuple[str, str]]]:
     """Give conductors that are out nodes of their own at a place, where they share one with others.
 
     Parameters
     ----------
-    place_km : float
-        The place. [km]
-    made : sequence of sequences of int
-        Nodes of the conductors before it and behind it.
+    words : sequence of sequences of str
+        What tells the nodes of the conductors before the place and behind it.
     out : sequence of sequences of bool
         Whether each of these conductors is out on that side.
     anchored : bool
         Whether the line is fed there, or meets others.
-    make_node : callable
-        Gives the node at a place [km] its index; its second argument is what its name says besides.
 
     Returns
     -------
-    list of lists of int, list of Joint
-        Nodes as `made`, and the joints of new ones with those that they take the place of.
+    list of lists of str, list of pairs of str
+        As `words`, and pairs of new ones with those that they take the place of.
     """
-    sides = [list(zip(*side, strict=True)) for side in zip(made, out, strict=True)]
-    live = {node for side in sides for node, is_out in side if not is_out}
-    own: dict[str, int] = {}
-    joints, found = [], []
+    sides = [list(zip(*side, strict=True)) for side in zip(words, out, strict=True)]
+    live = {each for side in sides for each, is_out in side if not is_out}
+    pairs: dict[str, str] = {}
+    found = []
     for side in sides:
         row = []
-        for k, (node, is_out) in enumerate(side):
-            if is_out and (anchored or node in live):
-                words = f", track {k + 1}, out" if len(side) > 1 else ", out"
-                if words not in own:
-                    own[words] = make_node(place_km, words)
-                    joints.append((own[words], node))
-                node = own[words]
-            row.append(node)
+        for k, (each, is_out) in enumerate(side):
+            own = each
+            if is_out and (anchored or each in live):
+                own = f", track {k + 1}, out" if len(side) > 1 else ", out"
+                pairs[own] = each
+            row.append(own)
         found.append(row)
-    return found, joints
+    return found, list(pairs.items())
 
 
 def representatives(nodes: int, joints: Iterable[Joint], sources: Iterable[int]) -> list[int]:
