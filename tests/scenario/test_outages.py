@@ -121,6 +121,16 @@ def test_two_stations_do_not_share_the_place_where_lines_meet():
     assert finding.problem == "one stands here too, where main and branch meet"
 
 
+@pytest.mark.parametrize("transformers", [{"transformers": 3}, {"transformers_km": [40.0]}])
+def test_a_break_does_not_stand_at_a_transformer_of_the_high_voltage_line(transformers):
+    """The node that the transformer feeds would be two, of which neither is the one that is meant."""
+    at = "supply.section_breaks.0.position_km"
+    spaced = {HV: {"type": "132kV", **transformers}}
+    breaks = {"supply.section_breaks": [{"name": "B", "position_km": 40.0}]}
+    finding = finding_at(at, faults_of({**spaced, **breaks}))
+    assert finding.problem == "the contact line is fed, tied or ends here"
+
+
 def test_sections_of_a_network_say_their_line():
     found = faults_of_star(
         outages=[{"name": "a", "sections": [{"to_km": 9.0}, {"line": "brunch"}]}]

@@ -112,7 +112,7 @@ def renamed(parts: Sequence[_Part], node: Sequence[int]) -> list[_Part]:
     ]
 
 
-def coupled_nodes(edges: Sequence[Joint], node: Sequence[int]) -> list[Joint]:
+def edges_of_both(edges: Sequence[Joint], node: Sequence[int]) -> list[Joint]:
     """Nodes that are coupled in the parted state or in the whole one, for which both have room.
 
     Parameters

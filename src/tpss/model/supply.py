@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.feeding import Feeding, feedings_of
-from tpss.model.parting import Joint, Parting, coupled_nodes, renamed, representatives
+from tpss.model.parting import Joint, Parting, edges_of_both, renamed, representatives
 from tpss.model.sources import build_sources
 from tpss.powerflow.following import following
 from tpss.powerflow.in_service import mark_unfed
@@ -127,7 +127,7 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    return mark_unfed(assemble(*parts, coupled=coupled_nodes(plan.edges, plan.in_whole()))), plan
+    return mark_unfed(assemble(*parts, room=edges_of_both(plan.edges, plan.in_whole()))), plan
 
 
 def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
@@ -150,7 +150,7 @@ def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
         renamed(plan.branches, node),
         build_sources([node[n] for n in plan.sources], supply.stations),
         parted.system,
-        coupled_nodes(plan.edges, node),
+        room=edges_of_both(plan.edges, node),
     )
     leader = {n: other for n, other in enumerate(node) if n != other}
     return following(mark_unfed(network), leader)

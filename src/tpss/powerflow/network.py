@@ -342,7 +342,7 @@ def assemble(
     branches: Sequence[BranchPart],
     sources: Records[Source],
     system: System,
-    coupled: Sequence[tuple[int, int]] = (),
+    room: Sequence[tuple[int, int]] = (),
 ) -> Network:
     """Network from its parts.
 
@@ -354,13 +354,13 @@ def assemble(
     sources : records of Source
         At most one a node.
     system : System
-    coupled : sequence of (int, int)
+    room : sequence of (int, int)
         Further pairs of nodes for which the linear system has room: networks of the same edges and
         further pairs have the same shapes.
     """
     edges = [(part.start_node, part.end_node) for part in sections]
     edges += [(part.start_node, part.end_node) for part in branches]
-    edges += coupled
+    edges += room
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]

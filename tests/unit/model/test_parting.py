@@ -1,7 +1,7 @@
 """What is parted, in words and in numbers of nodes."""
 
 from tpss.model.parting import (
-    coupled_nodes,
+    edges_of_both,
     joined_over,
     parting_of,
     representatives,
@@ -47,8 +47,8 @@ def test_nodes_that_are_joined_are_represented_by_one_that_of_a_source_if_there_
 
 
 def test_both_states_couple_what_either_couples():
-    assert coupled_nodes([(0, 1), (2, 3)], [0, 1, 2, 3]) == []
-    assert coupled_nodes([(0, 1), (2, 3)], [0, 1, 1, 3]) == [
+    assert edges_of_both([(0, 1), (2, 3)], [0, 1, 2, 3]) == []
+    assert edges_of_both([(0, 1), (2, 3)], [0, 1, 1, 3]) == [
         (0, 1), (2, 3), (0, 1), (1, 3), (2, 1),
     ]  # fmt: skip
 

@@ -12,7 +12,7 @@ from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from networks import BT, STIFF, SYSTEM, constant_loads, place, sources
 
 
-def line(*nodes, coupled=()):
+def line(*nodes, room=()):
     """20 km in two sections between three of four nodes, a station at each end, node 3 to spare."""
     start, middle, end = nodes
     parts = [
@@ -20,7 +20,7 @@ def line(*nodes, coupled=()):
         SectionPart(middle, end, 10e3, 20e3, BT, 0.0),
     ]
     ends = sources((0, STIFF), (2, STIFF))
-    return assemble(4, parts, [], ends, SYSTEM, coupled)
+    return assemble(4, parts, [], ends, SYSTEM, room)
 
 
 def solved(network):
@@ -31,7 +31,7 @@ def solved(network):
 
 
 def test_a_node_that_follows_has_the_voltage_of_the_other_and_changes_nothing_else():
-    pair = following(mark_unfed(line(0, 1, 2, coupled=[(1, 3)])), {3: 1})
+    pair = following(mark_unfed(line(0, 1, 2, room=[(1, 3)])), {3: 1})
     assert pair.source_of_node.tolist() == [0, -1, 1, FOLLOWS - 1]
     found, alone = solved(pair), solved(mark_unfed(line(0, 1, 2)))
     volts = found.flow.nodes.voltage_v
@@ -43,7 +43,7 @@ def test_a_node_that_follows_has_the_voltage_of_the_other_and_changes_nothing_el
 
 
 def test_it_follows_a_source_as_it_does_another_node():
-    pair = following(mark_unfed(line(0, 1, 2, coupled=[(0, 3)])), {3: 0})
+    pair = following(mark_unfed(line(0, 1, 2, room=[(0, 3)])), {3: 0})
     volts = solved(pair).flow.nodes.voltage_v
     assert volts[3] == pytest.approx(volts[0], rel=1e-14)
 
@@ -59,6 +59,6 @@ def test_where_the_other_is_not_fed_neither_is_it():
 def test_networks_of_one_or_two_nodes_at_a_switch_have_the_same_blocks():
     """Closed, both sections meet at node 1; open, one of them ends at node 3."""
     edges = [(0, 1), (1, 2), (0, 3), (3, 2), (1, 3)]
-    closed, opened = line(0, 1, 2, coupled=edges), line(0, 3, 2, coupled=edges)
+    closed, opened = line(0, 1, 2, room=edges), line(0, 3, 2, room=edges)
     assert closed.admittance_s.shape == opened.admittance_s.shape
     np.testing.assert_array_equal(closed.pattern.places, opened.pattern.places)
