@@ -6,8 +6,13 @@ shapes in which they are two.  While they are one, all is joined to one of them,
 
 from collections.abc import Mapping
 
+from tpss.kernel import at, kernel
+from tpss.numerics.pairs import squared
 from tpss.powerflow.in_service import places_of_blocks
-from tpss.powerflow.network import FOLLOWS, UNFED, Network
+from tpss.powerflow.network import UNFED, Flow, Network
+
+FOLLOWS = -3
+"""In `Network.source_of_node`: this, or less by the number of a node, is one that follows that node."""
 
 
 def following(network: Network, leader: Mapping[int, int]) -> Network:
@@ -31,3 +36,11 @@ def following(network: Network, leader: Mapping[int, int]) -> Network:
         admittance_s[node] += 1.0
         admittance_s[place[node, other]] -= 1.0
     return network._replace(source_of_node=source_of_node, admittance_s=admittance_s)
+
+
+@kernel
+def follow(n: int, other: int, network: Network, flow: Flow) -> float:
+    """`newton.evaluate_node` of one that follows another; its row stands in `Network.admittance_s`."""
+    apart_v = flow.nodes[at(n)].voltage_v - flow.nodes[at(other)].voltage_v
+    flow.nodes[at(n)].right_side -= apart_v
+    return squared(apart_v) * network.system.per_square_volt

@@ -45,9 +45,6 @@ SHORTEST_PIECE_M = 1.0
 UNFED = -2
 """In `Network.source_of_node`: a node that no source reaches; its voltage is 0."""
 
-FOLLOWS = -3
-"""In `Network.source_of_node`: this, or less by the number of a node, is one that follows that node."""
-
 EPSILON = float(np.finfo(float).eps)
 
 
@@ -238,7 +235,7 @@ class Network(NamedTuple):
     sources: Records[Source]
     source_of_node: Indices
     """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to,
-    `FOLLOWS` less the index of another node: it has the voltage of that one."""
+    `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
     """What the branches put into each block of the linear system. [S]"""
@@ -355,8 +352,7 @@ def assemble(
         At most one a node.
     system : System
     room : sequence of (int, int)
-        Further pairs of nodes for which the linear system has room: networks of the same edges and
-        further pairs have the same shapes.
+        Further pairs of nodes for which the linear system has room.
     """
     edges = [(part.start_node, part.end_node) for part in sections]
     edges += [(part.start_node, part.end_node) for part in branches]

@@ -60,7 +60,8 @@ from tpss.powerflow.chain import (
     Pass,
     run_chain,
 )
-from tpss.powerflow.network import FOLLOWS, UNFED, Flow, Loads, Network
+from tpss.powerflow.following import FOLLOWS, follow
+from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
 
 CLOSE = 1e-4
@@ -160,14 +161,6 @@ def hold_at_zero(n: int, derivatives: bool, network: Network, flow: Flow) -> flo
         nothing, itself = (0j, 0j), (complex(1.0, 0.0), 0j)
         _turn_source_row(n, voltage_v, itself, nothing, network, flow)
     return squared(voltage_v) * network.system.per_square_volt
-
-
-@kernel
-def follow(n: int, other: int, network: Network, flow: Flow) -> float:
-    """`evaluate_node` of one that follows another; its row stands in `Network.admittance_s`."""
-    apart_v = flow.nodes[at(n)].voltage_v - flow.nodes[at(other)].voltage_v
-    flow.nodes[at(n)].right_side -= apart_v
-    return squared(apart_v) * network.system.per_square_volt
 
 
 @inlined
