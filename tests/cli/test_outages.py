@@ -80,6 +80,29 @@ def test_a_file_that_exists_is_not_replaced_unless_forced(tpss_command, file, tm
     assert place.read_text().startswith("outage,")
 
 
+def test_a_report_stands_beside_its_table(tpss_command, file, tmp_path):
+    said = tpss_command("outages", file, "--report")
+    assert said.code == 0
+    place = tmp_path / "results" / "short-line-outages-001.html"
+    assert "Wrote results/short-line-outages-001.html" in said.out
+    assert "no East" in place.read_text(encoding="utf-8")
+    own = tmp_path / "mine" / "n1.csv"
+    assert tpss_command("outages", file, "--report", "--out", own, "--quiet").code == 0
+    assert own.with_suffix(".html").exists()
+
+
+def test_a_report_that_exists_is_not_replaced_unless_forced(tpss_command, file, tmp_path):
+    report = tmp_path / "n1.html"
+    report.write_text("mine")
+    said = tpss_command("outages", file, "--report", "--out", tmp_path / "n1.csv")
+    assert said.code == 2
+    assert "n1.html" in said.err
+    assert not (tmp_path / "n1.csv").exists()
+    said = tpss_command("outages", file, "--report", "--out", tmp_path / "n2.html")
+    assert said.code == 2
+    assert "give --out a name that ends in .csv" in said.err
+
+
 def test_tables_are_numbered(tpss_command, file, tmp_path):
     for _ in range(2):
         tpss_command("outages", file, "--quiet")

@@ -59,6 +59,9 @@ def mirrored(document: Document) -> Document:
         ]
     for outage in document.get("outages", []):
         outage["transformers_km"] = [length_km - km for km in outage["transformers_km"]]
+        for section in outage.get("sections", []):
+            ends = {"to_km": section.pop("from_km", None), "from_km": section.pop("to_km", None)}
+            section |= {key: length_km - km for key, km in ends.items() if km is not None}
     return document
 
 

@@ -35,7 +35,7 @@ FINEST = 2e-4
 
 MOST_TRAINS = 200
 """On more, another load flow's paths are not followed: its matrices are dense.  Nor does it know nodes
-without a source."""
+without a source, or that follow others."""
 
 
 class Replay:
@@ -106,7 +106,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
     Return NaN where these have lost their way, and so know nothing, or would take minutes.
     """
     standing = state.flow.standing[: state.flow.sections.end[-1]]
-    if standing.size > MOST_TRAINS or (model.network.source_of_node == UNFED).any():
+    if standing.size > MOST_TRAINS or (model.network.source_of_node <= UNFED).any():
         return math.nan
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)

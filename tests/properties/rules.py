@@ -11,6 +11,7 @@ from tpss import Result, library
 from tpss.model.build import steps_of
 from tpss.run.delays import Delays
 from tpss.scenario.machine import RetardationBands
+from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
 
@@ -212,6 +213,32 @@ def judge_outage(result: Result) -> None:
     for km in outage.transformers_km if outage is not None else ():
         nearest = transformers[np.abs(places_km - km).argmin()]
         assert (current[out, nearest] == 0.0).all(), f"the one at {km} km carries a current"
+
+    if outage is not None:
+        judge_parted(result, out)
+
+
+def judge_parted(result: Result, out: Any) -> None:
+    """Trains under a section that is out have no voltage, and a station without a feed feeds nothing."""
+    data, outage, scenario = result.dataset, result.scenario.outage, result.scenario
+    lines = list(scenario.lines_by_name.items())
+    km, volts = data.position.to_numpy()[:-1] / 1e3, data.pantograph_voltage.to_numpy()[:-1]
+    on_line = data.train_line.to_numpy()[:-1] if "train_line" in data else np.zeros(km.shape)
+    on_track = data.train_track.to_numpy()[:-1] if "train_track" in data else np.ones(km.shape)
+    for section in outage.sections:
+        number = next(i for i, (name, _) in enumerate(lines) if section.line in (None, name))
+        begin, end = section.ends_km(lines[number][1].begins_at_km, lines[number][1].end_km)
+        inside = (on_line == number) & (km > begin + 1e-6) & (km < end - 1e-6) & out[:, None]
+        inside &= (on_track == section.track) | (section.track is None)
+        assert (volts[inside & np.isfinite(volts)] == 0.0).all(), (
+            f"{section.in_words} has a voltage"
+        )
+    places = places_on(scenario.lines_by_name)
+    for s, station in enumerate(scenario.supply.stations):
+        if {feed.name for feed in feeds_of(station, places)} <= set(outage.opens):
+            fed = np.hypot(data.station_active_power, data.station_reactive_power)[:-1, s]
+            alone = scenario.supply.high_voltage_line is None
+            assert not alone or (fed.to_numpy()[out] < 10.0).all(), f"{station.name} feeds nothing"
 
 
 def is_out(outage: Any, step: int, result: Result) -> bool:

@@ -294,7 +294,8 @@ def sound_scenarios(draw: Draw) -> Document:
     if "signalling" in document and draw(st.booleans()):
         with_single_tracks(draw, document)
     if draw(st.integers(0, 3)) == 3:
-        document["outages"] = [draw(outages(document["supply"], span_min))]
+        continuous = moves_continuously(document["simulation"])
+        document["outages"] = [draw(outages(document, span_min, continuous))]
         document["simulation"]["outage"] = "random"
     return document
 

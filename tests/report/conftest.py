@@ -6,10 +6,12 @@ import pytest
 
 import lines
 import tpss
+from tpss.outages.report import outages_report
+from tpss.outages.run import Comparison
 from tpss.report.html import comparison, report
 
 from conftest import EXAMPLES
-from scenarios import run
+from scenarios import run, short_line
 
 
 @pytest.fixture(scope="session")
@@ -56,3 +58,23 @@ def compared(short: tpss.Result, collapsed: tpss.Result) -> str:
     """The short line beside one with more traffic, and beside one that collapsed."""
     dense = run({"traffic.0.headway_min": 5.0})
     return comparison({"every 10 min": short, "every 5 min": dense, "collapsed": collapsed})
+
+
+OUTAGES = [
+    {"name": "no East", "stations": ["East"]},
+    {"name": "the middle", "sections": [{"from_km": 9.0, "to_km": 11.0}]},
+    {"name": "all <b>", "stations": ["West", "East"], "from_min": 6.0, "to_min": 12.0},
+]
+
+
+@pytest.fixture(scope="session")
+def found() -> Comparison:
+    """Table of the short line's outages: a station, a section, all for a time."""
+    plain = {"simulation.motion": None, "simulation.braking": None}
+    return tpss.compare_outages(short_line({**plain, "outages": OUTAGES}))
+
+
+@pytest.fixture(scope="session")
+def table_page(found: Comparison) -> str:
+    """Report of that table."""
+    return outages_report(found)

@@ -280,3 +280,22 @@ def test_the_journey_of_any_train_that_all_compared_runs_have_can_be_chosen(
     assert found.tab.evaluate(f"{journey}[1].name") == "every 5 min: eastbound 1"
     assert found.faults == []
     found.tab.close()
+
+
+def test_a_table_of_outages_is_drawn_sorted_and_downloaded(browser, table_page, tmp_path, found):
+    file = tmp_path / "outages.html"
+    file.write_text(table_page, encoding="utf-8")
+    opened = open_page(browser, file)
+    tab = opened.tab
+    assert tab.locator("#voltages .scatterlayer .trace").count() == 2
+    tab.locator("#outages thead button", has_text="lowest voltage").click()
+    lowest = [float(text.split()[0]) for text in opened.column("outages", 3)]
+    assert lowest == sorted(lowest)
+    with tab.expect_download() as download:
+        tab.locator("button.csv[data-table=outages]").click()
+    download.value.save_as(tmp_path / "outages.csv")
+    rows = list(csv.reader((tmp_path / "outages.csv").read_text().splitlines()))
+    assert {row[0] for row in rows[1:]} == {row.outage for row in found.rows}
+    tab.close()
+    assert opened.faults == []
+    assert opened.requests[0] == file.as_uri()

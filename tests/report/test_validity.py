@@ -2,7 +2,7 @@
 
 from tpss.report.validity import limits_of_validity
 
-from scenarios import run
+from scenarios import short_line
 
 SHORT = {"simulation.duration_min": 1.0}
 LIMITS = {"trains.freight.tractive_effort": {"max_force_kn": 200.0, "max_power_kw": 2600.0},
@@ -12,7 +12,7 @@ TABLE = {**LIMITS, "trains.freight.tractive_effort": {
 
 
 def said(*changes):
-    return " ".join(limits_of_validity([run({**SHORT, **each}) for each in changes]))
+    return " ".join(limits_of_validity([short_line({**SHORT, **each}) for each in changes]))
 
 
 def test_networks_are_told_of_trains_that_have_them():

@@ -204,6 +204,8 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.posts.*.position_km",
         "supply.section_breaks.*.position_km",
         "outages.*.transformers_km.*",
+        "outages.*.sections.*.from_km",
+        "outages.*.sections.*.to_km",
         "traffic.*.initial_trains.*.position_km",
         "standards.zones.*.from_km",
         "standards.zones.*.to_km",

@@ -375,7 +375,9 @@ def outages(
         typer.Option(
             "--n-1",
             help="Also take out each single element: every station, every station with one unit fewer, "
-            "every transformer of the high-voltage line.",
+            "every transformer of the high-voltage line, every closed post and section break, every "
+            "feed of a station with several. Not the contact line, which rules of n-1 exempt: sections "
+            "of it are outages of the scenario.",
         ),
     ] = False,
     set_: Assignments = None,
@@ -386,23 +388,30 @@ def outages(
         Path | None,
         option(help="CSV file to write; by default results/NAME-outages-NNN.csv."),
     ] = None,
+    report: Annotated[
+        bool,
+        typer.Option(
+            "--report", help="Also write a report with the table, beside the CSV file, in HTML."
+        ),
+    ] = False,
     force: Force = False,
     quiet: Quiet = False,
 ) -> None:
     """Run a scenario with each of its outages, and rank what they do in one table.
 
-    An outage is a table `[[outages]]` of the scenario: stations, units or transformers that are out of
-    service, throughout the run or from `from_min` to `to_min`. The first row is the intact supply;
-    the outages follow, those that do not solve first, then by the limits that they violate, then by
-    their mean useful voltage. In brackets stands what differs from the intact supply; late and lost
-    count against it too. The CSV file holds more: trains, times, windows of loading, differences.
+    An outage is a table `[[outages]]` of the scenario: stations, units, transformers or sections of
+    contact line that are out of service, and switches that are open, throughout the run or from
+    `from_min` to `to_min`. The first row is the intact supply; the outages follow, those that do not
+    solve first, then by the limits that they violate, then by their mean useful voltage. In brackets
+    stands what differs from the intact supply; late and lost count against it too. The CSV file holds
+    more: trains, times, windows of loading, differences.
 
     Exit codes: 0 done, 2 bad input, 3 a run did not solve, a train stalled or trains deadlocked, 4 the
     audit of a run failed, 130 interrupted (the table holds the runs that were done).
     """
     from tpss.cli.outages import run_outages
 
-    raise typer.Exit(run_outages(file, n_1, set_ or [], jobs, out, force, quiet))
+    raise typer.Exit(run_outages(file, n_1, set_ or [], jobs, out, force, quiet, report))
 
 
 @app.command(epilog="Example:  tpss new my-line")

@@ -16,12 +16,16 @@ from tpss.cli.terminal import announce_compilation, parts_that_fit, progress_bar
 from tpss.errors import ResultError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
+from tpss.results.contents import is_report
 from tpss.results.store import PARENT
 from tpss.units import on_line
 
 if TYPE_CHECKING:
     from tpss.outages.row import Row
     from tpss.outages.run import Comparison
+
+HTML = ".html"
+"""End of the name of a report, which otherwise is that of its table."""
 
 PROGRESS = "{task.completed}/{task.total} outages"
 
@@ -37,6 +41,7 @@ def run_outages(
     out: Path | None,
     force: bool,
     quiet: bool,
+    report: bool = False,
 ) -> int:
     """Run a scenario with each of its outages; print and save the table; return the exit code."""
     from tpss.outages.run import compare_outages
@@ -46,13 +51,13 @@ def run_outages(
 
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
     if out is not None:
-        refuse_to_replace(out, force, "a file", Path.is_file)
+        _demand_room(out, force, report)
     console = Console(stderr=True, quiet=quiet)
     announce_compilation(console)
     with interruptible() as interrupted:
-        with progress_bar(scenario.name, PROGRESS, _progress, console) as report:
+        with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
             found = compare_outages(
-                scenario, every=every, threads=jobs, report=report, interrupted=interrupted
+                scenario, every=every, threads=jobs, report=progress, interrupted=interrupted
             )
         if not found.rows:
             print("Interrupted; nothing was saved.", file=sys.stderr)
@@ -61,11 +66,31 @@ def run_outages(
     if not quiet:
         print_table(found, Console())
         say(Console(), f"Saved in {place}")
+    if report:
+        file = found.write_report(place.with_suffix(HTML), force=force)
+        if not quiet:
+            print(f"Wrote {file}")
     if interrupted:
         done = f"{len(found.rows)} of {found.cases} runs"
         print(f"Interrupted after {done}; the table holds these.", file=sys.stderr)
         return INTERRUPTED
     return _exit_code(found)
+
+
+def _demand_room(out: Path, force: bool, report: bool) -> None:
+    """Refuse to replace what is there, before anything runs.
+
+    Raises
+    ------
+    ResultError
+    """
+    refuse_to_replace(out, force, "a file", Path.is_file)
+    if not report:
+        return
+    if out.suffix == HTML:
+        remedy = f"give --out a name that ends in .csv; the report is {out.name} then"
+        raise ResultError(f"{out} is to be the table and its report; {remedy}")
+    refuse_to_replace(out.with_suffix(HTML), force, "a report", is_report)
 
 
 def _progress(done: int, cases: int) -> dict[str, Any]:
@@ -104,7 +129,7 @@ def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
         place = PARENT / f"{name}-outages-{number:03d}.csv"
         with explained(place):
             PARENT.mkdir(exist_ok=True)
-            if not os.path.lexists(place):
+            if not any(map(os.path.lexists, (place, place.with_suffix(HTML)))):
                 whole.write_file(place, content)
                 return place
         number += 1

@@ -10,10 +10,10 @@ from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.gates import build_gates, no_gates
 from tpss.model.legs import build_legs
-from tpss.model.outages import service_of
+from tpss.model.outages import layout_of, service_of
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
-from tpss.model.supply import SupplyPlan, build_supply, layouts_of
+from tpss.model.supply import SupplyPlan
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
 from tpss.record import Records
@@ -48,9 +48,7 @@ class Layout:
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     lines = scenario.lines_by_name
-    outage = scenario.outage
-    supply = scenario.supply if outage is None else outage.switched(scenario.supply)
-    _, plan = build_supply(supply, layouts_of(lines))
+    plan = layout_of(scenario, scenario.outage).plan
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
     types, points = build_train_types(running)

@@ -13,8 +13,10 @@ from collections.abc import Callable, Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
+from tpss.model.parting import Joint, Parting, joined_over, set_apart
 from tpss.powerflow.network import SectionPart
-from tpss.scenario.supply import Catenary, Supply
+from tpss.scenario.outages import OutSection
+from tpss.scenario.supply import Catenary, Post, Supply
 from tpss.units import kilometres, si
 
 
@@ -119,6 +121,8 @@ class Laid(NamedTuple):
     names: list[str]
     """Of the sections."""
     runs: list[Run]
+    joints: list[Joint]
+    """Pairs of nodes that are one where nothing is parted."""
 
 
 def lay_contact_line(
@@ -127,6 +131,7 @@ def lay_contact_line(
     feeding_km: set[float],
     make_node: Callable[[float, str], int],
     first_section: int,
+    parting: Parting,
 ) -> Laid:
     """Lay out the contact line of a line.
 
@@ -141,39 +146,107 @@ def lay_contact_line(
         place.
     first_section : int
         Index of the first section.
+    parting : Parting
+        What is parted here that is not parted otherwise.
     """
     stretches = stretches_of(line, supply)
-    breaks = {
-        each.position_km: each.name
-        for each in supply.section_breaks
-        if not each.closed and line.holds(each.line)
-    }
-    ties_km = feeding_km | _posts_km(line, stretches, supply)
-    ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}
-    points = sorted({*ends_km, *ties_km, *breaks})
+    marks = _marks_of(line, stretches, supply, feeding_km, parting)
+    points = marks.points_km
     pieces = [_piece(*ends, stretches) for ends in pairwise(points)]
     node: dict[float, int] = {}
     starts: list[list[int]] = []
     stops: list[list[int]] = []
+    joints: list[Joint] = []
     for km, before, behind in zip(points, [None, *pieces], [*pieces, None], strict=True):
-        sides = [each.stretch.conductors for each in (before, behind) if each is not None]
-        made: list[list[int]]
-        if km in breaks and len(sides) == 2:
-            made = [
-                _nodes(km, count, f", {side} {breaks[km]}", make_node)
-                for side, count in zip(("before", "behind"), sides, strict=True)
-            ]
-        elif km in ties_km or min(sides) == 1 or sides[0] != sides[-1]:
-            node[km] = make_node(km, "")
-            made = [[node[km]] * count for count in sides]
-        else:
-            made = [_nodes(km, sides[0], "", make_node)] * len(sides)
+        sides = [each for each in (before, behind) if each is not None]
+        words, parted = _words_at(km, sides, marks)
+        tied = len({each for side in words for each in side}) == 1
+        if marks.out:
+            are_out = [[marks.is_out(each, k) for k in range(each.conductors)] for each in sides]
+            words, more = set_apart(words, are_out, km in feeding_km)
+            parted += more
+        # In the order of the words: what is drawn along the line goes from one to the next.
+        known = [each for side in words for each in side]
+        known += [each for pair in parted for each in pair]
+        named = {each: make_node(km, each) for each in dict.fromkeys(known)}
+        if tied:
+            node[km] = named[""]
+        joints += [(named[one], named[other]) for one, other in parted]
+        made = [[named[each] for each in side] for side in words]
         if before is not None:
             stops.append(made[0])
         if behind is not None:
             starts.append(made[-1])
     between = list(zip(pieces, starts, stops, strict=True))
-    return Laid(node, *_sections(line, supply, between, first_section))
+    return Laid(node, *_sections(line, supply, between, first_section), joints)
+
+
+class _Marks(NamedTuple):
+    """What there is along a line, beside its stretches, that makes nodes."""
+
+    points_km: list[float]
+    """All places with nodes, in order. [km]"""
+    ties_km: set[float]
+    """Where all conductors are tied. [km]"""
+    posts_km: set[float]
+    """Where they are tied for a part of the run only. [km]"""
+    breaks: dict[float, str]
+    """Names of the open breaks by their places. [km]"""
+    closing: frozenset[str]
+    """Names of those breaks that are open for a part of the run only."""
+    out: list[OutSection]
+    """Sections that are out."""
+
+    def is_out(self, piece: "_Piece", conductor: int) -> bool:
+        """Whether a conductor of a piece is out."""
+        stretch = piece.stretch
+        track = None if stretch.conductors < stretch.tracks else conductor + 1
+        return any(each.covers(piece.begin_km, piece.end_km, track) for each in self.out)
+
+
+def _marks_of(
+    line: LineLayout,
+    stretches: Sequence[Stretch],
+    supply: Supply,
+    feeding_km: set[float],
+    parting: Parting,
+) -> _Marks:
+    closed = [post for post in supply.posts if post.closed]
+    closing = [post for post in supply.posts if post.name in parting.switches]
+    ties_km = feeding_km | _posts_km(line, stretches, closed)
+    posts_km = _posts_km(line, stretches, closing)
+    breaks = {
+        each.position_km: each.name
+        for each in supply.section_breaks
+        if not each.closed and line.holds(each.line)
+    }
+    out = [each for each in parting.sections if line.holds(each.line)]
+    ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}
+    ends_km |= {km for each in out for km in each.ends_km(line.begin_km, line.end_km)}
+    points_km = sorted({*ends_km, *ties_km, *posts_km, *breaks})
+    return _Marks(points_km, ties_km, posts_km, breaks, parting.switches, out)
+
+
+def _words_at(
+    km: float, sides: Sequence["_Piece"], marks: _Marks
+) -> tuple[list[list[str]], list[tuple[str, str]]]:
+    """What tells the nodes of the conductors before a place and behind it; those that a switch joins.
+
+    Conductors of the same words have one node; without any words it is that of the whole place. [km]
+    """
+    counts = [each.conductors for each in sides]
+    if km in marks.breaks and len(sides) == 2:
+        name = marks.breaks[km]
+        before, behind = (
+            _words(count, f", {side} {name}")
+            for side, count in zip(("before", "behind"), counts, strict=True)
+        )
+        return [before, behind], joined_over(before, behind) if name in marks.closing else []
+    if km in marks.ties_km or min(counts) == 1 or counts[0] != counts[-1]:
+        return [[""] * count for count in counts], []
+    words = _words(counts[0], "")
+    joints = [(words[0], each) for each in words[1:]] if km in marks.posts_km else []
+    return [words] * len(sides), joints
 
 
 class _Piece(NamedTuple):
@@ -183,19 +256,23 @@ class _Piece(NamedTuple):
     end_km: float
     stretch: Stretch
 
+    @property
+    def conductors(self) -> int:
+        """How many hang there."""
+        return self.stretch.conductors
+
 
 def _piece(begin_km: float, end_km: float, stretches: Sequence[Stretch]) -> _Piece:
     stretch = next(each for each in stretches if each.begin_km <= begin_km < each.end_km)
     return _Piece(begin_km, end_km, stretch)
 
 
-def _posts_km(line: LineLayout, stretches: Sequence[Stretch], supply: Supply) -> set[float]:
-    """Places of closed posts where they have tracks to tie. [km]"""
+def _posts_km(line: LineLayout, stretches: Sequence[Stretch], posts: Sequence[Post]) -> set[float]:
+    """Places of posts where they have tracks to tie. [km]"""
     return {
         post.position_km
-        for post in supply.posts
-        if post.closed
-        and line.holds(post.line)
+        for post in posts
+        if line.holds(post.line)
         and any(
             each.begin_km <= post.position_km <= each.end_km
             and each.conductors > 1
@@ -205,13 +282,9 @@ def _posts_km(line: LineLayout, stretches: Sequence[Stretch], supply: Supply) ->
     }
 
 
-def _nodes(
-    place_km: float, count: int, words: str, make_node: Callable[[float, str], int]
-) -> list[int]:
-    """A node for each conductor."""
-    if count == 1:
-        return [make_node(place_km, words)]
-    return [make_node(place_km, f", track {k + 1}{words}") for k in range(count)]
+def _words(count: int, more: str) -> list[str]:
+    """What tells a node for each of so many conductors."""
+    return [more] if count == 1 else [f", track {k + 1}{more}" for k in range(count)]
 
 
 def _sections(

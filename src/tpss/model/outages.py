@@ -2,10 +2,16 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tpss.errors import Finding, ScenarioError
-from tpss.model.supply import TRANSFORMER, SupplyPlan, build_supply, layouts_of
+from tpss.model.parting import parting_of
+from tpss.model.supply import (
+    NOTHING_PARTED,
+    TRANSFORMER,
+    SupplyPlan,
+    build_supply,
+    layouts_of,
+    whole_network,
+)
 from tpss.powerflow.in_service import in_service
 from tpss.powerflow.network import UNFED, Network
 from tpss.run.switching import Switching
@@ -30,17 +36,35 @@ def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
         A part of the line is left without a feeding station, and trains move in steps.
     """
     outage = outage or scenario.outage
-    supply = scenario.supply if outage is None else outage.switched(scenario.supply)
-    intact, plan = build_supply(supply, layouts_of(scenario.lines_by_name))
+    laid = layout_of(scenario, outage)
     if outage is None:
-        _demand_continuous_motion(intact, plan, None, scenario)
-        return Service(intact)
-    reduced = reduced_network(intact, plan, supply, outage)
-    _demand_continuous_motion(reduced, plan, outage, scenario)
+        _demand_continuous_motion(laid.network, laid.plan, None, scenario)
+        return Service(laid.network)
+    reduced = reduced_network(laid.network, laid.plan, laid.supply, outage)
+    _demand_continuous_motion(reduced, laid.plan, outage, scenario)
+    if outage.is_throughout:
+        return Service(reduced)
+    intact = whole_network(*laid)
     ending = () if outage.to_min is None else (Switching(60.0 * outage.to_min, intact),)
     if outage.from_min == 0.0:
         return Service(reduced, ending)
     return Service(intact, (Switching(60.0 * outage.from_min, reduced), *ending))
+
+
+class Laid(NamedTuple):
+    """A supply with all open that an outage opens, before anything else is taken out."""
+
+    network: Network
+    plan: SupplyPlan
+    supply: Supply
+
+
+def layout_of(scenario: Scenario, outage: Outage | None) -> Laid:
+    """Network of a scenario that is parted as an outage parts it, and its parts."""
+    supply, parting = scenario.supply, NOTHING_PARTED
+    if outage is not None:
+        supply, parting = outage.switched(supply), parting_of(outage, supply)
+    return Laid(*build_supply(supply, layouts_of(scenario.lines_by_name), parting), supply)
 
 
 def reduced_network(intact: Network, plan: SupplyPlan, supply: Supply, outage: Outage) -> Network:
@@ -66,11 +90,12 @@ def _is_at(position_km: float, outage: Outage) -> bool:
 def _demand_continuous_motion(
     network: Network, plan: SupplyPlan, outage: Outage | None, scenario: Scenario
 ) -> None:
-    """Refuse to leave something without a feeding station where trains move in steps.
+    """Refuse to leave contact line without a feeding station where trains move in steps.
 
     A train without power comes to stand anywhere within a step, which stepped motion does not know.
     """
-    unfed = np.flatnonzero(network.source_of_node == UNFED)
+    begins = network.sections["start_node"]
+    unfed = begins[network.source_of_node[begins] == UNFED]
     if unfed.size == 0 or scenario.simulation.how_trains_move == "continuous":
         return
     names = [each.name for each in scenario.outages]

@@ -14,7 +14,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
+from tpss.model.feeding import Feeding, feedings_of
+from tpss.model.parting import Joint, Parting, edges_of_both, renamed, representatives
 from tpss.model.sources import build_sources
+from tpss.powerflow.following import following
 from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
@@ -29,6 +32,7 @@ HIGH_VOLTAGE_LINE = "high-voltage line"
 TRANSFORMER = "transformer"
 CONNECTION = "connection"
 FEEDER = "AT feeder"
+BUSBAR = "busbar"
 
 
 @dataclass
@@ -51,6 +55,18 @@ class SupplyPlan:
     """Of each line."""
     node_line: list[int] = field(default_factory=list)
     """Index of the line of each node."""
+    joints: list[Joint] = field(default_factory=list)
+    """Pairs of nodes that are one in the whole state, see `model.parting`."""
+
+    @property
+    def edges(self) -> list[tuple[int, int]]:
+        """Nodes that branches and sections couple."""
+        coupled = [(section.start_node, section.end_node) for section in self.sections]
+        return coupled + [(branch.start_node, branch.end_node) for branch in self.branches]
+
+    def in_whole(self) -> list[int]:
+        """The node that each node is one with in the whole state."""
+        return representatives(len(self.nodes), self.joints, self.sources)
 
     def add_node(
         self, kind: str, line: LineLayout, position_km: float, level: float = 1.0, words: str = ""
@@ -97,16 +113,47 @@ class SupplyPlan:
         return range(2 * len(self.section_names))
 
 
+NOTHING_PARTED = Parting()
+
+
 @lru_cache(maxsize=64)
-def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network, SupplyPlan]:
-    """Network along lines, with the names of its parts.
+def build_supply(
+    supply: Supply, lines: tuple[LineLayout, ...], parting: Parting = NOTHING_PARTED
+) -> tuple[Network, SupplyPlan]:
+    """Network along lines, with the names of its parts, in which all is parted that is said to be.
 
     Cases of a study have few supplies; those of the same one share what this gives, and only read it.
     """
-    plan = plan_supply(supply, lines)
+    plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
-    network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
-    return mark_unfed(network), plan
+    parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
+    return mark_unfed(assemble(*parts, room=edges_of_both(plan.edges, plan.in_whole()))), plan
+
+
+def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
+    """The network of the shapes of a parted one in which nothing is parted.
+
+    Parameters
+    ----------
+    parted : Network
+    plan : SupplyPlan
+        Its parts.
+    supply : Supply
+        Of which it is.
+    """
+    if not plan.joints:
+        return parted
+    node = plan.in_whole()
+    network = assemble(
+        len(node),
+        renamed(plan.sections, node),
+        renamed(plan.branches, node),
+        build_sources([node[n] for n in plan.sources], supply.stations),
+        parted.system,
+        room=edges_of_both(plan.edges, node),
+    )
+    leader = {n: other for n, other in enumerate(node) if n != other}
+    return following(mark_unfed(network), leader)
 
 
 def system_of(supply: Supply) -> System:
@@ -143,7 +190,9 @@ def layouts_of(lines: Mapping[str, Line]) -> tuple[LineLayout, ...]:
     )
 
 
-def plan_supply(supply: Supply, lines: Sequence[LineLayout]) -> SupplyPlan:
+def plan_supply(
+    supply: Supply, lines: Sequence[LineLayout], parting: Parting = NOTHING_PARTED
+) -> SupplyPlan:
     """Lay out nodes, sections and branches along lines, which are tied where they meet.
 
     References
@@ -152,10 +201,13 @@ def plan_supply(supply: Supply, lines: Sequence[LineLayout]) -> SupplyPlan:
     """
     plan = SupplyPlan()
     meeting: dict[str, int] = {}
-    fed = [_OnLine.of(supply, line, lines) for line in lines]
+    feedings = feedings_of(supply, lines, parting)
+    fed = [_OnLine.of(supply, line, feedings) for line in lines]
     feeding = [
-        _lay_line(plan, line, meeting, here, supply) for line, here in zip(lines, fed, strict=True)
+        _lay_line(plan, line, meeting, here, supply, parting)
+        for line, here in zip(lines, fed, strict=True)
     ]
+    _join_busbars(plan, lines, feedings, feeding)
     node_of: dict[str, int] = {}
     for line, here, node in zip(lines, fed, feeding, strict=True):
         for km, station in sorted(here.stations.items()):
@@ -170,43 +222,69 @@ def plan_supply(supply: Supply, lines: Sequence[LineLayout]) -> SupplyPlan:
     return plan
 
 
+def _join_busbars(
+    plan: SupplyPlan,
+    lines: Sequence[LineLayout],
+    feedings: Sequence[Feeding],
+    nodes: Sequence[dict[float, int]],
+) -> None:
+    """Give each station the node of its busbar, on its line, and note the joints of open feeds."""
+    on = {line.name: (line, node) for line, node in zip(lines, nodes, strict=True)}
+    for each in feedings:
+        home, place_km = on[each.home], each.station.position_km
+        there = {name: on[name][1][km] for name, km in each.places_km.items()}
+        shared = next((node for name, node in there.items() if name in each.shared), None)
+        busbar = plan.add_node(BUSBAR, home[0], place_km) if shared is None else shared
+        plan.joints += [(there[name], busbar) for name in each.parted]
+        home[1][place_km] = busbar
+
+
 class _OnLine(NamedTuple):
     """What feeds a line."""
 
     stations: dict[float, Station]
     transformers_km: list[float]
     has_high_voltage: bool
-    fed_junctions: frozenset[str]
-    """Stations where lines meet at which a feeding station stands, on any line."""
+    junctions: dict[float, str]
+    """Places where it is tied to other lines, and the names of the stations there."""
+    feeding_km: set[float]
+    """Places where it is fed or tied to others. [km]"""
 
     @classmethod
-    def of(cls, supply: Supply, line: LineLayout, lines: Sequence[LineLayout]) -> "_OnLine":
+    def of(cls, supply: Supply, line: LineLayout, feedings: Sequence[Feeding]) -> "_OnLine":
         """What feeds one of several lines."""
-        stations = {s.position_km: s for s in supply.stations if line.holds(s.line)}
         high_voltage = supply.high_voltage_line
         beside = high_voltage is not None and line.holds(high_voltage.line)
         transformers = transformer_positions_km(supply) if beside else []
-        fed = {
-            name
-            for each in lines
-            for km, name in each.junctions
-            if any(each.holds(s.line) and s.position_km == km for s in supply.stations)
+        busbars = {each.junction: each.shared for each in feedings}
+        junctions = {
+            km: name
+            for km, name in line.junctions
+            if (line.name in busbars[name] if name in busbars else supply.junctions_tied)
         }
-        return cls(stations, transformers, beside, frozenset(fed))
+        fed_km = {each.places_km[line.name] for each in feedings if line.name in each.places_km}
+        return cls(
+            stations={s.position_km: s for s in supply.stations if line.holds(s.line)},
+            transformers_km=transformers,
+            has_high_voltage=beside,
+            junctions=junctions,
+            feeding_km={*fed_km, *transformers, *junctions},
+        )
 
 
 def _lay_line(
-    plan: SupplyPlan, line: LineLayout, meeting: dict[str, int], here: _OnLine, supply: Supply
+    plan: SupplyPlan,
+    line: LineLayout,
+    meeting: dict[str, int],
+    here: _OnLine,
+    supply: Supply,
+    parting: Parting,
 ) -> dict[float, int]:
     """The contact line of a line; return its nodes at feeding points by their places. [km]"""
-    junctions = {
-        km: name
-        for km, name in line.junctions
-        if supply.junctions_tied or name in here.fed_junctions
-    }
 
     def make_node(km: float, words: str) -> int:
-        name = junctions.get(km)
+        # What has words of its own is apart from what else there is at the place.
+        name = None if words else here.junctions.get(km)
         if name is None or name not in meeting:
             node = plan.add_node(CONTACT_LINE, line, km, words=words)
         else:
@@ -215,11 +293,12 @@ def _lay_line(
             meeting[name] = node
         return node
 
-    feeding_km = {*here.stations, *here.transformers_km, *junctions}
-    laid = lay_contact_line(line, supply, feeding_km, make_node, len(plan.sections))
+    first = len(plan.sections)
+    laid = lay_contact_line(line, supply, here.feeding_km, make_node, first, parting)
     plan.sections += laid.sections
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)
+    plan.joints += laid.joints
     return laid.node
 
 

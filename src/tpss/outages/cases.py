@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.outages import SWITCHES, Outage
 from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
 
@@ -31,7 +32,11 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
 
 
 def single_outages(scenario: Scenario) -> Iterator[Outage]:
-    """Each station, each with one unit fewer if it has several, each transformer, each switch."""
+    """Each station, each with one unit fewer if it has several, each transformer, each switch.
+
+    Of the feeds those of stations with more than one: a single one is as much as its station.  The
+    contact line is left out, which rules of n-1 exempt, as those of Bane NOR do (TRV:03191).
+    """
     stations = scenario.supply.stations
     for station in stations:
         yield Outage(name=f"{station.name} out", stations=(station.name,))
@@ -44,6 +49,11 @@ def single_outages(scenario: Scenario) -> Iterator[Outage]:
         for switch in getattr(scenario.supply, kind):
             if switch.closed:
                 yield Outage(name=f"{switch.name} open", opens=(switch.name,))
+    places = places_on(scenario.lines_by_name)
+    for station in stations:
+        feeds = list(feeds_of(station, places))
+        for feed in feeds if len(feeds) > 1 else ():
+            yield Outage(name=f"{feed.name} open", opens=(feed.name,))
 
 
 def _content(outage: Outage) -> dict[str, object]:

@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import pandas as pd
 
 from tpss.api import Prepared, prepare
 from tpss.errors import ScenarioError
 from tpss.many import in_threads
-from tpss.model.outages import service_of
+from tpss.model.legs import build_legs
+from tpss.model.outages import layout_of, service_of
 from tpss.outages.cases import outages_of
 from tpss.outages.row import FIGURES, Row, Verdict, lost_against, row_of
 from tpss.run.run import INTERRUPTED
@@ -26,6 +28,8 @@ class Comparison:
     rows: tuple[Row, ...]
     cases: int
     """How many there are if it was not interrupted."""
+    scenario: Scenario
+    """With the step that was chosen, if it gave none."""
 
     @property
     def intact(self) -> Row:
@@ -35,6 +39,25 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """One row per case: verdict, figures, and their differences to those of the intact supply."""
         return pd.DataFrame([_flat(row, self.intact) for row in self.rows])
+
+    def write_report(self, file: str | Path, *, force: bool = False) -> Path:
+        """Write a report into one HTML file, and return the file.
+
+        Parameters
+        ----------
+        file : path
+            File to write.
+        force : bool
+            Whether a report that is there may be replaced.
+
+        Raises
+        ------
+        ResultError
+            The file exists, or cannot be written.
+        """
+        from tpss.outages.report import write_outages_report  # which takes long to import
+
+        return write_outages_report(self, file, force=force)
 
 
 def compare_outages(
@@ -52,8 +75,7 @@ def compare_outages(
     scenario : Scenario
         Without a time step, that of the intact supply is chosen for all.
     every : bool
-        Whether each single element is taken out too: every station, every station with one unit
-        fewer, every transformer of the high-voltage line.
+        Whether each single element is taken out too, see `outages.cases.single_outages`.
     threads : int, optional
         Number of threads; by default one for each core.
     report : callable, optional
@@ -82,7 +104,7 @@ def compare_outages(
             report(done, len(outages))
     ranked = sorted(rows[1:], key=lambda row: row.rank)
     lost = [replace(row, lost=lost_against(row, rows[0])) for row in (*rows[:1], *ranked)]
-    return Comparison(tuple(lost), len(outages))
+    return Comparison(tuple(lost), len(outages), prepared.scenario)
 
 
 def _run(
@@ -109,14 +131,17 @@ def with_outage(prepared: Prepared, outage: Outage) -> Prepared:
     ScenarioError
         As `service_of`.
     """
-    if outage.opens:  # which is another network, with other sections above the trains
-        kept = [*prepared.scenario.outages, outage]
-        listed = {each.name: each.model_dump(exclude_defaults=True) for each in kept}
-        values = {"outages": list(listed.values()), "simulation.outage": outage.name}
-        return prepare(prepared.scenario.with_(values))
-    service, start = service_of(prepared.scenario, outage), prepared.start
-    model = start.model._replace(network=service.network)
-    return replace(prepared, start=replace(start, model=model, switchings=service.switchings))
+    scenario, layout, start = prepared.scenario, prepared.layout, prepared.start
+    service, plan = service_of(scenario, outage), layout_of(scenario, outage).plan
+    legs = layout.legs
+    if plan is not layout.supply:  # a network with other sections above the trains
+        legs = build_legs(layout.routes, scenario.lines_by_name, plan.runs)
+    model = start.model._replace(network=service.network, legs=legs)
+    return replace(
+        prepared,
+        layout=replace(layout, supply=plan, legs=legs),
+        start=replace(start, model=model, switchings=service.switchings),
+    )
 
 
 def _flat(row: Row, intact: Row) -> dict[str, object]:

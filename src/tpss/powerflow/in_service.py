@@ -21,7 +21,7 @@ from tpss.record import copy_of_records
 
 
 def in_service(network: Network, units: Mapping[int, int], opened: Collection[int]) -> Network:
-    """The network with fewer units of some sources, and without some branches.
+    """The network, none of whose nodes follows, with fewer units of some sources and branches.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
 
     Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
     """
-    place = _places(network.pattern)
+    place = places_of_blocks(network.pattern)
     total = np.zeros_like(network.admittance_s)
     for k in range(network.branches.size):
         branch = network.branches[k]
@@ -69,7 +69,7 @@ def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
     return total
 
 
-def _places(pattern: Pattern) -> dict[tuple[int, int], int]:
+def places_of_blocks(pattern: Pattern) -> dict[tuple[int, int], int]:
     """Places of the blocks between different nodes."""
     place = {}
     for k in range(pattern.pivots.size):

@@ -234,7 +234,8 @@ class Network(NamedTuple):
     branches: Records[Branch]
     sources: Records[Source]
     source_of_node: Indices
-    """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to."""
+    """Index of the source at each node; -1: none, `UNFED`: none there or anywhere it is joined to,
+    `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
     """What the branches put into each block of the linear system. [S]"""
@@ -338,6 +339,7 @@ def assemble(
     branches: Sequence[BranchPart],
     sources: Records[Source],
     system: System,
+    room: Sequence[tuple[int, int]] = (),
 ) -> Network:
     """Network from its parts.
 
@@ -349,9 +351,12 @@ def assemble(
     sources : records of Source
         At most one a node.
     system : System
+    room : sequence of (int, int)
+        Further pairs of nodes for which the linear system has room.
     """
     edges = [(part.start_node, part.end_node) for part in sections]
     edges += [(part.start_node, part.end_node) for part in branches]
+    edges += room
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]

@@ -7,6 +7,7 @@ kinds of equation, all complex:
     node without source:    Σ leaving currents = 0
     node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
     node that is not fed:   V = 0
+    node that follows:      V = V of another node, of which it is a second name
 
 f is the converter law (2.1)-(2.4).  The trains' equations stand inside the chains, so forces,
 accelerations and powers are solved together with the voltages.
@@ -59,6 +60,7 @@ from tpss.powerflow.chain import (
     Pass,
     run_chain,
 )
+from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
 
@@ -173,6 +175,8 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
     if s < 0:
         if s == UNFED:
             return hold_at_zero(n, derivatives, network, flow)
+        if s <= FOLLOWS:
+            return follow(n, FOLLOWS - s, network, flow)
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
     running = flow.sources[at(s)].running

@@ -1,20 +1,11 @@
-"""A report of results: one HTML file that needs nothing else, to be read, printed and passed on.
+"""A report of results: one HTML file that needs nothing else, to be read, printed and passed on."""
 
-Jinja2 fills the page, because it escapes every name and text of a scenario; plotly draws, and its
-script is part of the file.  The page blocks all access to the network.
-"""
-
-import json
 from collections.abc import Callable, Mapping, Sequence
-from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import tomli_w
 from plotly.graph_objects import Figure
-from plotly.offline import get_plotlyjs
 
 from tpss.audit.verdict import JUDGED, usual_limits
 from tpss.files.refusals import explained, refuse_to_replace
@@ -31,15 +22,15 @@ from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
 from tpss.report.moving import network_moving
+from tpss.report.page import fill
 from tpss.report.render.interactive import render
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
-from tpss.results.contents import REPORT_MARK, is_report
+from tpss.results.contents import is_report
 from tpss.results.notes import notes
 from tpss.results.places import LINE
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
-from tpss.units import kilometres
 
 STATUS_IN_WORDS = {
     "finished": "The run finished.",
@@ -274,39 +265,26 @@ def _page(
     notes: Sequence[str],
     differing: tables.Table | None = None,
 ) -> str:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("tpss.report", "template"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["kilometres"] = kilometres
     first = next(iter(results.values()))
-    return environment.get_template("report.html").render(
-        generator=REPORT_MARK,
-        version=version("tpss"),
-        title=title,
+    return fill(
+        "report.html",
+        title,
+        figures,
+        data,
         results=results,
         single=first if len(results) == 1 else None,
         troubles=_troubles(results),
         status_names=STATUS_IN_WORDS,
-        figures=figures,
-        data=data,
         tables=tables,
         key_figures=key_figures,
         differing=differing,
         notes=notes,
         limits={label: _limits(result) for label, result in results.items()},
         judged=JUDGED,
-        validity=limits_of_validity(results.values()),
+        validity=limits_of_validity(result.scenario for result in results.values()),
         violations=_violations(results),
         steps={label: step_lines(result.summary) for label, result in results.items()},
         scenarios={key: tomli_w.dumps(run.scenario.as_document()) for key, run in results.items()},
-        style=_part("report.css"),
-        script=_part("report.js"),
-        plotly=get_plotlyjs() if figures else "",
-        report_data=_for_script(figures, data),
     )
 
 
@@ -344,14 +322,3 @@ def _violations(results: Mapping[str, Result]) -> dict[str, list[str]]:
         for label, result in results.items()
         if result.audit["passed"] and result.dataset.sizes["time"] > 1
     }
-
-
-def _part(name: str) -> str:
-    return (files("tpss.report") / "template" / name).read_text(encoding="utf-8")
-
-
-def _for_script(figures: Mapping[str, Figure], data: Mapping[str, Any]) -> str:
-    """The page's data as JSON that cannot end the script element which holds it."""
-    drawn = ",".join(f"{json.dumps(key)}:{figure.to_json()}" for key, figure in figures.items())
-    text = f'{{"plots":{{{drawn}}},"run":{json.dumps(data, separators=(",", ":"))}}}'
-    return text.replace("<", "\\u003c")

@@ -62,7 +62,7 @@ def of_frame(key: str, caption: str, frame: pd.DataFrame) -> Table:
     """Table of a pandas table whose names end with their units; of a long one, the first rows."""
     columns = [str(name) for name in frame.columns]
     rows = [
-        [_cell(value, units.label(name)) for name, value in zip(columns, row, strict=True)]
+        [cell(value, units.label(name)) for name, value in zip(columns, row, strict=True)]
         for row in frame.head(MOST_ROWS).itertuples(index=False)
     ]
     if len(frame) > MOST_ROWS:
@@ -102,9 +102,9 @@ def of_figures(results: Mapping[str, Result]) -> Table:
     names = list(dict.fromkeys(name for column in columns for name in column))
     rows = [
         [
-            _cell(f"{name} [{unit}]" if unit else name, ""),
+            cell(f"{name} [{unit}]" if unit else name, ""),
             *(
-                _compared(column.get((name, unit)), columns[0].get((name, unit)), name, unit)
+                compared(column.get((name, unit)), columns[0].get((name, unit)), name, unit)
                 for column in columns
             ),
         ]
@@ -173,7 +173,7 @@ def of_differences(results: Mapping[str, Result]) -> Table:
     """What the scenarios of runs differ in, one row per key path and one column per run."""
     differing = differences([result.scenario for result in results.values()])
     rows = [
-        [_cell(path, ""), *(_cell("–" if value is None else _short(value), "") for value in values)]
+        [cell(path, ""), *(cell("–" if value is None else _short(value), "") for value in values)]
         for path, values in list(differing.items())[:MOST_DIFFERENCES]
     ]
     caption = "What differs"
@@ -191,17 +191,18 @@ def _short(value: Any) -> Any:
     return str(value)
 
 
-def _compared(value: Any, base: Any, name: str, unit: str) -> Cell:
+def compared(value: Any, base: Any, name: str, unit: str) -> Cell:
     """Cell of a figure, with its difference to that of the first run where that says something."""
-    cell = _cell(value, unit)
+    plain = cell(value, unit)
     numbers = all(isinstance(each, int | float) and each == each for each in (value, base))
     if not numbers or value == base or name.startswith(PLACES_AND_TIMES):
-        return cell
+        return plain
     difference = f"{value - base:+.{DIGITS.get(unit, 2) if isinstance(value, float) else 0}f}"
-    return Cell(f"{cell.text} ({difference})", cell.value, is_number=True)
+    return Cell(f"{plain.text} ({difference})", plain.value, is_number=True)
 
 
-def _cell(value: Any, unit_of_it: str) -> Cell:
+def cell(value: Any, unit_of_it: str) -> Cell:
+    """Cell of a value in the decimals of its unit."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return Cell("–", "", is_number=True)
     if isinstance(value, bool):

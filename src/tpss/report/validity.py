@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator
 
-from tpss.results.result import Result
 from tpss.scenario.machine import EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.scenario import Scenario
 
 ALWAYS = (
     "Quasi-stationary: voltages and currents are phasors, forces and powers constant within a time "
@@ -22,13 +22,13 @@ SUPPLY = (
 )
 
 
-def limits_of_validity(results: Iterable[Result]) -> list[str]:
+def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
     sentences = [
         sentence
-        for result in results
-        for name in dict.fromkeys(entry.train for entry in result.scenario.traffic)
-        for sentence in _of_train(name, result.scenario.trains[name])
+        for scenario in scenarios
+        for name in dict.fromkeys(entry.train for entry in scenario.traffic)
+        for sentence in _of_train(name, scenario.trains[name])
     ]
     return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY]
 

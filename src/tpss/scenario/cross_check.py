@@ -10,6 +10,7 @@ from typing import Any
 from tpss import library
 from tpss.errors import Finding
 from tpss.scenario.feeding_points import check_feeding_points
+from tpss.scenario.feeds import check_feeds
 from tpss.scenario.itineraries import check_traffic
 from tpss.scenario.machine import CurrentLimitation
 from tpss.scenario.positions import check_positions, check_stations_named
@@ -27,7 +28,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     supply, simulation = table(document, "supply"), table(document, "simulation")
     findings = list(check_positions(document))
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
-    findings += check_wiring(document)
+    findings += [*check_feeds(document), *check_wiring(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += _separation(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))

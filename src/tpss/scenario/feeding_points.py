@@ -12,6 +12,9 @@ from tpss.scenario.raw import Fault, items, number, table
 from tpss.scenario.supply.supply import STATIONS
 from tpss.units import kilometres
 
+MOST_SPACED = 100
+"""More transformers between two stations are a fault of their own."""
+
 
 def check_feeding_points(supply: Mapping[str, Any]) -> Iterator[Fault]:
     """Feeding points that are too close to each other."""
@@ -51,6 +54,32 @@ def _placed_transformers(high_voltage: Mapping[str, Any], stations: list[float])
         else:
             yield from _too_close(key, km, [*stations, *(other for other in before if other != km)])
         before.append(km)
+
+
+def placed_transformers(supply: Mapping[str, Any], lines: int) -> list[float]:
+    """Positions of the transformers of the high-voltage line between stations, given or spaced. [km]
+
+    Parameters
+    ----------
+    supply : mapping
+    lines : int
+        How many lines there are.
+    """
+    high_voltage = table(supply, "high_voltage_line")
+    given, count = high_voltage.get("transformers_km"), number(high_voltage, "transformers")
+    if isinstance(given, list | tuple):
+        return [km for each in given if (km := number({"": each}, "")) is not None]
+    beside = [
+        km
+        for kind in STATIONS
+        for _, each in items(supply, kind)
+        if lines == 1 or each.get("line") == high_voltage.get("line")
+        if (km := number(each, "position_km")) is not None
+    ]
+    if count is None or not 1.0 <= count <= MOST_SPACED:
+        return []
+    shares = [(i + 1.0) / (count + 1.0) for i in range(int(count))]
+    return [a + (b - a) * share for a, b in pairwise(sorted(beside)) for share in shares]
 
 
 def _spaced_transformers(high_voltage: Mapping[str, Any], stations: list[float]) -> Iterator[Fault]:

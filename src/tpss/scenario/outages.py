@@ -4,24 +4,76 @@ They are kept in a scenario's file; one of them applies if `simulation.outage` n
 """
 
 import re
-from collections.abc import Iterator, Sequence
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from tpss.errors import Finding, closest
-from tpss.scenario.fields import Name, Part, Position, Real, Whole, fault, unique
-from tpss.scenario.simulation import Simulation
+from tpss.scenario.fields import (
+    Name,
+    Part,
+    Position,
+    Real,
+    Whole,
+    fault,
+    name_of_line,
+    unique,
+)
 from tpss.scenario.supply import Station, Supply
-from tpss.scenario.supply.converter_station import ConverterStation
-from tpss.scenario.supply.transformers import feeding_positions_km
-from tpss.units import kilometres
+from tpss.units import kilometres, on_line
 
 SWITCHES = ("posts", "section_breaks")
-"""Keys of the supply that list switches."""
+"""Keys of the supply that list switches, feeds left out, which stations have."""
 
 SAME_PLACE_KM = 0.0004
 """A transformer no further away is the one that is meant; no two are closer than a metre. [km]"""
+
+
+class OutSection(Part):
+    """A section of the contact line that is out: parted at its ends, and from what feeds or ties it."""
+
+    line: Name | None = name_of_line()
+    track: Annotated[Whole, Field(ge=1, le=8)] | None = Field(
+        default=None,
+        description="Number of its track, counted from the left as seen in rising kilometres; leave it "
+        "out: all tracks.",
+    )
+    from_km: Position | None = Field(
+        default=None, description="Where it begins; leave it out: where the line does."
+    )
+    to_km: Position | None = Field(
+        default=None, description="Where it ends; leave it out: where the line does."
+    )
+
+    @property
+    def in_words(self) -> str:
+        """Which it is."""
+        begin = None if self.from_km is None else kilometres(self.from_km)
+        end = None if self.to_km is None else kilometres(self.to_km)
+        place = f"{begin}-{end} km"
+        if begin is None or end is None:
+            place = f"from {begin} km on" if begin else f"up to {end} km" if end else "as a whole"
+        track = "" if self.track is None else f" of track {self.track}"
+        return f"contact line {on_line(self.line or '', place)}{track}"
+
+    def ends_km(self, begins_at_km: float, end_km: float) -> tuple[float, float]:
+        """Where it begins and ends, on a line from one place to another. [km]"""
+        begin = begins_at_km if self.from_km is None else self.from_km
+        return begin, end_km if self.to_km is None else self.to_km
+
+    def covers(self, begin_km: float, end_km: float, track: int | None) -> bool:
+        """Whether a track is out between two places of its line; or all of them, if it is None. [km]"""
+        begins = self.from_km is None or self.from_km <= begin_km
+        ends = self.to_km is None or end_km <= self.to_km
+        return begins and ends and self.track in (None, track)
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        if self.from_km is not None and self.to_km is not None and self.to_km <= self.from_km:
+            raise fault(
+                f"the section ends at {self.to_km:g} km, and begins at {self.from_km:g} km",
+                "give the lower position as from_km",
+            )
+        return self
 
 
 class Outage(Part):
@@ -40,7 +92,12 @@ class Outage(Part):
         default=(), description="Positions of transformers of the high-voltage line that are out."
     )
     opens: tuple[Name, ...] = Field(
-        default=(), description="Coupling posts and section breaks that are open, throughout a run."
+        default=(),
+        description="Coupling posts, section breaks and feeds that are open; a feed is named by its "
+        "station and its line, as in `West>main`.",
+    )
+    sections: tuple[OutSection, ...] = Field(
+        default=(), description="Sections of the contact line that are out."
     )
     from_min: Real = Field(
         default=0.0, ge=0, le=100_000, description="When it begins, from the start of the run."
@@ -56,6 +113,7 @@ class Outage(Part):
         parts += [f"{count} of {name}'s units out" for name, count in self.units.items()]
         parts += [f"transformer at {kilometres(km)} km out" for km in self.transformers_km]
         parts += [f"{name} open" for name in self.opens]
+        parts += [f"{each.in_words} out" for each in self.sections]
         end = "the end" if self.to_min is None else f"{self.to_min:g} min"
         when = "" if self.is_throughout else f", from {self.from_min:g} min to {end}"
         return ", ".join(parts) + when
@@ -78,8 +136,11 @@ class Outage(Part):
 
     @model_validator(mode="after")
     def _takes_something_out(self) -> Self:
-        if not (self.stations or self.units or self.transformers_km or self.opens):
-            raise fault("nothing is out", "give stations, units, transformers_km or opens")
+        named = self.stations or self.units or self.transformers_km or self.opens
+        if not (named or self.sections):
+            raise fault(
+                "nothing is out", "give stations, units, transformers_km, opens or sections"
+            )
         if both := [name for name in self.stations if name in self.units]:
             raise fault(
                 f"{both[0]} is out as a whole, and some of its units besides",
@@ -101,15 +162,6 @@ class Outage(Part):
         return supply.model_copy(update=switches)
 
     @model_validator(mode="after")
-    def _switches_stay(self) -> Self:
-        if self.opens and not self.is_throughout:
-            raise fault(
-                "posts and section breaks open throughout a run only",
-                "leave from_min and to_min out, or opens",
-            )
-        return self
-
-    @model_validator(mode="after")
     def _ends_after_it_begins(self) -> Self:
         if self.to_min is not None and self.to_min <= self.from_min:
             raise fault(
@@ -120,70 +172,3 @@ class Outage(Part):
 
 
 Outages = Annotated[tuple[Outage, ...], unique("name")]
-
-
-def outage_faults(
-    outages: Sequence[Outage], simulation: Simulation, supply: Supply, file: str
-) -> list[Finding]:
-    """What outages name that the supply does not have, and a choice of one that there is not."""
-    findings = [
-        Finding(file, f"outages.{i}.{key}", value, problem, remedy)
-        for i, outage in enumerate(outages)
-        for key, value, problem, remedy in _faults(outage, supply)
-    ]
-    names, chosen = [outage.name for outage in outages], simulation.outage
-    if chosen is not None and chosen not in names:
-        problem, remedy = unknown("outage", chosen, names)
-        findings.append(Finding(file, "simulation.outage", repr(chosen), problem, remedy))
-    if chosen is not None and simulation.load_flow == "least-squares":
-        problem = "the original program's load flow knows no outages"
-        remedy = 'use load_flow = "equations", or leave simulation.outage out'
-        value = repr(simulation.load_flow)
-        findings.append(Finding(file, "simulation.load_flow", value, problem, remedy))
-    return findings
-
-
-def unknown(kind: str, name: str, known: Sequence[str]) -> tuple[str, str]:
-    """Problem and remedy of a name that there is not."""
-    hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
-    return f"there is no such {kind}", f"{hint}{kind}s: {', '.join(known) or 'none'}"
-
-
-_Fault = tuple[str, str, str, str]
-
-
-def _faults(outage: Outage, supply: Supply) -> Iterator[_Fault]:
-    stations = {station.name: station for station in supply.stations}
-    named = [(f"stations.{i}", name) for i, name in enumerate(outage.stations)]
-    for key, name in [*named, *((f"units.{name}", name) for name in outage.units)]:
-        if name not in stations:
-            yield key, repr(name), *unknown("station", name, list(stations))
-    switches = [each.name for kind in SWITCHES for each in getattr(supply, kind)]
-    for i, name in enumerate(outage.opens):
-        if name not in switches:
-            yield f"opens.{i}", repr(name), *unknown("switch", name, switches)
-    for name, count in outage.units.items():
-        if name in stations:
-            yield from _units(name, count, stations[name])
-    known_km = feeding_positions_km(supply)
-    for i, km in enumerate(outage.transformers_km):
-        if not any(abs(km - each) <= SAME_PLACE_KM for each in known_km):
-            listed = ", ".join(f"{kilometres(each)} km" for each in known_km) or "none"
-            problem = "the high-voltage line has no transformer there"
-            yield f"transformers_km.{i}", kilometres(km), problem, f"transformers: {listed}"
-
-
-def _units(name: str, count: int, station: Station) -> Iterator[_Fault]:
-    """More units out than there are, or so many that the others' motors have no voltage left."""
-    key, left = f"units.{name}", station.installed - count
-    if left < 0:
-        problem = f"more than are installed there, {station.installed}"
-        yield key, str(count), problem, f"give {station.installed} or less"
-    elif left > 0 and isinstance(station, ConverterStation):
-        reduced = station.model_copy(update={"converters": left})
-        if station.grid_reactive_power_mvar <= reduced.least_reactive_mvar:
-            problem = (
-                f"with {left} converters, grid_reactive_power_mvar "
-                f"({station.grid_reactive_power_mvar:g} Mvar) leaves the motors no voltage"
-            )
-            yield key, str(count), problem, "take less reactive power from the grid"

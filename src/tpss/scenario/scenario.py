@@ -13,7 +13,8 @@ from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
-from tpss.scenario.outages import Outage, Outages, outage_faults, unknown
+from tpss.scenario.outage_faults import outage_faults, unknown
+from tpss.scenario.outages import Outage, Outages
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
@@ -134,7 +135,13 @@ class Scenario(Part):
             As `from_document`.
         """
         scenario = validate(cls, document, Path(source))
-        faults = outage_faults(scenario.outages, scenario.simulation, scenario.supply, str(source))
+        faults = outage_faults(
+            scenario.outages,
+            scenario.simulation,
+            scenario.supply,
+            scenario.lines_by_name,
+            str(source),
+        )
         if faults:
             raise ScenarioError(faults)
         scenario._document = document

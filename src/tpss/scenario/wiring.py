@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from tpss import library
+from tpss.scenario.feeding_points import placed_transformers
 from tpss.scenario.line import CLOSEST_KM
 from tpss.scenario.raw import Ends, Fault, ends_of, items, lines_of, number, places_of, table
 from tpss.scenario.supply.supply import STATIONS
@@ -173,6 +174,8 @@ def _break_at_a_node(
         for _, each in items(supply, kind)
         if len(lines) == 1 or each.get("line") == line
     ]
+    if len(lines) == 1 or table(supply, "high_voltage_line").get("line") == line:
+        fed += placed_transformers(supply, len(lines))
     own = places_of(lines[str(line)][1])
     others = [places_of(other) for name, (_, other) in lines.items() if name != line]
     fed += [place for name, place in own.items() if any(name in each for each in others)]

@@ -56,7 +56,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
         if panel.bare:
             figure.update_yaxes(visible=False, row=row, col=1)
         if panel.rows:
-            names = {"tickvals": [*range(len(panel.rows))], "ticktext": panel.rows}
+            names: Any = {"tickvals": [*range(len(panel.rows))], "ticktext": panel.rows}
+            names["automargin"] = True
             figure.update_yaxes(names, autorange="reversed", row=row, col=1)
         units = parts.unit_of(drawing.axis), parts.unit_of(panel.label)
         for item in panel.items:

@@ -17,6 +17,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.supply.feeds import Feeds, feeds
 
 
 class ConverterType(Part):
@@ -43,6 +44,7 @@ class ConverterStation(Part):
     line: Name | None = name_of_line()
     at: Name | None = station_at()
     position_km: Position = Field(description="Position on its line.")
+    feeds: Feeds | None = feeds()
     type: Annotated[ConverterType, FromLibrary("converters")] = Field(
         description="Library name, or a table of your own."
     )

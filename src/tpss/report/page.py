@@ -1,0 +1,68 @@
+"""What all pages share: templates that escape every text, style and script, and data for the script.
+
+Jinja2 fills a page, because it escapes every name and text of a scenario; plotly draws, and its script
+is part of the file.  A page blocks all access to the network.
+"""
+
+import json
+from collections.abc import Mapping
+from importlib.metadata import version
+from importlib.resources import files
+from typing import Any
+
+import jinja2
+from plotly.graph_objects import Figure
+from plotly.offline import get_plotlyjs
+
+from tpss.results.contents import REPORT_MARK
+from tpss.units import kilometres
+
+
+def fill(
+    template: str, title: str, figures: Mapping[str, Figure], data: Mapping[str, Any], **parts: Any
+) -> str:
+    """Page of a template.
+
+    Parameters
+    ----------
+    template : str
+        File of the template.
+    title : str
+    figures : mapping of str to Figure
+        Plots by the names of their elements.
+    data : mapping
+        What the script has to know besides.
+    **parts
+        What else the template shows.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("tpss.report", "template"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["kilometres"] = kilometres
+    return environment.get_template(template).render(
+        generator=REPORT_MARK,
+        version=version("tpss"),
+        title=title,
+        figures=figures,
+        data=data,
+        style=_part("report.css"),
+        script=_part("report.js"),
+        plotly=get_plotlyjs() if figures else "",
+        report_data=_for_script(figures, data),
+        **parts,
+    )
+
+
+def _part(name: str) -> str:
+    return (files("tpss.report") / "template" / name).read_text(encoding="utf-8")
+
+
+def _for_script(figures: Mapping[str, Figure], data: Mapping[str, Any]) -> str:
+    """The page's data as JSON that cannot end the script element which holds it."""
+    drawn = ",".join(f"{json.dumps(key)}:{figure.to_json()}" for key, figure in figures.items())
+    text = f'{{"plots":{{{drawn}}},"run":{json.dumps(data, separators=(",", ":"))}}}'
+    return text.replace("<", "\\u003c")
