@@ -19,7 +19,7 @@ from tpss.powerflow.system import system
 from tpss.record import Records
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.kinds import Source, SourceKind
-from tpss.track.leg import along_one_line
+from tpss.track.leg import Leg, along_one_line
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -105,11 +105,12 @@ def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     return loads_alone(trains, types)
 
 
-def place(network: Network, loads: Loads) -> Case:
-    """Put the trains of `loads` onto the line."""
+def place(network: Network, loads: Loads, legs: Records[Leg] | None = None) -> Case:
+    """Put the trains of `loads` onto the line, or onto the legs of their routes."""
     count = loads.trains.size
     flow = new_flow(network, count)
-    locate_trains(count, loads.trains, along_one_line(network.sections.size), network, flow)
+    legs = along_one_line(network.sections.size) if legs is None else legs
+    locate_trains(count, loads.trains, legs, network, flow)
     measure_pieces(count, network, flow)
     return Case(network, flow, loads)
 
@@ -122,3 +123,26 @@ def simple_line(
     section = (0, 1, 0.0, length_m, impedance, susceptance)
     network = network_of(2, [section], [], sources(*enumerate(ends)))
     return place(network, constant_loads(positions_m, powers_va))
+
+
+def side_by_side(
+    points_m: list[float], nodes: list[list[int]], trains: list[tuple[int, float, complex]],
+    fed: Records[Source], mutual: complex, *, impedance: complex = BT, susceptance: float = 0.0,
+    coupled: bool = True,
+) -> Case:  # fmt: skip
+    """Tracks between the same points, each with its nodes there; trains by track, place and power."""
+    tracks, pieces = len(nodes), len(points_m) - 1
+    sections = [
+        SectionPart(
+            of_track[i], of_track[i + 1], points_m[i], points_m[i + 1], impedance, susceptance, mutual
+        )
+        for of_track in nodes
+        for i in range(pieces)
+    ]
+    groups = [[k * pieces + i for k in range(tracks)] for i in range(pieces)]
+    n_nodes = max(node for of_track in nodes for node in of_track) + 1
+    network = assemble(n_nodes, sections, [], fed, SYSTEM, groups if coupled else ())
+    loads = constant_loads([m for _, m, _ in trains], [power for _, _, power in trains])
+    loads.trains.route = [track for track, _, _ in trains]
+    rows = [(-np.inf, 1.0, 0.0, 0, k + 1, k * pieces, (k + 1) * pieces) for k in range(tracks)]
+    return place(network, loads, Leg.array(rows).reshape(tracks, 1))

@@ -26,7 +26,8 @@ from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
 from tpss.numerics.curve import CurvePoint, Points
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail
-from tpss.powerflow.system import System
+from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
+from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
 from tpss.vehicle.train import Train
@@ -44,8 +45,6 @@ SHORTEST_PIECE_M = 1.0
 
 UNFED = -2
 """In `Network.source_of_node`: a node that no source reaches; its voltage is 0."""
-
-EPSILON = float(np.finfo(float).eps)
 
 
 class Ending(IntEnum):
@@ -90,6 +89,8 @@ class Section(Record):
     """Series impedance. [Ω/m]"""
     susceptance_s_per_m: float
     """Shunt susceptance. [S/m]"""
+    mutual_ohm_per_m: complex
+    """Impedance in common with each other section of its group, if it has one. [Ω/m]"""
     block_aa: int
     """Place of the block (start node, start node)."""
     block_ab: int
@@ -100,6 +101,8 @@ class Section(Record):
     """Place of the block (end node, end node)."""
     gap_weight: float
     """Square of the power at its ends that a gap causes, both in per unit. [1]"""
+    is_coupled: bool
+    """Whether it is one of a group."""
 
 
 class Branch(Record):
@@ -240,6 +243,8 @@ class Network(NamedTuple):
     """What the branches put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
+    groups: Groups
+    """Of coupled sections."""
 
 
 class Flow(NamedTuple):
@@ -257,6 +262,7 @@ class Flow(NamedTuple):
     """The sources as they are while they are brought apart from like ones."""
     search: Records[Search]
     """One record."""
+    groups: GroupFlow
 
 
 class Loads(NamedTuple):
@@ -299,11 +305,13 @@ class SectionPart(NamedTuple):
     end_m: float
     impedance_ohm_per_m: complex
     susceptance_s_per_m: float
+    mutual_ohm_per_m: complex = 0j
 
     @property
     def shortest_ohm(self) -> float:
-        """Impedance of the whole section, of a metre at least. [Ω]"""
-        return abs(self.impedance_ohm_per_m) * max(SHORTEST_PIECE_M, self.end_m - self.start_m)
+        """Impedance of the whole section, of a metre at least, and without what is in common. [Ω]"""
+        length_m = max(SHORTEST_PIECE_M, self.end_m - self.start_m)
+        return abs(self.impedance_ohm_per_m - self.mutual_ohm_per_m) * length_m
 
 
 class BranchPart(NamedTuple):
@@ -312,20 +320,6 @@ class BranchPart(NamedTuple):
     start_node: int
     end_node: int
     impedance_ohm: complex
-
-
-def resolution_va(impedance_ohm: float, system: System) -> float:
-    """Power mismatch that the rounding of voltages causes at the ends of an impedance. [VA]
-
-    A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
-    to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
-    """
-    return float(4.0 * EPSILON * system.base_voltage_v**2 / impedance_ohm)
-
-
-def gap_weight(part: SectionPart, system: System) -> float:
-    """Square of the power that a gap of the base voltage causes at a section's ends. [p.u.]"""
-    return float((system.base_voltage_v**2 / part.shortest_ohm / system.base_power_va) ** 2)
 
 
 _pattern = lru_cache(maxsize=64)(find_pattern)
@@ -338,6 +332,7 @@ def assemble(
     branches: Sequence[BranchPart],
     sources: Records[Source],
     system: System,
+    groups: Sequence[Sequence[int]] = (),
 ) -> Network:
     """Network from its parts.
 
@@ -349,8 +344,11 @@ def assemble(
     sources : records of Source
         At most one a node.
     system : System
+    groups : sequence of sequences of int
+        Numbers of sections side by side that are coupled.
     """
-    edges = [(part.start_node, part.end_node) for part in sections]
+    ends = [(part.start_node, part.end_node) for part in sections]
+    edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
@@ -363,6 +361,7 @@ def assemble(
         a, b = part.start_node, part.end_node
         return place[a, a], place[a, b], place[b, a], place[b, b]
 
+    coupled = {s for group in groups for s in group}
     admittance_s = np.zeros(len(place), dtype=complex)
     for part in branches:
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
@@ -370,7 +369,8 @@ def assemble(
     return Network(
         system=system,
         sections=Section.array(
-            (*part, *blocks(part), gap_weight(part, system)) for part in sections
+            (*part, *blocks(part), gap_weight(part.shortest_ohm, system), s in coupled)
+            for s, part in enumerate(sections)
         ),
         branches=Branch.array((*part, 1.0 / part.impedance_ohm) for part in branches),
         sources=sources,
@@ -378,6 +378,7 @@ def assemble(
         pattern=pattern,
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
+        groups=groups_of(groups, ends, place),
     )
 
 
@@ -392,6 +393,7 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
         laws=copy_of_records(network.sources),
         search=Search.blank(1),
+        groups=new_group_flow(network.groups),
     )
     flow.sources.running[:] = network.sources["installed"]
     flow.standing.train[:] = np.arange(n_trains)

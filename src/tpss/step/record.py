@@ -220,7 +220,10 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        lost_w += section_losses(s, network, flow)
+        if not network.sections[at(s)].is_coupled:
+            lost_w += section_losses(s, network, flow)
+    for g in range(network.groups.size.size):
+        lost_w += flow.groups.lost_w[at(g)]
     recording.network_losses[at(step)] = lost_w
 
 
