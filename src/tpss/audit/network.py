@@ -2,17 +2,18 @@
 
 The solver pushes voltages and currents along chains; the audit starts from the recorded voltages, forms
 the current of every piece of line and every branch from the voltages at its ends (the nodal admittance
-equations), and compares the powers that this asks for with the recorded ones.  That a source's law is
+equations; those of coupled sections in `coupled`), and compares the powers that this asks for with the recorded ones.  That a source's law is
 right is the business of its own tests; that the solution obeys it is the audit's.
 """
 
 import math
 
-from tpss.audit.balances import Balances, Scratch, worst
+from tpss.audit.balances import Scratch, audit_demand, worst
+from tpss.audit.coupled import audit_groups
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
-from tpss.powerflow.placing import section_at
+from tpss.powerflow.placing import is_unfed, section_at
 from tpss.record import Records
 from tpss.sources.kinds import residual
 from tpss.step.model import Model
@@ -55,7 +56,12 @@ def audit_network(
     count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
-        k = _audit_section(step, s, k, count, model, recording, scratch)
+        if network.sections[s].is_coupled and not is_unfed(s, network):
+            k = _pass_trains(s, k, count, scratch)
+        else:
+            k = _audit_section(step, s, k, count, model, recording, scratch)
+    if network.groups.size.size > 0:
+        audit_groups(step, count, model, recording, scratch)
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
@@ -111,6 +117,15 @@ def _stands_behind(i: int, j: int, scratch: Scratch) -> bool:
 
 
 @inlined
+def _pass_trains(s: int, first: int, count: int, scratch: Scratch) -> int:
+    """Leave the trains of a coupled section to `audit.coupled`; return the next train."""
+    scratch.groups.first[s] = k = first
+    while k < count and scratch.section[scratch.order[k]] == s:
+        k += 1
+    return k
+
+
+@inlined
 def _audit_section(
     step: int, s: int, first: int, count: int, model: Model, recording: Recording, scratch: Scratch
 ) -> int:
@@ -136,7 +151,7 @@ def _audit_section(
         if at_node:
             scratch.leaving_a[section.start_node] += leaving
         else:
-            _audit_demand(
+            audit_demand(
                 step, scratch.order[k - 1], voltage, entering - leaving, recording, figures
             )
         entering = current - shunt * ahead
@@ -145,17 +160,6 @@ def _audit_section(
             return k
         voltage, place_m, at_node = ahead, ahead_m, False
         k += 1
-
-
-@inlined
-def _audit_demand(
-    step: int, i: int, voltage: complex, current: complex, recording: Recording, figures: Balances
-) -> None:
-    """Mismatch between what a train draws and what flows into it."""
-    row = recording.trains[step, i]
-    drawn = complex(row.active_power, row.reactive_power)
-    mismatch = magnitude(voltage * current.conjugate() - drawn)
-    figures.power_mismatch_va = worst(figures.power_mismatch_va, mismatch)
 
 
 @inlined

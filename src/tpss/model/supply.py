@@ -45,6 +45,8 @@ class SupplyPlan:
     branch_kinds: list[str] = field(default_factory=list)
     sections: list[SectionPart] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
+    coupled: list[tuple[int, ...]] = field(default_factory=list)
+    """Sections side by side that have an impedance in common."""
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
     runs: list[list[Run]] = field(default_factory=list)
@@ -105,7 +107,9 @@ def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network
     """
     plan = plan_supply(supply, lines)
     sources = build_sources(plan.sources, supply.stations)
-    network = assemble(len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply))
+    network = assemble(
+        len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply), plan.coupled
+    )
     return mark_unfed(network), plan
 
 
@@ -217,6 +221,7 @@ def _lay_line(
 
     feeding_km = {*here.stations, *here.transformers_km, *junctions}
     laid = lay_contact_line(line, supply, feeding_km, make_node, len(plan.sections))
+    plan.coupled += laid.coupled(len(plan.sections))
     plan.sections += laid.sections
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)

@@ -1,11 +1,12 @@
 """The network of one step as the thesis has it: nodes, trains included, and an admittance matrix."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.powerflow.network import Flow, Network
+from tpss.powerflow.network import Flow, Network, Section
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -24,6 +25,9 @@ class Grid:
         Nodes of each element: lumped branches first, then pieces of contact line by position.
     admittance_s, half_shunt_s : Complexes
         Series admittance of each element, and the shunt admittance at either end. [S]
+    coupled : tuple of (Indices, Complexes)
+        Elements that induce voltages in each other, and their admittance matrix; their own series
+        admittances in `admittance_s` are 0.
     first_piece, last_piece : Indices
         Elements with which each contact-line section begins and ends.
     """
@@ -35,6 +39,7 @@ class Grid:
     half_shunt_s: Complexes
     first_piece: Indices
     last_piece: Indices
+    coupled: tuple[tuple[Indices, Complexes], ...]
 
     def admittance_matrix(self) -> Complexes:
         """Nodal admittance matrix, dense. [S]"""
@@ -44,12 +49,29 @@ class Grid:
         np.add.at(matrix, (self.end, self.end), own)
         np.add.at(matrix, (self.start, self.end), -self.admittance_s)
         np.add.at(matrix, (self.end, self.start), -self.admittance_s)
+        for elements, between_s in self.coupled:
+            a, b = self.start[elements], self.end[elements]
+            for rows, columns, sign in ((a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)):
+                np.add.at(matrix, (rows[:, None], columns[None, :]), sign * between_s)
         return matrix
+
+    def through_a(self, voltage_v: Complexes) -> Complexes:
+        """Current through the series admittance of each element. [A]"""
+        drop_v = voltage_v[self.start] - voltage_v[self.end]
+        through = self.admittance_s * drop_v
+        for elements, between_s in self.coupled:
+            through[elements] = between_s @ drop_v[elements]
+        return through
+
+    def coupled_losses_w(self, voltage_v: Complexes) -> list[float]:
+        """Losses of the coupled elements that belong together. [W]"""
+        drop_v, through_a = voltage_v[self.start] - voltage_v[self.end], self.through_a(voltage_v)
+        return [float((drop_v[i] @ through_a[i].conj()).real) for i, _ in self.coupled]
 
     def section_currents_a(self, voltage_v: Complexes) -> tuple[Complexes, Complexes]:
         """Current that enters each section at its start, and that leaves it at its end. [A]"""
         first, last = self.first_piece, self.last_piece
-        through = self.admittance_s * (voltage_v[self.start] - voltage_v[self.end])
+        through = self.through_a(voltage_v)
         entering = through + self.half_shunt_s * voltage_v[self.start]
         leaving = through - self.half_shunt_s * voltage_v[self.end]
         return entering[first], leaving[last]
@@ -63,6 +85,7 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
     fixed, branches = flow.nodes.size, network.branches
     start: list[int] = []
     end: list[int] = []
+    length: list[float] = []
     impedance: list[complex] = []
     susceptance: list[float] = []
     first_piece: list[int] = []
@@ -75,15 +98,53 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
         first_piece.append(branches.size + len(start))
         start += points[:-1]
         end += points[1:]
+        length += pieces_m
         impedance += [section.impedance_ohm_per_m * length_m for length_m in pieces_m]
         susceptance += [section.susceptance_s_per_m * length_m for length_m in pieces_m]
         last_piece.append(branches.size + len(start) - 1)
+    bounds = list(zip(first_piece, last_piece, strict=True))
+    series_s = np.concatenate([1.0 / branches["impedance_ohm"], 1.0 / np.array(impedance)])
+    coupled = tuple(
+        _couple([bounds[s] for s in group[:size]], np.array([*([0.0] * branches.size), *length]), network.sections[group[0]])
+        for size, group in zip(network.groups.size, network.groups.section, strict=True)
+    )
+    for elements, _ in coupled:
+        series_s[elements] = 0.0
     return Grid(
         size=fixed + count,
         start=np.concatenate([branches["start_node"], start]).astype(np.int64),
         end=np.concatenate([branches["end_node"], end]).astype(np.int64),
-        admittance_s=np.concatenate([1.0 / branches["impedance_ohm"], 1.0 / np.array(impedance)]),
+        admittance_s=series_s,
         half_shunt_s=np.concatenate([np.zeros(branches.size), 0.5j * np.array(susceptance)]),
         first_piece=np.array(first_piece),
         last_piece=np.array(last_piece),
+        coupled=coupled,
     )
+
+
+def _couple(
+    bounds: Sequence[tuple[int, int]], length_m: Floats, section: Section
+) -> tuple[Indices, Complexes]:
+    """Elements of sections side by side, and their admittance matrix. [S]
+
+    Two of them have the impedance in common of the length along which they lie beside each other.
+
+    Parameters
+    ----------
+    bounds : sequence of (int, int)
+        First and last element of each section.
+    length_m : Floats
+        Length of each element of the grid. [m]
+    section : Section
+        One of them.
+    """
+    each = [np.arange(first, last + 1) for first, last in bounds]
+    ends_m = np.concatenate([np.cumsum(length_m[elements]) for elements in each])
+    elements = np.concatenate(each)
+    begins_m = ends_m - length_m[elements]
+    beside_m = np.minimum.outer(ends_m, ends_m) - np.maximum.outer(begins_m, begins_m)
+    track = np.repeat(np.arange(len(each)), [part.size for part in each])
+    other = track[:, None] != track[None, :]
+    impedance = np.where(other, section.mutual_ohm_per_m * np.maximum(0.0, beside_m), 0.0)
+    np.fill_diagonal(impedance, section.impedance_ohm_per_m * length_m[elements])
+    return elements, np.linalg.inv(impedance)
