@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.powerflow.groups import sections_of
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.outside import find_demands, find_residuals
 from tpss.powerflow.system import System
@@ -61,8 +62,8 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
             z, b = section.impedance_ohm_per_m * length, section.susceptance_s_per_m * length
             stamp(before, after, 0 if section.is_coupled else 1 / z, 1j * b)
             before = after
-    for size, group in zip(network.groups.size, network.groups.section, strict=True):
-        y += coupled_matrix([int(s) for s in group[:size]], len(y), network, flow)
+    for group in sections_of(network.groups):
+        y += coupled_matrix(group, len(y), network, flow)
     return y
 
 

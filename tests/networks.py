@@ -134,7 +134,13 @@ def side_by_side(
     tracks, pieces = len(nodes), len(points_m) - 1
     sections = [
         SectionPart(
-            of_track[i], of_track[i + 1], points_m[i], points_m[i + 1], impedance, susceptance, mutual
+            of_track[i],
+            of_track[i + 1],
+            points_m[i],
+            points_m[i + 1],
+            impedance,
+            susceptance,
+            mutual,
         )
         for of_track in nodes
         for i in range(pieces)

@@ -16,6 +16,7 @@ from tpss.audit.balances import ALLOWED_BALANCE
 from tpss.audit.verdict import JUDGED, Audit, judge, limits_of, usual_limits
 from tpss.driving.data import Braking, Driver, MotionModel
 from tpss.physics.constants import GRAVITY_M_S2
+from tpss.powerflow.groups import sections_of
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
 from tpss.run.run import Outcome, advance_to_end, outcome_of, run_of
 from tpss.sources.kinds import SourceKind
@@ -163,10 +164,10 @@ def _contact_line_currents(
     The points of a section, its nodes and the trains under it, are sorted by place at every instant.
     """
     drawn_a, leaving_a = np.zeros_like(train_v), np.zeros_like(node_v)
-    for size, group in zip(network.groups.size, network.groups.section, strict=True):
+    for group in sections_of(network.groups):
         for k in range(len(place_m)):
             _group_currents(
-                group[:size], section[k], place_m[k], train_v[k], node_v[k], network,
+                group, section[k], place_m[k], train_v[k], node_v[k], network,
                 drawn_a[k], leaving_a[k],
             )  # fmt: skip
     for s, part in enumerate(network.sections):
@@ -249,7 +250,10 @@ def _group_currents(
     for piece, current in zip(pieces, np.linalg.solve(impedance, drops), strict=True):
         _, begin_m, end_m, begin_v, end_v, begin, end = piece
         shunt = 0.5j * part.susceptance_s_per_m * (end_m - begin_m)
-        for (kind, number), leaving in ((begin, current + shunt * begin_v), (end, shunt * end_v - current)):
+        for (kind, number), leaving in (
+            (begin, current + shunt * begin_v),
+            (end, shunt * end_v - current),
+        ):
             if kind == "node":
                 leaving_a[number] += leaving
             else:

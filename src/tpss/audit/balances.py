@@ -4,13 +4,14 @@ The network's are those of `audit.network`, the trains' those of `audit.motion`.
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import magnitude
+from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Network
 from tpss.record import Record, Records
 from tpss.step.recording import Recording
@@ -87,7 +88,7 @@ class Piece(Record):
 
 
 class GroupScratch(NamedTuple):
-    """Scratch for groups of coupled sections."""
+    """Scratch for groups of coupled sections; an empty tuple if there are none."""
 
     first: npt.NDArray[np.int64]
     """First train of each section of the network, in the order of `Scratch.order`."""
@@ -119,8 +120,7 @@ class Scratch(NamedTuple):
 
 def new_scratch(network: Network, trains: int) -> Scratch:
     """Scratch for a network and so many trains."""
-    nodes, widest = network.source_of_node.size, network.groups.section.shape[1]
-    pieces = trains + widest if widest > 0 else 0
+    nodes = network.source_of_node.size
     return Scratch(
         balances=Balances.blank(1),
         leaving_a=np.zeros(nodes, dtype=complex),
@@ -128,13 +128,20 @@ def new_scratch(network: Network, trains: int) -> Scratch:
         order=np.arange(trains),
         section=np.zeros(trains, dtype=np.int64),
         place_m=np.zeros(trains),
-        groups=GroupScratch(
-            first=np.zeros(network.sections.size, dtype=np.int64),
-            conductors=Conductor.blank(widest),
-            front=np.zeros((widest, widest + 1), dtype=complex),
-            pieces=Piece.blank(pieces),
-            factors=np.zeros((pieces, widest + 1), dtype=complex),
-        ),
+        groups=_group_scratch(network, trains),
+    )
+
+
+def _group_scratch(network: Network, trains: int) -> GroupScratch:
+    if network.groups == NO_GROUPS:
+        return cast("GroupScratch", ())
+    widest = network.groups.section.shape[1]
+    return GroupScratch(
+        first=np.zeros(network.sections.size, dtype=np.int64),
+        conductors=Conductor.blank(widest),
+        front=np.zeros((widest, widest + 1), dtype=complex),
+        pieces=Piece.blank(trains + widest),
+        factors=np.zeros((trains + widest, widest + 1), dtype=complex),
     )
 
 

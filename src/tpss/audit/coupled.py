@@ -11,22 +11,43 @@ their ends, the pieces leave a front of as many equations as there are conductor
 these equations: it pushes voltages and currents.
 """
 
+from typing import Any
+
 from tpss.audit.balances import Scratch, audit_demand
-from tpss.kernel import inlined, kernel
+from tpss.kernel import inlined, where_any
 from tpss.numerics.pairs import scaled
+from tpss.powerflow.groups import Groups
 from tpss.powerflow.network import SHORTEST_PIECE_M, Network
 from tpss.powerflow.placing import is_unfed
 from tpss.step.model import Model
 from tpss.step.recording import Recording
 
 
-@kernel
+def _pass_nothing(_groups: Groups, _s: int, first: int, *_: Any) -> int:
+    """`pass_trains` where there are no groups."""
+    return first
+
+
+@where_any(without=_pass_nothing)
+def pass_trains(_groups: Groups, s: int, first: int, count: int, scratch: Scratch) -> int:
+    """Leave the trains under section `s`, from the first one on, for later; return the next train."""
+    scratch.groups.first[s] = k = first
+    while k < count and scratch.section[scratch.order[k]] == s:
+        k += 1
+    return k
+
+
+def _audit_nothing(*_: Any) -> None:
+    """`audit_groups` of no groups."""
+
+
+@where_any(without=_audit_nothing)
 def audit_groups(
-    step: int, count: int, model: Model, recording: Recording, scratch: Scratch
+    groups: Groups, step: int, count: int, model: Model, recording: Recording, scratch: Scratch
 ) -> None:
     """Mismatch of the trains under coupled sections, and their part of what leaves their nodes."""
     network = model.network
-    for g in range(network.groups.size.size):
+    for g in range(groups.size.size):
         n = _begin(g, count, network, scratch)
         pieces = _eliminate(step, n, count, network, recording, scratch)
         _substitute(step, pieces, n, network, recording, scratch)

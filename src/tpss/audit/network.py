@@ -2,16 +2,18 @@
 
 The solver pushes voltages and currents along chains; the audit starts from the recorded voltages, forms
 the current of every piece of line and every branch from the voltages at its ends (the nodal admittance
-equations; those of coupled sections in `coupled`), and compares the powers that this asks for with the recorded ones.  That a source's law is
-right is the business of its own tests; that the solution obeys it is the audit's.
+equations; of coupled sections see `coupled`), and compares the powers that this asks for with the
+recorded ones.  That a source's law is right is the business of its own tests; that the solution obeys it
+is the audit's.
 """
 
 import math
 
 from tpss.audit.balances import Scratch, audit_demand, worst
-from tpss.audit.coupled import audit_groups
+from tpss.audit.coupled import audit_groups, pass_trains
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
+from tpss.powerflow.coupled import is_coupled
 from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
 from tpss.powerflow.placing import is_unfed, section_at
 from tpss.record import Records
@@ -56,12 +58,11 @@ def audit_network(
     count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
-        if network.sections[s].is_coupled and not is_unfed(s, network):
-            k = _pass_trains(s, k, count, scratch)
+        if is_coupled(network.groups, network.sections[s]) and not is_unfed(s, network):
+            k = pass_trains(network.groups, s, k, count, scratch)
         else:
             k = _audit_section(step, s, k, count, model, recording, scratch)
-    if network.groups.size.size > 0:
-        audit_groups(step, count, model, recording, scratch)
+    audit_groups(network.groups, step, count, model, recording, scratch)
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
@@ -114,15 +115,6 @@ def _stands_behind(i: int, j: int, scratch: Scratch) -> bool:
         return scratch.section[i] > scratch.section[j]
     place_m, other_m = scratch.place_m[i], scratch.place_m[j]
     return place_m > other_m or (place_m == other_m and i > j)
-
-
-@inlined
-def _pass_trains(s: int, first: int, count: int, scratch: Scratch) -> int:
-    """Leave the trains of a coupled section to `audit.coupled`; return the next train."""
-    scratch.groups.first[s] = k = first
-    while k < count and scratch.section[scratch.order[k]] == s:
-        k += 1
-    return k
 
 
 @inlined

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tpss.powerflow.network import Flow, Network, Section
+from tpss.powerflow.groups import sections_of
+from tpss.powerflow.network import Flow, Network
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -102,12 +103,9 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
         impedance += [section.impedance_ohm_per_m * length_m for length_m in pieces_m]
         susceptance += [section.susceptance_s_per_m * length_m for length_m in pieces_m]
         last_piece.append(branches.size + len(start) - 1)
-    bounds = list(zip(first_piece, last_piece, strict=True))
     series_s = np.concatenate([1.0 / branches["impedance_ohm"], 1.0 / np.array(impedance)])
-    coupled = tuple(
-        _couple([bounds[s] for s in group[:size]], np.array([*([0.0] * branches.size), *length]), network.sections[group[0]])
-        for size, group in zip(network.groups.size, network.groups.section, strict=True)
-    )
+    bounds = list(zip(first_piece, last_piece, strict=True))
+    coupled = _coupled(bounds, np.concatenate([np.zeros(branches.size), length]), network)
     for elements, _ in coupled:
         series_s[elements] = 0.0
     return Grid(
@@ -122,10 +120,10 @@ def lay_out(count: int, network: Network, flow: Flow) -> Grid:
     )
 
 
-def _couple(
-    bounds: Sequence[tuple[int, int]], length_m: Floats, section: Section
-) -> tuple[Indices, Complexes]:
-    """Elements of sections side by side, and their admittance matrix. [S]
+def _coupled(
+    bounds: Sequence[tuple[int, int]], length_m: Floats, network: Network
+) -> tuple[tuple[Indices, Complexes], ...]:
+    """Elements of each group of sections side by side, and their admittance matrix. [S]
 
     Two of them have the impedance in common of the length along which they lie beside each other.
 
@@ -135,16 +133,19 @@ def _couple(
         First and last element of each section.
     length_m : Floats
         Length of each element of the grid. [m]
-    section : Section
-        One of them.
+    network : Network
     """
-    each = [np.arange(first, last + 1) for first, last in bounds]
-    ends_m = np.concatenate([np.cumsum(length_m[elements]) for elements in each])
-    elements = np.concatenate(each)
-    begins_m = ends_m - length_m[elements]
-    beside_m = np.minimum.outer(ends_m, ends_m) - np.maximum.outer(begins_m, begins_m)
-    track = np.repeat(np.arange(len(each)), [part.size for part in each])
-    other = track[:, None] != track[None, :]
-    impedance = np.where(other, section.mutual_ohm_per_m * np.maximum(0.0, beside_m), 0.0)
-    np.fill_diagonal(impedance, section.impedance_ohm_per_m * length_m[elements])
-    return elements, np.linalg.inv(impedance)
+    found: list[tuple[Indices, Complexes]] = []
+    for group in sections_of(network.groups):
+        section = network.sections[group[0]]
+        each = [np.arange(bounds[s][0], bounds[s][1] + 1) for s in group]
+        elements = np.concatenate(each)
+        ends_m = np.concatenate([np.cumsum(length_m[part]) for part in each])
+        begins_m = ends_m - length_m[elements]
+        beside_m = np.minimum.outer(ends_m, ends_m) - np.maximum.outer(begins_m, begins_m)
+        track = np.repeat(group, [part.size for part in each])
+        beside_m[(beside_m < 0.0) | (track[:, None] == track)] = 0.0
+        impedance = section.mutual_ohm_per_m * beside_m
+        np.fill_diagonal(impedance, section.impedance_ohm_per_m * length_m[elements])
+        found.append((elements, np.asarray(np.linalg.inv(impedance), dtype=np.complex128)))
+    return tuple(found)

@@ -27,22 +27,30 @@ A conductor that no source reaches carries no current, and none is induced in it
 """
 
 import math
+from typing import Any
 
-from tpss.kernel import at, fused, inlined, kernel, switch
+from tpss.kernel import at, fused, inlined, kernel, where_any
 from tpss.numerics.block_lu import Block
 from tpss.numerics.pair_matrix import eliminate
 from tpss.numerics.pairs import apply, compose, scaled, squared
-from tpss.powerflow.chain import CHECK, WARM, push_load, train_current
-from tpss.powerflow.groups import Conductor
-from tpss.powerflow.network import UNFED, Flow, Loads, Network
+from tpss.powerflow.chain import CHECK, LINKED, MOVED, WARM, Pass, push_load, train_current
+from tpss.powerflow.groups import Conductor, Groups
+from tpss.powerflow.network import UNFED, Flow, Loads, Network, Section
 
-LINKED, MOVED = switch(3), switch(4)
-"""Passes besides those of `chain.Pass`: as `WARM`, with the trains' currents on their tangents at the
-voltages of the state; and without derivatives, the state's voltages moved to those found.  See `linked`."""
+
+def _stands_alone(*_: Any) -> bool:
+    """`is_coupled` where there are no groups."""
+    return False
+
+
+@where_any(without=_stands_alone)
+def is_coupled(_groups: Groups, section: Section) -> bool:
+    """Whether a section is one of a group."""
+    return section.is_coupled
 
 
 @fused
-def has_derivatives(start: int) -> bool:
+def has_derivatives(start: Pass) -> bool:
     """Whether a pass has derivatives."""
     return start != CHECK and start != MOVED
 
@@ -58,7 +66,7 @@ def _begin_piece(conductor: Conductor, flow: Flow) -> None:
 
 
 @kernel
-def _begin(g: int, start: int, network: Network, flow: Flow) -> None:
+def _begin(g: int, start: Pass, network: Network, flow: Flow) -> None:
     """Put a group's conductors to its start, with the half shunts of their first pieces."""
     n, w = network.groups.size[at(g)], flow.groups.sensitivity
     w[:] = 0.0
@@ -134,12 +142,12 @@ def _push_piece(n: int, length_m: float, derivatives: bool, network: Network, fl
 
 @inlined
 def _pass_train(
-    m: int, n: int, scale: float, start: int, network: Network, flow: Flow, loads: Loads
+    m: int, n: int, scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
 ) -> None:
-    """The train at the next point of conductor `m`, and the half shunts of the pieces that meet there."""
+    """The train at the next point of conductor `m`, and the half shunts of both pieces there."""
     conductor, w = flow.groups.conductors[at(m)], flow.groups.sensitivity
     place = flow.standing[at(conductor.next)]
-    linked = start == LINKED or start == MOVED
+    linked = start >= LINKED
     load, y1, y2 = train_current(
         place.train,
         place.voltage_v if linked else conductor.voltage_v,
@@ -170,10 +178,13 @@ def _pass_train(
 
 
 @inlined
-def _end(m: int, n: int, start: int, network: Network, flow: Flow) -> None:
+def _end(m: int, n: int, start: Pass, network: Network, flow: Flow) -> None:
     """The end of conductor `m`, and the half shunt of the piece before it."""
     conductor, w = flow.groups.conductors[at(m)], flow.groups.sensitivity
-    section, solution = network.sections[at(conductor.section)], flow.sections[at(conductor.section)]
+    section, solution = (
+        network.sections[at(conductor.section)],
+        flow.sections[at(conductor.section)],
+    )
     shunt = complex(0.0, 0.5 * section.susceptance_s_per_m * conductor.piece_m)
     solution.end_current_a = conductor.current_a - shunt * conductor.voltage_v
     solution.gap_v = conductor.voltage_v - flow.nodes[at(section.end_node)].voltage_v
@@ -188,7 +199,7 @@ def _end(m: int, n: int, start: int, network: Network, flow: Flow) -> None:
 
 @inlined
 def _push_group(
-    g: int, scale: float, start: int, network: Network, flow: Flow, loads: Loads
+    g: int, scale: float, start: Pass, network: Network, flow: Flow, loads: Loads
 ) -> None:
     """Push the conductors of group `g` from their starts to their ends, and join them to their nodes."""
     _begin(g, start, network, flow)
@@ -243,40 +254,45 @@ def _stamp_group(g: int, network: Network, flow: Flow) -> float:
                 p, q = compose(d_p, d_q, rows[i, 2 * n + j, 0], rows[i, 2 * n + j, 1])
                 dba_p, dba_q = dba_p + p, dba_q + q
             _add(flow.blocks[at(place[n + k, n + j])], -db_p, -db_q)
-            _add(
-                flow.blocks[at(place[n + k, j])], dba_p - w[1, k, j, 0], dba_q - w[1, k, j, 1]
-            )
+            _add(flow.blocks[at(place[n + k, j])], dba_p - w[1, k, j, 0], dba_q - w[1, k, j, 1])
             end.right_side -= apply(db_p, db_q, gap_v)
     return sign
 
 
-@kernel
-def evaluate_groups(
-    scale: float, start: int, network: Network, flow: Flow, loads: Loads
+def _no_more_gaps(
+    _groups: Groups, largest: float, merit: float, sign: float, *_: Any
 ) -> tuple[float, float, float]:
+    """`evaluate_groups` of no groups."""
+    return largest, merit, sign
+
+
+@where_any(without=_no_more_gaps)
+def evaluate_groups(
+    groups: Groups, largest: float, merit: float, sign: float, scale: float, start: Pass,
+    network: Network, flow: Flow, loads: Loads,
+) -> tuple[float, float, float]:  # fmt: skip
     """Push all groups of coupled sections, and join them to their nodes.
 
     Parameters
     ----------
+    groups : Groups
+        Those of the network.
+    largest, merit, sign : float
+        Of the sections that stand alone: the largest square of the power that a gap causes, the sum of
+        squares of the gaps, both in per unit, and the sign of their determinants.
     scale : float
         Factor on all loads. [1]
-    start : int
-        A `chain.Pass`, `LINKED` or `MOVED`.
+    start : Pass
 
     Returns
     -------
-    largest : float
-        Largest square of the power that a gap causes. [p.u.]
-    merit : float
-        Sum of the squares of the gaps. [p.u.]
-    sign : float
-        Sign of the product of their determinants, if there are derivatives.
+    largest, merit, sign : float
+        Of all sections; the sign only of passes with derivatives.
     """
-    largest, merit, sign = 0.0, 0.0, 1.0
-    for g in range(network.groups.size.size):
+    for g in range(groups.size.size):
         _push_group(g, scale, start, network, flow, loads)
-        for k in range(network.groups.size[at(g)]):
-            s = network.groups.section[at(g), at(k)]
+        for k in range(groups.size[at(g)]):
+            s = groups.section[at(g), at(k)]
             square = squared(flow.sections[at(s)].gap_v) * network.system.per_square_volt
             largest = max(largest, square * network.sections[at(s)].gap_weight)
             merit += square
@@ -285,19 +301,36 @@ def evaluate_groups(
     return largest, merit, sign
 
 
-@kernel
-def direct_groups(network: Network, flow: Flow) -> None:
-    """Newton steps of the currents that enter the groups' sections, once those of the nodes are known."""
-    for g in range(network.groups.size.size):
-        n = network.groups.size[at(g)]
+def _no_more_directions(*_: Any) -> None:
+    """`direct_groups` of no groups."""
+
+
+@where_any(without=_no_more_directions)
+def direct_groups(groups: Groups, network: Network, flow: Flow) -> None:
+    """Newton steps of the currents that enter the sections of groups, from those of the nodes."""
+    for g in range(groups.size.size):
+        n = groups.size[at(g)]
         for k in range(n):
-            change_a = 0j
+            change_a, row = 0j, flow.groups.rows[at(g), k]
             for j in range(n):
-                s, row = network.groups.section[at(g), at(j)], flow.groups.rows[at(g), k]
+                s = groups.section[at(g), at(j)]
                 section, gap_v = network.sections[at(s)], flow.sections[at(s)].gap_v
                 start_v = flow.nodes[at(section.start_node)].direction_v
                 end_v = flow.nodes[at(section.end_node)].direction_v
                 change_a += apply(row[n + j, 0], row[n + j, 1], end_v - gap_v)
                 change_a -= apply(row[2 * n + j, 0], row[2 * n + j, 1], start_v)
-            s = network.groups.section[at(g), at(k)]
-            flow.sections[at(s)].direction_a = change_a
+            flow.sections[at(groups.section[at(g), at(k)])].direction_a = change_a
+
+
+def _no_losses(*_: Any) -> float:
+    """`losses_of_groups` of no groups. [W]"""
+    return 0.0
+
+
+@where_any(without=_no_losses)
+def losses_of_groups(groups: Groups, flow: Flow) -> float:
+    """Losses of all groups at the last evaluation. [W]"""
+    lost_w = 0.0
+    for g in range(groups.size.size):
+        lost_w += flow.groups.lost_w[at(g)]
+    return lost_w

@@ -1,13 +1,13 @@
 """Groups of sections side by side whose currents induce voltages in each other, as arrays.
 
 The sections of a group begin at one place and end at one place, have the same impedance z_s and
-susceptance, and any two of them the same common impedance z_m.  What is constant stands in `Groups`, what
-a solution finds, and scratch, in `GroupFlow`; see `coupled` for the equations.
+susceptance, and any two of them the same common impedance z_m.  What is constant stands in `Groups`;
+what a solution finds, and scratch, in `GroupFlow`.  The equations are those of `coupled`.
 """
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,10 @@ Indices = npt.NDArray[np.int64]
 
 
 class Groups(NamedTuple):
-    """Groups of coupled sections; those of fewer sections than the widest one leave places unused."""
+    """Groups of coupled sections; those of fewer sections than the widest one leave places unused.
+
+    A network without any has an empty tuple in its place, see `kernel.where_any`.
+    """
 
     size: Indices
     """Number of sections of each group."""
@@ -53,7 +56,7 @@ class Conductor(Record):
 
 
 class GroupFlow(NamedTuple):
-    """State of the groups, and scratch."""
+    """State of the groups, and scratch; an empty tuple if there are none."""
 
     conductors: Records[Conductor]
     """Of the group that is being pushed."""
@@ -65,6 +68,16 @@ class GroupFlow(NamedTuple):
     solved, [1 | B⁻¹ | B⁻¹A]."""
     lost_w: Floats
     """Losses of each group. [W]"""
+
+
+NO_GROUPS, NO_GROUP_FLOW = cast("Groups", ()), cast("GroupFlow", ())
+
+
+def sections_of(groups: Groups) -> list[list[int]]:
+    """Numbers of the sections of each group."""
+    if groups == NO_GROUPS:
+        return []
+    return [group[:size].tolist() for size, group in zip(groups.size, groups.section, strict=True)]
 
 
 def edges_within(
@@ -87,7 +100,9 @@ def groups_of(groups: Sequence[Sequence[int]], sections: Sequence[tuple[int, int
     place : mapping
         Place of the block of each two nodes.
     """
-    widest = max((len(group) for group in groups), default=0)
+    if not groups:
+        return NO_GROUPS
+    widest = max(len(group) for group in groups)
     section = np.zeros((len(groups), widest), dtype=np.int64)
     places = np.zeros((len(groups), 2 * widest, 2 * widest), dtype=np.int64)
     for g, group in enumerate(groups):
@@ -104,6 +119,8 @@ def _nodes(group: Sequence[int], sections: Sequence[tuple[int, int]]) -> list[in
 
 def new_group_flow(groups: Groups) -> GroupFlow:
     """State of groups before anything is known of them."""
+    if groups == NO_GROUPS:
+        return NO_GROUP_FLOW
     count, widest = groups.section.shape
     return GroupFlow(
         conductors=Conductor.blank(widest),

@@ -61,9 +61,7 @@ def _stretches(
     """Stretches of a line, as far as it tells them."""
     counts = _counts(line, ends)
     others = [
-        each
-        for _, each in items(supply, "contact_lines")
-        if alone or each.get("line") == name
+        each for _, each in items(supply, "contact_lines") if alone or each.get("line") == name
     ]
     borders = {*ends, *(km for begin, end, _ in counts for km in (begin, end))}
     borders |= {km for each in others for km in _span(each)}

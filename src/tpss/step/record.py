@@ -10,6 +10,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
+from tpss.powerflow.coupled import is_coupled, losses_of_groups
 from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
@@ -220,10 +221,9 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        if not network.sections[at(s)].is_coupled:
+        if not is_coupled(network.groups, network.sections[at(s)]):
             lost_w += section_losses(s, network, flow)
-    for g in range(network.groups.size.size):
-        lost_w += flow.groups.lost_w[at(g)]
+    lost_w += losses_of_groups(network.groups, flow)
     recording.network_losses[at(step)] = lost_w
 
 
