@@ -5,6 +5,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from tpss import library
 from tpss.scenario.routes import NoWayError, find_way, hops_of
 
 from .ranges import numbers
@@ -94,6 +95,7 @@ def _lay_tracks(draw: Draw, document: Document) -> None:
     if not double:
         return
     supply["tracks_tied"] = tied = draw(st.sampled_from(["everywhere", "posts", "no"]))
+    _couple(draw, supply)
     if tied == "posts":
         name = draw(st.sampled_from(double))
         line = network[name]
@@ -107,6 +109,22 @@ def _lay_tracks(draw: Draw, document: Document) -> None:
             and line["tracks"][1]["from_km"] < (supply["posts"][0]["position_km"])
         ):
             del supply["posts"]
+
+
+def _couple(draw: Draw, supply: Document) -> None:
+    """Let the contact lines of two tracks have something in common: nothing, some, or nearly all."""
+    share = draw(st.sampled_from([0.0, 0.0, 0.1, 0.3, 0.6, 0.95]))
+    catenary = supply["catenary"]
+    if share == 0.0:
+        return
+    if isinstance(catenary, str):
+        catenary = dict(library.entries("catenaries")[catenary])
+        del catenary["source"]
+    for axis in ("r", "x"):
+        own = catenary[f"{axis}_ohm_per_km"]
+        if draw(st.booleans()):
+            catenary[f"mutual_{axis}_ohm_per_km"] = share * own
+    supply["catenary"] = catenary
 
 
 def _service(draw: Draw, i: int, document: Document) -> Document | None:

@@ -119,6 +119,55 @@ def test_tracks_that_are_tied_often_come_close_to_those_that_are_tied_everywhere
     assert gaps[1] < gaps[0] / 5.0
 
 
+def test_least_squares_of_the_mismatches_agree_on_coupled_tracks():
+    document = with_posts(double_track("posts", **COMMON, capacitance_nf_per_km=10.0), 12.0, 25.0)
+    document["simulation"] = {"duration_min": 12.0, "time_step_min": 1.0}
+    equations = run(document)
+    document["simulation"]["load_flow"] = "least-squares"
+    squares = run(document)
+    for name in ("pantograph_voltage", "node_voltage", "network_losses"):
+        np.testing.assert_allclose(squares.dataset[name], equations.dataset[name], rtol=1e-6)
+
+
+def test_a_dead_part_of_coupled_tracks_carries_nothing_and_the_rest_goes_on():
+    """Parted at km 15 with the far station out for a while: trains beyond have no voltage then."""
+    document = double_track("no", **COMMON)
+    document["supply"]["section_breaks"] = [
+        {"name": "B", "line": "main", "position_km": 15.0, "closed": False}
+    ]
+    document["outages"] = [{"name": "far", "stations": ["end"], "from_min": 5.0, "to_min": 12.0}]
+    result = tpss.simulate(scenario_of(document).with_outage("far"))
+    assert result.audit["passed"], result.audit["failures"]
+    data = result.dataset
+    km, volts = data.position.to_numpy() / 1e3, data.pantograph_voltage.to_numpy()
+    minute = data.time.to_numpy()[:, None] / 60.0
+    out = (minute >= 5.0) & (minute < 12.0)
+    assert (out & (km > 15.1)).any()
+    assert (volts[out & (km > 15.1)] == 0.0).all()
+    assert (out & (km < 14.9)).any()
+    assert (volts[out & (km < 14.9)] > 10e3).all()
+    assert (volts[~out & np.isfinite(volts)] > 10e3).all()
+
+
+def test_a_coupled_line_seen_from_its_other_end_is_the_same():
+    """Kilometres and tracks turned round: km -> 40 - km, up is down.
+
+    But for a metre by which trains beside a node count as further away, from that end on.
+    """
+    there = double_track("posts", **COMMON)
+    back = copy.deepcopy(there)
+    main = back["lines"]["main"]
+    main["stations"] = [{"name": "B", "position_km": 0.0}, {"name": "A", "position_km": 40.0}]
+    for document, km in ((there, 12.0), (back, 28.0)):
+        with_posts(document, km)
+    for station, km in zip(back["supply"]["converter_stations"], (40.0, 0.0), strict=True):
+        station["position_km"] = km
+    one, other = run(there).dataset, run(back).dataset
+    np.testing.assert_allclose(one.pantograph_voltage, other.pantograph_voltage, rtol=1e-6)
+    apart = abs(one.pantograph_voltage - other.pantograph_voltage).median()
+    assert float(apart) < 1e-6
+
+
 def test_a_post_that_is_open_ties_nothing():
     open_post = run(with_posts(double_track("posts"), 20.0, closed=False))
     without = run(double_track("no"))

@@ -17,8 +17,7 @@ from tpss.audit.balances import Scratch, audit_demand
 from tpss.kernel import inlined, where_any
 from tpss.numerics.pairs import scaled
 from tpss.powerflow.groups import Groups
-from tpss.powerflow.network import SHORTEST_PIECE_M, Network
-from tpss.powerflow.placing import is_unfed
+from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED, Network
 from tpss.step.model import Model
 from tpss.step.recording import Recording
 
@@ -63,7 +62,7 @@ def _begin(g: int, count: int, network: Network, scratch: Scratch) -> int:
     n = 0
     for j in range(network.groups.size[g]):
         s = network.groups.section[g, j]
-        if is_unfed(s, network):
+        if network.source_of_node[network.sections[s].start_node] == UNFED:
             continue
         conductor = scratch.groups.conductors[n]
         conductor.section, conductor.next = s, scratch.groups.first[s]
