@@ -53,14 +53,15 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
 
     for branch in network.branches:
         stamp(branch.start_node, branch.end_node, 1 / branch.impedance_ohm, 0)
-    for section, found in zip(network.sections, flow.sections, strict=True):
+    coupled = {s for group in sections_of(network.groups) for s in group}
+    for s, (section, found) in enumerate(zip(network.sections, flow.sections, strict=True)):
         before = section.start_node
         for k in range(found.first, found.end + 1):
             last = k == found.end
             length = found.closing_m if last else flow.standing[k].piece_m
             after = section.end_node if last else n + k
             z, b = section.impedance_ohm_per_m * length, section.susceptance_s_per_m * length
-            stamp(before, after, 0 if section.is_coupled else 1 / z, 1j * b)
+            stamp(before, after, 0 if s in coupled else 1 / z, 1j * b)
             before = after
     for group in sections_of(network.groups):
         y += coupled_matrix(group, len(y), network, flow)
@@ -100,7 +101,7 @@ def coupled_matrix(group: list[int], size: int, network: Network, flow: Flow) ->
     section = network.sections[group[0]]
     for i, (begin_m, end_m) in enumerate(pairwise(cuts)):
         there = [k for k in range(len(group)) if i + 1 < len(node[k])]
-        z = np.full((len(there),) * 2, section.mutual_ohm_per_m)
+        z = np.full((len(there),) * 2, network.groups.mutual_ohm_per_m[group[0]])
         np.fill_diagonal(z, section.impedance_ohm_per_m)
         piece = np.linalg.inv(z * (end_m - begin_m))
         a, b = ([node[k][j] for k in there] for j in (i, i + 1))

@@ -171,7 +171,7 @@ def _contact_line_currents(
                 drawn_a[k], leaving_a[k],
             )  # fmt: skip
     for s, part in enumerate(network.sections):
-        if part.is_coupled:
+        if any(s in group for group in sections_of(network.groups)):
             continue
         under = np.isfinite(train_v) & (section == s)
         ends_m = np.ones((len(place_m), 1))
@@ -245,7 +245,7 @@ def _group_currents(
             if i == j:
                 impedance[i, j] = part.impedance_ohm_per_m * (end_m - begin_m)
             elif other != s and beside_m > 0.0:
-                impedance[i, j] = part.mutual_ohm_per_m * beside_m
+                impedance[i, j] = network.groups.mutual_ohm_per_m[s] * beside_m
     drops = np.array([piece[3] - piece[4] for piece in pieces])
     for piece, current in zip(pieces, np.linalg.solve(impedance, drops), strict=True):
         _, begin_m, end_m, begin_v, end_v, begin, end = piece

@@ -131,15 +131,16 @@ def _eliminate(
 def _go_on(length_m: float, n: int, network: Network, scratch: Scratch) -> None:
     """Add a length of all open conductors to their equations. [m]"""
     conductors, front = scratch.groups.conductors, scratch.groups.front
-    section = network.sections[conductors[0].section]
+    s = conductors[0].section
+    own, common = network.sections[s].impedance_ohm_per_m, network.groups.mutual_ohm_per_m[s]
     for k in range(n):
         if conductors[k].is_open:
             conductors[k].ahead_m -= length_m
             for j in range(n):
                 if j == k:
-                    front[k, j] += scaled(section.impedance_ohm_per_m, length_m)
+                    front[k, j] += scaled(own, length_m)
                 elif conductors[j].is_open:
-                    front[k, j] += scaled(section.mutual_ohm_per_m, length_m)
+                    front[k, j] += scaled(common, length_m)
 
 
 @inlined

@@ -58,7 +58,7 @@ def audit_network(
     count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, network.sections[s]) and not is_unfed(s, network):
+        if is_coupled(network.groups, s) and not is_unfed(s, network):
             k = pass_trains(network.groups, s, k, count, scratch)
         else:
             k = _audit_section(step, s, k, count, model, recording, scratch)

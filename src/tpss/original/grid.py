@@ -145,7 +145,7 @@ def _coupled(
         beside_m = np.minimum.outer(ends_m, ends_m) - np.maximum.outer(begins_m, begins_m)
         track = np.repeat(group, [part.size for part in each])
         beside_m[(beside_m < 0.0) | (track[:, None] == track)] = 0.0
-        impedance = section.mutual_ohm_per_m * beside_m
+        impedance = network.groups.mutual_ohm_per_m[group[0]] * beside_m
         np.fill_diagonal(impedance, section.impedance_ohm_per_m * length_m[elements])
         found.append((elements, np.asarray(np.linalg.inv(impedance), dtype=np.complex128)))
     return tuple(found)

@@ -35,7 +35,7 @@ from tpss.numerics.pair_matrix import eliminate
 from tpss.numerics.pairs import apply, compose, scaled, squared
 from tpss.powerflow.chain import CHECK, LINKED, MOVED, WARM, Pass, push_load, train_current
 from tpss.powerflow.groups import Conductor, Groups
-from tpss.powerflow.network import UNFED, Flow, Loads, Network, Section
+from tpss.powerflow.network import UNFED, Flow, Loads, Network
 
 
 def _stands_alone(*_: Any) -> bool:
@@ -44,9 +44,9 @@ def _stands_alone(*_: Any) -> bool:
 
 
 @where_any(without=_stands_alone)
-def is_coupled(_groups: Groups, section: Section) -> bool:
-    """Whether a section is one of a group."""
-    return section.is_coupled
+def is_coupled(groups: Groups, s: int) -> bool:
+    """Whether section `s` is one of a group."""
+    return bool(groups.is_coupled[at(s)])
 
 
 @fused
@@ -107,7 +107,7 @@ def _push_piece(n: int, length_m: float, derivatives: bool, network: Network, fl
     """Push all conductors of a group over a piece between neighbouring points; return its losses. [W]"""
     conductors, w = flow.groups.conductors, flow.groups.sensitivity
     section = network.sections[at(conductors[0].section)]
-    common = scaled(section.mutual_ohm_per_m, length_m)
+    common = scaled(network.groups.mutual_ohm_per_m[at(conductors[0].section)], length_m)
     whole = scaled(section.impedance_ohm_per_m, length_m)
     total, squares = 0j, 0.0
     for k in range(n):

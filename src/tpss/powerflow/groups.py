@@ -17,6 +17,7 @@ from tpss.record import Record, Records
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 
 class Groups(NamedTuple):
@@ -25,6 +26,10 @@ class Groups(NamedTuple):
     A network without any has an empty tuple in its place, see `kernel.where_any`.
     """
 
+    is_coupled: Flags
+    """Whether each section of the network is one of a group."""
+    mutual_ohm_per_m: Complexes
+    """Impedance that each section has in common with any other of its group. [Ω/m]"""
     size: Indices
     """Number of sections of each group."""
     section: Indices
@@ -88,8 +93,12 @@ def edges_within(
     return [pair for each in nodes for pair in combinations(each, 2)]
 
 
-def groups_of(groups: Sequence[Sequence[int]], sections: Sequence[tuple[int, int]],
-              place: Mapping[tuple[int, int], int]) -> Groups:  # fmt: skip
+def groups_of(
+    groups: Sequence[Sequence[int]],
+    sections: Sequence[tuple[int, int]],
+    place: Mapping[tuple[int, int], int],
+    mutual_ohm_per_m: Sequence[complex],
+) -> Groups:
     """Groups from the numbers of their sections.
 
     Parameters
@@ -99,6 +108,8 @@ def groups_of(groups: Sequence[Sequence[int]], sections: Sequence[tuple[int, int
         Start and end node of each section of the network.
     place : mapping
         Place of the block of each two nodes.
+    mutual_ohm_per_m : sequence of complex
+        What each section has in common with any other of its group. [Ω/m]
     """
     if not groups:
         return NO_GROUPS
@@ -109,7 +120,13 @@ def groups_of(groups: Sequence[Sequence[int]], sections: Sequence[tuple[int, int
         section[g, : len(group)] = group
         nodes = _nodes(group, sections)
         places[g, : len(nodes), : len(nodes)] = [[place[a, b] for b in nodes] for a in nodes]
-    return Groups(np.array([len(group) for group in groups], dtype=np.int64), section, places)
+    return Groups(
+        is_coupled=np.isin(np.arange(len(sections)), np.concatenate([*groups])),
+        mutual_ohm_per_m=np.array(mutual_ohm_per_m, dtype=complex),
+        size=np.array([len(group) for group in groups], dtype=np.int64),
+        section=section,
+        place=places,
+    )
 
 
 def _nodes(group: Sequence[int], sections: Sequence[tuple[int, int]]) -> list[int]:

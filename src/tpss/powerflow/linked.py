@@ -110,7 +110,7 @@ def _evaluate_linked(
     begin_pass(not moves, network, flow)
     largest, merit = 0.0, 0.0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, network.sections[at(s)]):
+        if is_coupled(network.groups, s):
             continue
         end_v = run_linked_chain(s, scale, moves, network, flow, loads)
         square, _ = join_section(s, end_v, not moves, network, flow)

@@ -89,8 +89,6 @@ class Section(Record):
     """Series impedance. [Ω/m]"""
     susceptance_s_per_m: float
     """Shunt susceptance. [S/m]"""
-    mutual_ohm_per_m: complex
-    """Impedance in common with each other section of its group, if it has one. [Ω/m]"""
     block_aa: int
     """Place of the block (start node, start node)."""
     block_ab: int
@@ -101,8 +99,6 @@ class Section(Record):
     """Place of the block (end node, end node)."""
     gap_weight: float
     """Square of the power at its ends that a gap causes, both in per unit. [1]"""
-    is_coupled: bool
-    """Whether it is one of a group."""
 
 
 class Branch(Record):
@@ -361,7 +357,6 @@ def assemble(
         a, b = part.start_node, part.end_node
         return place[a, a], place[a, b], place[b, a], place[b, b]
 
-    coupled = {s for group in groups for s in group}
     admittance_s = np.zeros(len(place), dtype=complex)
     for part in branches:
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
@@ -369,8 +364,7 @@ def assemble(
     return Network(
         system=system,
         sections=Section.array(
-            (*part, *blocks(part), gap_weight(part.shortest_ohm, system), s in coupled)
-            for s, part in enumerate(sections)
+            (*part[:-1], *blocks(part), gap_weight(part.shortest_ohm, system)) for part in sections
         ),
         branches=Branch.array((*part, 1.0 / part.impedance_ohm) for part in branches),
         sources=sources,
@@ -378,7 +372,7 @@ def assemble(
         pattern=pattern,
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
-        groups=groups_of(groups, ends, place),
+        groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
     )
 
 

@@ -238,7 +238,7 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, network.sections[at(s)]):
+        if is_coupled(network.groups, s):
             continue
         end_v = run_chain(s, scale, start, network, flow, loads)
         square, side = join_section(s, end_v, derivatives, network, flow)

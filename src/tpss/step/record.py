@@ -221,7 +221,7 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        if not is_coupled(network.groups, network.sections[at(s)]):
+        if not is_coupled(network.groups, s):
             lost_w += section_losses(s, network, flow)
     lost_w += losses_of_groups(network.groups, flow)
     recording.network_losses[at(step)] = lost_w
