@@ -21,7 +21,7 @@ matrices of pairs, the gaps g = E - V_b at the ends of all conductors give what 
     A δV_a + B δI + g = δV_b       δI = B⁻¹ (δV_b - A δV_a - g)
     end currents:  C δV_a + D δI
 
-blocks between all nodes of the group.  A train costs 2 n² pushes of a pair in place of four.
+blocks between all nodes of the group.  A train costs 2 n² + 2 n pairs in place of four.
 
 A conductor that no source reaches carries no current, and none is induced in it: it is open somewhere.
 """
