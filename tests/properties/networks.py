@@ -111,20 +111,20 @@ def _lay_tracks(draw: Draw, document: Document) -> None:
             del supply["posts"]
 
 
+COMMON = [(0.0, 0.0), (0.1, 0.3), (0.3, 0.0), (0.0, 0.6), (0.95, 0.95)]
+"""Shares of resistance and reactance that the contact lines of two tracks have in common. [1]"""
+
+
 def _couple(draw: Draw, supply: Document) -> None:
     """Let the contact lines of two tracks have something in common: nothing, some, or nearly all."""
-    share = draw(st.sampled_from([0.0, 0.0, 0.1, 0.3, 0.6, 0.95]))
     catenary = supply["catenary"]
-    if share == 0.0:
-        return
     if isinstance(catenary, str):
         catenary = dict(library.entries("catenaries")[catenary])
         del catenary["source"]
-    for axis in ("r", "x"):
-        own = catenary[f"{axis}_ohm_per_km"]
-        if draw(st.booleans()):
-            catenary[f"mutual_{axis}_ohm_per_km"] = share * own
-    supply["catenary"] = catenary
+    for axis, share in zip(("r", "x"), draw(st.sampled_from(COMMON)), strict=True):
+        if share > 0.0:
+            catenary[f"mutual_{axis}_ohm_per_km"] = share * catenary[f"{axis}_ohm_per_km"]
+            supply["catenary"] = catenary
 
 
 def _service(draw: Draw, i: int, document: Document) -> Document | None:

@@ -107,9 +107,8 @@ def build_supply(supply: Supply, lines: tuple[LineLayout, ...]) -> tuple[Network
     """
     plan = plan_supply(supply, lines)
     sources = build_sources(plan.sources, supply.stations)
-    network = assemble(
-        len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply), plan.coupled
-    )
+    parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
+    network = assemble(*parts, groups=plan.coupled)
     return mark_unfed(network), plan
 
 
