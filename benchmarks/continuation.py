@@ -15,11 +15,13 @@ which the line can carry.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from tpss.powerflow.groups import sections_of
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.outside import find_demands, find_residuals
 from tpss.powerflow.system import System
@@ -31,6 +33,9 @@ CONVERGED, MOST_ITERATIONS = 1e-9, 8
 ROUNDINGS = 4
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.05, 0.1, 1e-6
 LARGEST_CORRECTION = 0.02
+SAME_PLACE_M = 1e-9
+"""Points of conductors side by side that are closer are one. [m]"""
+
 SLIGHTLY = 1e-6
 """Of base voltage and base current: differences of the sources' laws. [p.u.]"""
 
@@ -48,16 +53,71 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
 
     for branch in network.branches:
         stamp(branch.start_node, branch.end_node, 1 / branch.impedance_ohm, 0)
-    for section, found in zip(network.sections, flow.sections, strict=True):
+    coupled = {s for group in sections_of(network.groups) for s in group}
+    for s, (section, found) in enumerate(zip(network.sections, flow.sections, strict=True)):
         before = section.start_node
         for k in range(found.first, found.end + 1):
             last = k == found.end
             length = found.closing_m if last else flow.standing[k].piece_m
             after = section.end_node if last else n + k
             z, b = section.impedance_ohm_per_m * length, section.susceptance_s_per_m * length
-            stamp(before, after, 1 / z, 1j * b)
+            stamp(before, after, 0 if s in coupled else 1 / z, 1j * b)
             before = after
+    for group in sections_of(network.groups):
+        y += coupled_matrix(group, len(y), network, flow)
     return y
+
+
+def points_of(s: int, network: Network, flow: Flow) -> list[tuple[float, int]]:
+    """Nodes of a section, the trains under it among them, and how far each is from its start. [m]"""
+    section, found = network.sections[s], flow.sections[s]
+    pieces_m = [*flow.standing["piece_m"][found.first : found.end], found.closing_m]
+    trains = range(len(flow.nodes) + found.first, len(flow.nodes) + found.end)
+    return list(
+        zip(
+            np.cumsum([0.0, *pieces_m]).tolist(),
+            [int(section.start_node), *trains, int(section.end_node)],
+            strict=True,
+        )
+    )
+
+
+def coupled_matrix(group: list[int], size: int, network: Network, flow: Flow) -> Complexes:
+    """Series admittances of sections side by side, whose currents induce voltages in each other. [S]
+
+    Every conductor has a node at every point of all of them; on a piece between two such points the
+    conductors have a matrix of impedances.  Nodes at which nothing is connected are eliminated.
+    """
+    points = [points_of(s, network, flow) for s in group]
+    cuts = sorted(m for each in points for m, _ in each)
+    cuts = [m for i, m in enumerate(cuts) if i == 0 or m - cuts[i - 1] > SAME_PLACE_M]
+    own = [{_nearest(m, cuts): node for m, node in each} for each in points]
+    count, node = size, []
+    for each in own:
+        last = max(each)
+        node.append([each.get(i, count + i) for i in range(last + 1)])
+        count += last + 1
+    y = np.zeros((count, count), dtype=complex)
+    section = network.sections[group[0]]
+    for i, (begin_m, end_m) in enumerate(pairwise(cuts)):
+        there = [k for k in range(len(group)) if i + 1 < len(node[k])]
+        z = np.full((len(there),) * 2, network.groups.mutual_ohm_per_m[group[0]])
+        np.fill_diagonal(z, section.impedance_ohm_per_m)
+        piece = np.linalg.inv(z * (end_m - begin_m))
+        a, b = ([node[k][j] for k in there] for j in (i, i + 1))
+        for rows, columns, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+            np.add.at(y, (np.array(rows)[:, None], np.array(columns)[None, :]), sign * piece)
+    used = np.flatnonzero(np.abs(y).sum(axis=1) > 0.0)
+    inner = used[used >= size]
+    outer = np.arange(size)
+    if inner.size == 0:
+        return y[:size, :size]
+    through = np.linalg.solve(y[np.ix_(inner, inner)], y[np.ix_(inner, outer)])
+    return np.asarray(y[:size, :size] - y[np.ix_(outer, inner)] @ through)
+
+
+def _nearest(place_m: float, cuts: list[float]) -> int:
+    return int(np.argmin(np.abs(np.array(cuts) - place_m)))
 
 
 @dataclass(frozen=True)

@@ -54,3 +54,30 @@ STAR = {
     "branch": line(30.0, {"Fork": 100.0, "Mine": 130.0}, begins_at_km=100.0),
 }
 """A branch that leaves a main line 20 km before its end."""
+
+KIND = {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.15}
+
+BOTH_WAYS = [
+    service("up", "A", "B", departures_min=[0.0, 6.0]),
+    service("down", "B", "A", departures_min=[0.0, 4.0]),
+]
+
+
+def double_track(
+    tied: str | None, traffic: list[dict[str, Any]] = BOTH_WAYS, tracks: Any = 2, **kind: float
+) -> dict[str, Any]:
+    """40 km of two tracks between two stations."""
+    document = network({"main": line(40.0, {"A": 0.0, "B": 40.0}, tracks=tracks)}, traffic)
+    document["supply"]["catenary"] = {**KIND, **kind}
+    end = {"name": "end", "line": "main", "position_km": 40.0, "type": "Q48/Q49", "converters": 2}
+    document["supply"]["converter_stations"].append(end)
+    if tied is not None:
+        document["supply"]["tracks_tied"] = tied
+    return document
+
+
+def with_posts(document: dict[str, Any], *places_km: float, **more: Any) -> dict[str, Any]:
+    document["supply"]["posts"] = [
+        {"name": f"P{km:g}", "line": "main", "position_km": km, **more} for km in places_km
+    ]
+    return document

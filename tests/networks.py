@@ -1,8 +1,10 @@
 """Small supply networks with constant loads, for tests of the load flow."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import fsolve
 
 from tpss.powerflow.network import (
     BranchPart,
@@ -17,11 +19,13 @@ from tpss.powerflow.network import (
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.system import system
 from tpss.record import Records
-from tpss.sources.converter import ConverterLaw
+from tpss.sources.converter import ConverterLaw, terminal_voltage
 from tpss.sources.kinds import Source, SourceKind
-from tpss.track.leg import along_one_line
+from tpss.track.leg import Leg, along_one_line
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
+
+from continuation import admittance_matrix
 
 SYSTEM = system(15e3, 16.5e3, 10e6, 16.7, 0.5, 1.2)
 """15 kV, 16.7 Hz, with the base quantities of the thesis."""
@@ -105,11 +109,12 @@ def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     return loads_alone(trains, types)
 
 
-def place(network: Network, loads: Loads) -> Case:
-    """Put the trains of `loads` onto the line."""
+def place(network: Network, loads: Loads, legs: Records[Leg] | None = None) -> Case:
+    """Put the trains of `loads` onto the line, or onto the legs of their routes."""
     count = loads.trains.size
     flow = new_flow(network, count)
-    locate_trains(count, loads.trains, along_one_line(network.sections.size), network, flow)
+    legs = along_one_line(network.sections.size) if legs is None else legs
+    locate_trains(count, loads.trains, legs, network, flow)
     measure_pieces(count, network, flow)
     return Case(network, flow, loads)
 
@@ -122,3 +127,64 @@ def simple_line(
     section = (0, 1, 0.0, length_m, impedance, susceptance)
     network = network_of(2, [section], [], sources(*enumerate(ends)))
     return place(network, constant_loads(positions_m, powers_va))
+
+
+def side_by_side(
+    points_m: list[float], nodes: list[list[int]], trains: list[tuple[int, float, complex]],
+    fed: Records[Source], mutual: complex, *, impedance: complex = BT, susceptance: float = 0.0,
+    coupled: bool = True,
+) -> Case:  # fmt: skip
+    """Tracks between the same points, each with its nodes there; trains by track, place and power."""
+    tracks, pieces = len(nodes), len(points_m) - 1
+    sections = [
+        SectionPart(
+            of_track[i],
+            of_track[i + 1],
+            points_m[i],
+            points_m[i + 1],
+            impedance,
+            susceptance,
+            mutual,
+        )
+        for of_track in nodes
+        for i in range(pieces)
+    ]
+    groups = [[k * pieces + i for k in range(tracks)] for i in range(pieces)]
+    n_nodes = max(node for of_track in nodes for node in of_track) + 1
+    network = assemble(n_nodes, sections, [], fed, SYSTEM, groups=groups if coupled else ())
+    loads = constant_loads([m for _, m, _ in trains], [power for _, _, power in trains])
+    loads.trains.route = [track for track, _, _ in trains]
+    rows = [(-np.inf, 1.0, 0.0, 0, k + 1, k * pieces, (k + 1) * pieces) for k in range(tracks)]
+    return place(network, loads, Leg.array(rows).reshape(tracks, 1))
+
+
+def highest_root(e, z, load):
+    """U² = [(E² - 2(RP + XQ)) + √((E² - 2(RP + XQ))² - 4|Z|²|S|²)] / 2: one load, one stiff source."""
+    b = e * e - 2 * (z.real * load.real + z.imag * load.imag)
+    return math.sqrt((b + math.sqrt(b * b - 4 * abs(z * load) ** 2)) / 2)
+
+
+def solve_slowly(case):
+    """Voltages of nodes and trains by scipy's fsolve on the polar mismatches (F.35)-(F.41)."""
+    y = admittance_matrix(case.network, case.flow)
+    n = case.flow.nodes.size
+    types = case.loads.types[case.flow.standing.train]
+    drawn = types.auxiliary_power_w + 1j * types.auxiliary_reactive_power_var
+    law = case.network.sources
+
+    def mismatch(x):
+        voltage = 16_500.0 * (x[: len(y)] + 1j * x[len(y) :])
+        power = voltage * np.conj(y @ voltage)
+        residual = power / 10e6
+        residual[n:] += drawn / 10e6
+        for s, node in enumerate(law.node):
+            u, direction, *_ = terminal_voltage(
+                power[node].real, power[node].imag, 1.0, law[s].converter
+            )
+            residual[node] = (voltage[node] - u * direction) / 16_500.0
+        return np.concatenate([residual.real, residual.imag])
+
+    start = np.concatenate([np.ones(len(y)), np.zeros(len(y))])
+    found, _, ok, message = fsolve(mismatch, start, full_output=True, xtol=1e-13)
+    assert ok == 1 or np.abs(mismatch(found)).max() < 1e-9, message
+    return 16_500.0 * (found[: len(y)] + 1j * found[len(y) :])

@@ -16,7 +16,8 @@ from tpss.audit.balances import ALLOWED_BALANCE
 from tpss.audit.verdict import JUDGED, Audit, judge, limits_of, usual_limits
 from tpss.driving.data import Braking, Driver, MotionModel
 from tpss.physics.constants import GRAVITY_M_S2
-from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, Network
+from tpss.powerflow.groups import sections_of
+from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
 from tpss.run.run import Outcome, advance_to_end, outcome_of, run_of
 from tpss.sources.kinds import SourceKind
 from tpss.step.model import Model
@@ -163,7 +164,15 @@ def _contact_line_currents(
     The points of a section, its nodes and the trains under it, are sorted by place at every instant.
     """
     drawn_a, leaving_a = np.zeros_like(train_v), np.zeros_like(node_v)
+    for group in sections_of(network.groups):
+        for k in range(len(place_m)):
+            _group_currents(
+                group, section[k], place_m[k], train_v[k], node_v[k], network,
+                drawn_a[k], leaving_a[k],
+            )  # fmt: skip
     for s, part in enumerate(network.sections):
+        if any(s in group for group in sections_of(network.groups)):
+            continue
         under = np.isfinite(train_v) & (section == s)
         ends_m = np.ones((len(place_m), 1))
         # A train may stand before the first node of a line, or behind the last one, by rounding.
@@ -198,6 +207,57 @@ def _contact_line_currents(
         leaving_a[:, part.start_node] += unsorted[:, 0]
         drawn_a -= np.where(under, unsorted[:, 1:], 0.0)
     return drawn_a, leaving_a
+
+
+def _group_currents(
+    group: Any, section: Any, place_m: Floats, train_v: Complexes, node_v: Complexes,
+    network: Network, drawn_a: Complexes, leaving_a: Complexes,
+) -> None:  # fmt: skip
+    """Add the currents of coupled sections at an instant to those of their trains and nodes. [A]
+
+    Unknown are the currents of all pieces at once; two on different tracks have the impedance in common
+    of the length along which they lie beside each other.
+    """
+    pieces: list[tuple[int, float, float, complex, complex, Any, Any]] = []
+    for s in group:
+        part = network.sections[s]
+        if network.source_of_node[part.start_node] == UNFED:
+            continue
+        under = np.flatnonzero(np.isfinite(train_v) & (section == s))
+        under = under[np.argsort(place_m[under], kind="stable")]
+        points_m = [part.start_m, *place_m[under], part.end_m]
+        volts = [node_v[part.start_node], *train_v[under], node_v[part.end_node]]
+        ends = [("node", part.start_node), *(("train", i) for i in under), ("node", part.end_node)]
+        begin_m = 0.0
+        for k in range(len(points_m) - 1):
+            length_m = max(SHORTEST_PIECE_M, points_m[k + 1] - points_m[k])
+            pieces.append(
+                (s, begin_m, begin_m + length_m, volts[k], volts[k + 1], ends[k], ends[k + 1])
+            )
+            begin_m += length_m
+    if not pieces:
+        return
+    part = network.sections[group[0]]
+    impedance = np.zeros((len(pieces),) * 2, dtype=complex)
+    for i, (s, begin_m, end_m, *_) in enumerate(pieces):
+        for j, (other, from_m, to_m, *_) in enumerate(pieces):
+            beside_m = min(end_m, to_m) - max(begin_m, from_m)
+            if i == j:
+                impedance[i, j] = part.impedance_ohm_per_m * (end_m - begin_m)
+            elif other != s and beside_m > 0.0:
+                impedance[i, j] = network.groups.mutual_ohm_per_m[s] * beside_m
+    drops = np.array([piece[3] - piece[4] for piece in pieces])
+    for piece, current in zip(pieces, np.linalg.solve(impedance, drops), strict=True):
+        _, begin_m, end_m, begin_v, end_v, begin, end = piece
+        shunt = 0.5j * part.susceptance_s_per_m * (end_m - begin_m)
+        for (kind, number), leaving in (
+            (begin, current + shunt * begin_v),
+            (end, shunt * end_v - current),
+        ):
+            if kind == "node":
+                leaving_a[number] += leaving
+            else:
+                drawn_a[number] -= leaving
 
 
 def converter_residual(outcome: Outcome, network: Network) -> float:

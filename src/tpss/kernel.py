@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+import numba.extending
 import numpy as np
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -23,6 +24,7 @@ _Int = TypeVar("_Int", bound=int)
 
 _config: Any = numba.config
 _njit: Any = numba.njit
+_overload: Any = numba.extending.overload
 
 _OPTIONS: dict[str, Any] = {
     "cache": True,
@@ -110,6 +112,30 @@ def fused_like_numpy(function: _Function) -> _Function:
     the same, to the last digit, as what arrays give.
     """
     return _compiled(function, inline="never", forceinline=True, fastmath=False)
+
+
+def where_any(without: Callable[..., Any]) -> Callable[[_Function], _Function]:
+    """Let compiled code call a function where its first argument holds anything; where that is an empty
+    tuple, `without`.
+
+    An empty tuple is a type of its own.  So of a kernel that is handed one, numba compiles what it would
+    be if the function had never been written: neither a run nor a first start takes longer for those who
+    have no use for it.  A kernel that is handed something is compiled once more.
+    """
+
+    def decorate(function: _Function) -> _Function:
+        def call(part: Any, *others: Any) -> Any:
+            return (without if part == () else function)(part, *others)
+
+        def choose(part: Any, *_: Any) -> Callable[..., Any]:
+            return without if part == numba.types.Tuple(()) else function
+
+        if not _config.DISABLE_JIT:
+            options = {name: value for name, value in _OPTIONS.items() if name != "cache"}
+            _overload(call, jit_options=options, strict=False)(choose)
+        return call  # type: ignore[return-value]
+
+    return decorate
 
 
 def _compiled(function: _Function, inline: str, **others: Any) -> _Function:

@@ -4,14 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import fsolve
 
 from tpss.numerics.block_lu import Block, Unknown, find_pattern, solve_blocks
 from tpss.powerflow.solve import solve
-from tpss.sources.converter import terminal_voltage
 
-from continuation import admittance_matrix
-from networks import BT, ROTARY, constant_loads, network_of, place, sources
+from networks import BT, ROTARY, constant_loads, network_of, place, solve_slowly, sources
 
 
 def random_ladder(rng, n_points, n_trains):
@@ -30,32 +27,6 @@ def random_ladder(rng, n_points, n_trains):
     positions = rng.uniform(100.0, 99.9e3, n_trains)
     powers = rng.uniform(0.0, 2.5e6, n_trains) + 1j * rng.uniform(-0.3e6, 1.5e6, n_trains)
     return place(network, constant_loads(list(positions), list(powers)))
-
-
-def solve_slowly(case):
-    """Voltages of nodes and trains by scipy's fsolve on the polar mismatches (F.35)-(F.41)."""
-    y = admittance_matrix(case.network, case.flow)
-    n = case.flow.nodes.size
-    types = case.loads.types[case.flow.standing.train]
-    drawn = types.auxiliary_power_w + 1j * types.auxiliary_reactive_power_var
-    law = case.network.sources
-
-    def mismatch(x):
-        voltage = 16_500.0 * (x[: len(y)] + 1j * x[len(y) :])
-        power = voltage * np.conj(y @ voltage)
-        residual = power / 10e6
-        residual[n:] += drawn / 10e6
-        for s, node in enumerate(law.node):
-            u, direction, *_ = terminal_voltage(
-                power[node].real, power[node].imag, 1.0, law[s].converter
-            )
-            residual[node] = (voltage[node] - u * direction) / 16_500.0
-        return np.concatenate([residual.real, residual.imag])
-
-    start = np.concatenate([np.ones(len(y)), np.zeros(len(y))])
-    found, _, ok, message = fsolve(mismatch, start, full_output=True, xtol=1e-13)
-    assert ok == 1 or np.abs(mismatch(found)).max() < 1e-9, message
-    return 16_500.0 * (found[: len(y)] + 1j * found[len(y) :])
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -8,15 +8,9 @@ import pytest
 
 from tpss.powerflow.solve import solve
 
-from networks import BT, ROTARY, STIFF, simple_line
+from networks import BT, ROTARY, STIFF, highest_root, simple_line
 
 COLD = False
-
-
-def highest_root(e, z, load):
-    """U² = [(E² - 2(RP + XQ)) + √((E² - 2(RP + XQ))² - 4|Z|²|S|²)] / 2: one load, one stiff source."""
-    b = e * e - 2 * (z.real * load.real + z.imag * load.imag)
-    return math.sqrt((b + math.sqrt(b * b - 4 * abs(z * load) ** 2)) / 2)
 
 
 @pytest.mark.parametrize("load", [2e6 + 0j, 3e6 + 2e6j, 1e6 - 1.5e6j, 0.2e6 + 4e6j])

@@ -5,6 +5,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from tpss import library
 from tpss.scenario.routes import NoWayError, find_way, hops_of
 
 from .ranges import numbers
@@ -94,6 +95,7 @@ def _lay_tracks(draw: Draw, document: Document) -> None:
     if not double:
         return
     supply["tracks_tied"] = tied = draw(st.sampled_from(["everywhere", "posts", "no"]))
+    _couple(draw, supply)
     if tied == "posts":
         name = draw(st.sampled_from(double))
         line = network[name]
@@ -107,6 +109,22 @@ def _lay_tracks(draw: Draw, document: Document) -> None:
             and line["tracks"][1]["from_km"] < (supply["posts"][0]["position_km"])
         ):
             del supply["posts"]
+
+
+COMMON = [(0.0, 0.0), (0.1, 0.3), (0.3, 0.0), (0.0, 0.6), (0.95, 0.95)]
+"""Shares of resistance and reactance that the contact lines of two tracks have in common. [1]"""
+
+
+def _couple(draw: Draw, supply: Document) -> None:
+    """Let the contact lines of two tracks have something in common: nothing, some, or nearly all."""
+    catenary = supply["catenary"]
+    if isinstance(catenary, str):
+        catenary = dict(library.entries("catenaries")[catenary])
+        del catenary["source"]
+    for axis, share in zip(("r", "x"), draw(st.sampled_from(COMMON)), strict=True):
+        if share > 0.0:
+            catenary[f"mutual_{axis}_ohm_per_km"] = share * catenary[f"{axis}_ohm_per_km"]
+            supply["catenary"] = catenary
 
 
 def _service(draw: Draw, i: int, document: Document) -> Document | None:

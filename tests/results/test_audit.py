@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lines import double_track, scenario_of, with_posts
 from tpss import Scenario, load_scenario
 from tpss.audit.verdict import JUDGED, Audit, limits_of, usual_limits
 from tpss.model import build_model
@@ -157,6 +158,32 @@ def test_the_audit_sees_one_forged_value(group, field, forge, figure):
     case = Case(short_line({"simulation.duration_min": 5.0}), 100)
     failures = case.audit_of_forgery(group, field, 0, forge, step=40).failures
     assert any(failure.startswith(figure) for failure in failures), failures
+
+
+@pytest.fixture(scope="module")
+def coupled_tracks():
+    """Four trains on two tracks that have an impedance in common, tied at posts and at both ends."""
+    common = {"mutual_x_ohm_per_km": 0.05, "capacitance_nf_per_km": 10.0}
+    tracks = with_posts(double_track("posts", mutual_r_ohm_per_km=0.02, **common), 12.0, 25.0)
+    return Case(scenario_of(tracks), 200)
+
+
+@pytest.mark.parametrize(
+    ("records", "field"),
+    [
+        ("trains", "pantograph_real"),
+        ("trains", "pantograph_imag"),
+        ("trains", "route_position"),
+        ("nodes", "node_imag"),
+        ("trains", "reactive_power"),
+    ],
+)
+def test_the_audit_of_coupled_tracks_sees_one_forged_value(coupled_tracks, records, field):
+    assert coupled_tracks.audit().passed
+    assert coupled_tracks.audit().power_mismatch_va < 0.005
+    assert_twins(coupled_tracks)
+    forged = coupled_tracks.audit_of_forgery(records, field, 1, lambda x: x + 0.5, step=100)
+    assert any(failure.startswith("power_mismatch_va") for failure in forged.failures)
 
 
 @pytest.mark.parametrize("catenary", ["BT", "AT"])

@@ -276,6 +276,30 @@ def test_both_states_have_the_same_shapes(outage):
     assert shapes[0] == shapes[1] == shapes[2]
 
 
+COMMON = {"mutual_r_ohm_per_km": 0.02, "mutual_x_ohm_per_km": 0.05}
+"""What the tracks have in common, as of a line whose current returns in the rails."""
+
+
+def coupled_tracks() -> dict[str, Any]:
+    document = two_tracks()
+    catenary = {"r_ohm_per_km": 0.13, "x_ohm_per_km": 0.14, **COMMON}
+    document["supply"]["catenary"] = catenary
+    return document
+
+
+@pytest.mark.parametrize("outage", SWITCHES.values(), ids=SWITCHES)
+def test_tracks_that_are_coupled_are_parted_for_a_time_too(outage):
+    """Before and while: as never parted, and as parted throughout, from where the trains are at once."""
+    never, ever = run(coupled_tracks()), with_outage(coupled_tracks(), **outage)
+    assert_same_trains(with_outage(coupled_tracks(), **outage, from_min=LAST_MIN), never)
+    assert_same_trains(with_outage(coupled_tracks(), **outage, to_min=LAST_MIN), ever)
+    held = {**coupled_tracks(), "outages": [{"name": "out", **outage, "to_min": 9.0}]}
+    service = service_of(scenario_of(held).with_outage("out"))
+    states = [service.network, *(each.network for each in service.switchings)]
+    patterns = [each.pattern.places.tolist() for each in states]
+    assert patterns[0] == patterns[1]
+
+
 def test_a_post_opens_and_closes_within_a_run():
     """Both tracks meet at 12 km before and after, and between only at 25 km and at the ends."""
     result = with_outage(two_tracks(), opens=["P12"], from_min=8.0, to_min=16.0)

@@ -110,13 +110,13 @@ class Figures(NamedTuple):
 
 def new_figures(model: Model, trains: int, zones: list[tuple[int, float, float]]) -> Figures:
     """Figures of so many trains before they are gathered, with the zones' lines and ends. [km]"""
-    nodes, stations = model.network.source_of_node.size, model.network.sources.size
+    stations = model.network.sources.size
     return Figures(
         run=RunFigures.blank(1),
         trains=TrainFigures.blank(trains),
         stations=StationFigures.blank(stations),
         zones=Zone.array((*zone, 0, 0.0) for zone in zones),
-        audit=new_scratch(nodes, trains),
+        audit=new_scratch(model.network, trains),
     )
 
 

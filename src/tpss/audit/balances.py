@@ -4,13 +4,17 @@ The network's are those of `audit.network`, the trains' those of `audit.motion`.
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import kernel
+from tpss.kernel import inlined, kernel
+from tpss.numerics.pairs import magnitude
+from tpss.powerflow.groups import NO_GROUPS
+from tpss.powerflow.network import Network
 from tpss.record import Record, Records
+from tpss.step.recording import Recording
 
 ALLOWED_BALANCE = 1e-9
 """Energy that may be missing from the network's balance, relative to what the stations feed. [1]"""
@@ -49,6 +53,54 @@ class Balances(Record):
     """Loss of kinetic energy where there is one. [J]"""
 
 
+class Conductor(Record):
+    """Where a conductor of a group of coupled sections stands; see `audit.coupled`."""
+
+    section: int
+    """Its section."""
+    next: int
+    """Its next train, in the order of `Scratch.order`."""
+    is_open: bool
+    """Whether its end is not reached yet."""
+    ahead_m: float
+    """What is left of its piece. [m]"""
+    length_m: float
+    """Length of its piece. [m]"""
+    begin_v: complex
+    """Voltage where its piece begins. [V]"""
+    current_a: complex
+    """Current in its piece, then in the one before. [A]"""
+    leaving_a: complex
+    """Current that leaves its point into the piece behind. [A]"""
+
+
+class Piece(Record):
+    """A piece of a conductor, between two of its own points."""
+
+    conductor: int
+    train: int
+    """Train at its end; -1: the end node."""
+    length_m: float
+    begin_v: complex
+    """Voltage where it begins. [V]"""
+    end_v: complex
+    """Voltage where it ends. [V]"""
+
+
+class GroupScratch(NamedTuple):
+    """Scratch for groups of coupled sections; an empty tuple if there are none."""
+
+    first: npt.NDArray[np.int64]
+    """First train of each section of the network, in the order of `Scratch.order`."""
+    conductors: Records[Conductor]
+    front: npt.NDArray[np.complex128]
+    """Equations of the pieces that have begun and not ended, shape (widest, widest + 1)."""
+    pieces: Records[Piece]
+    """In the order in which they end."""
+    factors: npt.NDArray[np.complex128]
+    """What is left of the equation of each when it is eliminated, shape (pieces, widest + 1)."""
+
+
 class Scratch(NamedTuple):
     """Scratch arrays, and the result."""
 
@@ -63,10 +115,12 @@ class Scratch(NamedTuple):
     """Section under which each train stands."""
     place_m: npt.NDArray[np.float64]
     """Its place on the line. [m]"""
+    groups: GroupScratch
 
 
-def new_scratch(nodes: int, trains: int) -> Scratch:
-    """Scratch for so many nodes and trains."""
+def new_scratch(network: Network, trains: int) -> Scratch:
+    """Scratch for a network and so many trains."""
+    nodes = network.source_of_node.size
     return Scratch(
         balances=Balances.blank(1),
         leaving_a=np.zeros(nodes, dtype=complex),
@@ -74,6 +128,20 @@ def new_scratch(nodes: int, trains: int) -> Scratch:
         order=np.arange(trains),
         section=np.zeros(trains, dtype=np.int64),
         place_m=np.zeros(trains),
+        groups=_group_scratch(network, trains),
+    )
+
+
+def _group_scratch(network: Network, trains: int) -> GroupScratch:
+    if network.groups == NO_GROUPS:
+        return cast("GroupScratch", ())
+    widest = network.groups.section.shape[1]
+    return GroupScratch(
+        first=np.zeros(network.sections.size, dtype=np.int64),
+        conductors=Conductor.blank(widest),
+        front=np.zeros((widest, widest + 1), dtype=complex),
+        pieces=Piece.blank(trains + widest),
+        factors=np.zeros((trains + widest, widest + 1), dtype=complex),
     )
 
 
@@ -82,3 +150,14 @@ def worst(largest: float, value: float) -> float:
     """The larger magnitude; NaN, which no limit admits, once there has been one."""
     size = abs(value)
     return largest if largest >= size or math.isnan(largest) else size
+
+
+@inlined
+def audit_demand(
+    step: int, i: int, voltage: complex, current: complex, recording: Recording, figures: Balances
+) -> None:
+    """Mismatch between what a train draws and what flows into it."""
+    row = recording.trains[step, i]
+    drawn = complex(row.active_power, row.reactive_power)
+    mismatch = magnitude(voltage * current.conjugate() - drawn)
+    figures.power_mismatch_va = worst(figures.power_mismatch_va, mismatch)

@@ -2,17 +2,20 @@
 
 The solver pushes voltages and currents along chains; the audit starts from the recorded voltages, forms
 the current of every piece of line and every branch from the voltages at its ends (the nodal admittance
-equations), and compares the powers that this asks for with the recorded ones.  That a source's law is
-right is the business of its own tests; that the solution obeys it is the audit's.
+equations; of coupled sections see `coupled`), and compares the powers that this asks for with the
+recorded ones.  That a source's law is right is the business of its own tests; that the solution obeys it
+is the audit's.
 """
 
 import math
 
-from tpss.audit.balances import Balances, Scratch, worst
+from tpss.audit.balances import Scratch, audit_demand, worst
+from tpss.audit.coupled import audit_groups, pass_trains
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
+from tpss.powerflow.coupled import is_coupled
 from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
-from tpss.powerflow.placing import section_at
+from tpss.powerflow.placing import is_unfed, section_at
 from tpss.record import Records
 from tpss.sources.kinds import residual
 from tpss.step.model import Model
@@ -55,7 +58,11 @@ def audit_network(
     count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
-        k = _audit_section(step, s, k, count, model, recording, scratch)
+        if is_coupled(network.groups, s) and not is_unfed(s, network):
+            k = pass_trains(network.groups, s, k, count, scratch)
+        else:
+            k = _audit_section(step, s, k, count, model, recording, scratch)
+    audit_groups(network.groups, step, count, model, recording, scratch)
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]
@@ -136,7 +143,7 @@ def _audit_section(
         if at_node:
             scratch.leaving_a[section.start_node] += leaving
         else:
-            _audit_demand(
+            audit_demand(
                 step, scratch.order[k - 1], voltage, entering - leaving, recording, figures
             )
         entering = current - shunt * ahead
@@ -145,17 +152,6 @@ def _audit_section(
             return k
         voltage, place_m, at_node = ahead, ahead_m, False
         k += 1
-
-
-@inlined
-def _audit_demand(
-    step: int, i: int, voltage: complex, current: complex, recording: Recording, figures: Balances
-) -> None:
-    """Mismatch between what a train draws and what flows into it."""
-    row = recording.trains[step, i]
-    drawn = complex(row.active_power, row.reactive_power)
-    mismatch = magnitude(voltage * current.conjugate() - drawn)
-    figures.power_mismatch_va = worst(figures.power_mismatch_va, mismatch)
 
 
 @inlined

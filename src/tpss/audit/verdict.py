@@ -7,8 +7,9 @@ import numpy as np
 
 from tpss.audit.balances import ALLOWED_BALANCE
 from tpss.driving.data import Driver
-from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, resolution_va
-from tpss.powerflow.system import System
+from tpss.powerflow.groups import NO_GROUPS
+from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE
+from tpss.powerflow.system import System, resolution_va
 from tpss.step.model import Model
 
 JUDGED = (
@@ -122,7 +123,10 @@ def limits_of(model: Model) -> dict[str, float]:
     system = model.network.system
     limits = usual_limits(system.base_power_va)
     blurred = model.network.tolerance / TOLERANCE
-    shortest_ohm = np.abs(model.network.sections["impedance_ohm_per_m"]).min() * SHORTEST_PIECE_M
+    own_ohm_per_m = model.network.sections["impedance_ohm_per_m"]
+    if model.network.groups != NO_GROUPS:
+        own_ohm_per_m = own_ohm_per_m - model.network.groups.mutual_ohm_per_m
+    shortest_ohm = np.abs(own_ohm_per_m).min() * SHORTEST_PIECE_M
     limits["power_mismatch_va"] *= max(
         blurred, 2.0 * resolution_va(shortest_ohm, system) / limits["power_mismatch_va"]
     )

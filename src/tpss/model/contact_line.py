@@ -5,7 +5,7 @@ Where the contact lines of n like tracks are tied everywhere they are one, of im
 .. math:: z = \frac{z_s + (n - 1) z_m}{n}, \qquad c = n c_s,
 
 with what each has by itself and what two of them have in common.  Elsewhere each track has sections of
-its own between the places where they are tied.
+its own between the places where they are tied, side by side and coupled by what they have in common.
 """
 
 import math
@@ -60,10 +60,17 @@ class Stretch(NamedTuple):
         own = complex(si(self.catenary, "r_ohm_per_km"), si(self.catenary, "x_ohm_per_km"))
         if self.conductors == self.tracks:
             return own
-        common = complex(
+        return (own + (self.tracks - 1) * self._common_ohm_per_m()) / self.tracks
+
+    def mutual_ohm_per_m(self) -> complex:
+        """What two conductors have in common. [Ω/m]"""
+        return self._common_ohm_per_m() if self.conductors > 1 else 0j
+
+    def _common_ohm_per_m(self) -> complex:
+        """What the contact lines of two tracks have in common. [Ω/m]"""
+        return complex(
             si(self.catenary, "mutual_r_ohm_per_km"), si(self.catenary, "mutual_x_ohm_per_km")
         )
-        return (own + (self.tracks - 1) * common) / self.tracks
 
     def susceptance_s_per_m(self, frequency_hz: float) -> float:
         """Shunt susceptance of a conductor. [S/m]"""
@@ -123,6 +130,15 @@ class Laid(NamedTuple):
     runs: list[Run]
     joints: list[Joint]
     """Pairs of nodes that are one where nothing is parted."""
+
+    def coupled(self, first_section: int) -> list[tuple[int, ...]]:
+        """Numbers of sections side by side that have an impedance in common, from a first number on."""
+        return [
+            side_by_side
+            for run in self.runs
+            for side_by_side in zip(*(range(*bounds) for bounds in run.sections), strict=True)
+            if self.sections[side_by_side[0] - first_section].mutual_ohm_per_m != 0.0
+        ]
 
 
 def lay_contact_line(
@@ -311,6 +327,7 @@ def _sections(
                         piece.end_km * 1e3,
                         stretch.impedance_ohm_per_m(),
                         stretch.susceptance_s_per_m(supply.frequency_hz),
+                        stretch.mutual_ohm_per_m(),
                     )
                 )
                 place = f"{line.prefix}{kilometres(piece.begin_km)}-{kilometres(piece.end_km)} km"

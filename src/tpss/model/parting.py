@@ -125,4 +125,5 @@ def edges_of_both(edges: Sequence[Joint], node: Sequence[int]) -> list[Joint]:
     pairs = [(n, other) for n, other in enumerate(node) if n != other]
     if not pairs:
         return []
-    return [*edges, *((node[a], node[b]) for a, b in edges), *pairs]
+    in_whole = [(node[a], node[b]) for a, b in edges]
+    return [*edges, *((a, b) for a, b in in_whole if a != b), *pairs]

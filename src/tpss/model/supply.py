@@ -18,6 +18,7 @@ from tpss.model.feeding import Feeding, feedings_of
 from tpss.model.parting import Joint, Parting, edges_of_both, renamed, representatives
 from tpss.model.sources import build_sources
 from tpss.powerflow.following import following
+from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
@@ -49,6 +50,8 @@ class SupplyPlan:
     branch_kinds: list[str] = field(default_factory=list)
     sections: list[SectionPart] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
+    coupled: list[tuple[int, ...]] = field(default_factory=list)
+    """Sections side by side that have an impedance in common."""
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
     runs: list[list[Run]] = field(default_factory=list)
@@ -61,8 +64,9 @@ class SupplyPlan:
     @property
     def edges(self) -> list[tuple[int, int]]:
         """Nodes that branches and sections couple."""
-        coupled = [(section.start_node, section.end_node) for section in self.sections]
-        return coupled + [(branch.start_node, branch.end_node) for branch in self.branches]
+        ends = [(section.start_node, section.end_node) for section in self.sections]
+        within = edges_within(self.coupled, ends)
+        return ends + within + [(branch.start_node, branch.end_node) for branch in self.branches]
 
     def in_whole(self) -> list[int]:
         """The node that each node is one with in the whole state."""
@@ -127,7 +131,8 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    return mark_unfed(assemble(*parts, room=edges_of_both(plan.edges, plan.in_whole()))), plan
+    room = edges_of_both(plan.edges, plan.in_whole())
+    return mark_unfed(assemble(*parts, room=room, groups=plan.coupled)), plan
 
 
 def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
@@ -151,6 +156,7 @@ def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
         build_sources([node[n] for n in plan.sources], supply.stations),
         parted.system,
         room=edges_of_both(plan.edges, node),
+        groups=plan.coupled,
     )
     leader = {n: other for n, other in enumerate(node) if n != other}
     return following(mark_unfed(network), leader)
@@ -295,6 +301,7 @@ def _lay_line(
 
     first = len(plan.sections)
     laid = lay_contact_line(line, supply, here.feeding_km, make_node, first, parting)
+    plan.coupled += laid.coupled(first)
     plan.sections += laid.sections
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)

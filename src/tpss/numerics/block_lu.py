@@ -79,7 +79,7 @@ def find_pattern(
     n_nodes : int
         Number of nodes.
     edges : iterable of (int, int)
-        Pairs of nodes that a branch or a section couples.
+        Pairs of nodes that a branch or a section couples, each of two nodes.
 
     Returns
     -------

@@ -173,5 +173,7 @@ class Search:
         entering_a, end_a = self.grid.section_currents_a(voltage_v)
         flow.sections["current_a"], flow.sections["end_current_a"] = entering_a, end_a
         flow.standing["voltage_v"][: self.count] = voltage_v[fixed:]
+        if self.grid.coupled:
+            flow.groups.lost_w[:] = self.grid.coupled_losses_w(voltage_v)
         trains = flow.standing["train"][: self.count]
         self.state.trains["demand"]["voltage_v"][trains] = np.abs(voltage_v[fixed:])

@@ -39,9 +39,14 @@ class Pass(IntEnum):
     """The currents at base voltage, as if they did not depend on the voltage."""
     CHECK = 2
     """As a warm one without derivatives: for a state that is expected to be the solution."""
+    LINKED = 3
+    """As a warm one, with the trains' currents on their tangents at the voltages of the state."""
+    MOVED = 4
+    """As a linked one without derivatives, which moves the trains' voltages to those that it finds."""
 
 
 WARM, FLAT, CHECK = switch(Pass.WARM), switch(Pass.FLAT), switch(Pass.CHECK)
+LINKED, MOVED = switch(Pass.LINKED), switch(Pass.MOVED)
 
 
 @inlined

@@ -19,7 +19,8 @@ import math
 
 from tpss.kernel import at, fused, inlined, kernel
 from tpss.numerics.pairs import scaled, squared
-from tpss.powerflow.chain import WARM, push_load, push_piece, train_current
+from tpss.powerflow.chain import LINKED, MOVED, WARM, push_load, push_piece, train_current
+from tpss.powerflow.coupled import evaluate_groups, is_coupled
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.newton import (
     MOST_PASSES,
@@ -109,10 +110,15 @@ def _evaluate_linked(
     begin_pass(not moves, network, flow)
     largest, merit = 0.0, 0.0
     for s in range(network.sections.size):
+        if is_coupled(network.groups, s):
+            continue
         end_v = run_linked_chain(s, scale, moves, network, flow, loads)
         square, _ = join_section(s, end_v, not moves, network, flow)
         largest = max(largest, square * network.sections[at(s)].gap_weight)
         merit += square
+    largest, merit, _ = evaluate_groups(
+        network.groups, largest, merit, 1.0, scale, MOVED if moves else LINKED, network, flow, loads
+    )
     for n in range(flow.nodes.size):
         square = evaluate_node(n, not moves, network, flow)
         largest = max(largest, square)

@@ -26,7 +26,8 @@ from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
 from tpss.numerics.curve import CurvePoint, Points
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail
-from tpss.powerflow.system import System
+from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
+from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
 from tpss.vehicle.train import Train
@@ -44,8 +45,6 @@ SHORTEST_PIECE_M = 1.0
 
 UNFED = -2
 """In `Network.source_of_node`: a node that no source reaches; its voltage is 0."""
-
-EPSILON = float(np.finfo(float).eps)
 
 
 class Ending(IntEnum):
@@ -241,6 +240,8 @@ class Network(NamedTuple):
     """What the branches put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
+    groups: Groups
+    """Of coupled sections."""
 
 
 class Flow(NamedTuple):
@@ -258,6 +259,7 @@ class Flow(NamedTuple):
     """The sources as they are while they are brought apart from like ones."""
     search: Records[Search]
     """One record."""
+    groups: GroupFlow
 
 
 class Loads(NamedTuple):
@@ -300,11 +302,13 @@ class SectionPart(NamedTuple):
     end_m: float
     impedance_ohm_per_m: complex
     susceptance_s_per_m: float
+    mutual_ohm_per_m: complex = 0j
 
     @property
     def shortest_ohm(self) -> float:
-        """Impedance of the whole section, of a metre at least. [Ω]"""
-        return abs(self.impedance_ohm_per_m) * max(SHORTEST_PIECE_M, self.end_m - self.start_m)
+        """Impedance of the whole section, of a metre at least, and without what is in common. [Ω]"""
+        length_m = max(SHORTEST_PIECE_M, self.end_m - self.start_m)
+        return abs(self.impedance_ohm_per_m - self.mutual_ohm_per_m) * length_m
 
 
 class BranchPart(NamedTuple):
@@ -313,20 +317,6 @@ class BranchPart(NamedTuple):
     start_node: int
     end_node: int
     impedance_ohm: complex
-
-
-def resolution_va(impedance_ohm: float, system: System) -> float:
-    """Power mismatch that the rounding of voltages causes at the ends of an impedance. [VA]
-
-    A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
-    to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
-    """
-    return float(4.0 * EPSILON * system.base_voltage_v**2 / impedance_ohm)
-
-
-def gap_weight(part: SectionPart, system: System) -> float:
-    """Square of the power that a gap of the base voltage causes at a section's ends. [p.u.]"""
-    return float((system.base_voltage_v**2 / part.shortest_ohm / system.base_power_va) ** 2)
 
 
 _pattern = lru_cache(maxsize=64)(find_pattern)
@@ -339,7 +329,9 @@ def assemble(
     branches: Sequence[BranchPart],
     sources: Records[Source],
     system: System,
+    *,
     room: Sequence[tuple[int, int]] = (),
+    groups: Sequence[Sequence[int]] = (),
 ) -> Network:
     """Network from its parts.
 
@@ -353,8 +345,11 @@ def assemble(
     system : System
     room : sequence of (int, int)
         Further pairs of nodes for which the linear system has room.
+    groups : sequence of sequences of int
+        Numbers of sections side by side that are coupled.
     """
-    edges = [(part.start_node, part.end_node) for part in sections]
+    ends = [(part.start_node, part.end_node) for part in sections]
+    edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
     edges += room
     pattern, place = _pattern(n_nodes, tuple(edges))
@@ -375,7 +370,7 @@ def assemble(
     return Network(
         system=system,
         sections=Section.array(
-            (*part, *blocks(part), gap_weight(part, system)) for part in sections
+            (*part[:-1], *blocks(part), gap_weight(part.shortest_ohm, system)) for part in sections
         ),
         branches=Branch.array((*part, 1.0 / part.impedance_ohm) for part in branches),
         sources=sources,
@@ -383,6 +378,7 @@ def assemble(
         pattern=pattern,
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
+        groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
     )
 
 
@@ -397,6 +393,7 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         sensitivity=np.zeros((2, 2, 2), dtype=complex),
         laws=copy_of_records(network.sources),
         search=Search.blank(1),
+        groups=new_group_flow(network.groups),
     )
     flow.sources.running[:] = network.sources["installed"]
     flow.standing.train[:] = np.arange(n_trains)

@@ -60,6 +60,7 @@ from tpss.powerflow.chain import (
     Pass,
     run_chain,
 )
+from tpss.powerflow.coupled import direct_groups, evaluate_groups, is_coupled
 from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.sources.kinds import is_plausible, residual
@@ -241,11 +242,16 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
+        if is_coupled(network.groups, s):
+            continue
         end_v = run_chain(s, scale, start, network, flow, loads)
         square, side = join_section(s, end_v, derivatives, network, flow)
         sign *= side
         largest = max(largest, square * network.sections[at(s)].gap_weight)
         merit += square
+    largest, merit, sign = evaluate_groups(
+        network.groups, largest, merit, sign, scale, start, network, flow, loads
+    )
     # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
         square = evaluate_node(n, derivatives, network, flow)
@@ -268,6 +274,7 @@ def find_direction(network: Network, flow: Flow) -> float:
         end_v = flow.nodes[at(section.end_node)].direction_v
         change = end_v - apply(solution.transfer_p, solution.transfer_q, start_v) - solution.gap_v
         solution.direction_a = apply(solution.inverse_p, solution.inverse_q, change)
+    direct_groups(network.groups, network, flow)
     return sign
 
 

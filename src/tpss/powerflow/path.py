@@ -219,6 +219,7 @@ def solve_on_way(
         network.pattern,
         network.admittance_s,
         network.tolerance,
+        network.groups,
     )
     if steps == LINKED:
         return newton_linked(scale, between, flow, loads)

@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
+EPSILON = float(np.finfo(float).eps)
+
 
 class System(NamedTuple):
     """An electrification system, as the load flow knows it; see `system`."""
@@ -43,3 +47,17 @@ def system(
         per_square_volt=1.0 / base_voltage_v**2,
         per_square_ampere=(base_voltage_v / base_power_va) ** 2,
     )
+
+
+def resolution_va(impedance_ohm: float, system: System) -> float:
+    """Power mismatch that the rounding of voltages causes at the ends of an impedance. [VA]
+
+    A voltage is known to 2⁻⁵² of itself, so the current through an impedance z, and with it the power,
+    to a few 2⁻⁵² V²/z: a tenth of a volt-ampere over a microohm.
+    """
+    return float(4.0 * EPSILON * system.base_voltage_v**2 / impedance_ohm)
+
+
+def gap_weight(impedance_ohm: float, system: System) -> float:
+    """Square of the power that a gap of the base voltage causes at an impedance's ends. [p.u.]"""
+    return float((system.base_voltage_v**2 / impedance_ohm / system.base_power_va) ** 2)

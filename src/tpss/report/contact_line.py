@@ -2,7 +2,7 @@
 
 Between two neighbouring points that draw or feed, the current in the contact line is the same
 everywhere, so the voltage phasor is a straight line; only the line's capacitance bends it, by a few
-volts.
+volts, and what a train on a coupled track induces.
 """
 
 from dataclasses import dataclass

@@ -34,6 +34,7 @@ from tpss.kernel import (
     switch,
 )
 from tpss.powerflow.chain import WARM
+from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.run.run import Clock, Run
@@ -51,8 +52,8 @@ Call = tuple[Any, tuple[Any, ...]]
 """A kernel, and arguments of the types with which the clock calls it."""
 
 
-_ready: set[Clock] = set()
-"""Clocks all of whose kernels this process has compiled or loaded."""
+_ready: set[tuple[Clock, bool]] = set()
+"""Clocks all of whose kernels this process has compiled or loaded, and whether with coupled sections."""
 
 _one_at_a_time = threading.Lock()
 
@@ -65,12 +66,13 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
     Parameters
     ----------
     model : Model
-        Any: all have the same types.
+        Any: all have the same types, but those with coupled sections, see `kernel.where_any`.
     clock : callable
         What runs the steps.
     """
+    kernels = clock, model.network.groups != NO_GROUPS
     with _one_at_a_time:
-        if clock in _ready:
+        if kernels in _ready:
             return
         with quick_inlining():
             if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
@@ -79,7 +81,7 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
             if clock is not advance:
                 Run(model, [], 1, clock).advance_to(1)
             compile_calls(figures_calls(model))
-        _ready.add(clock)
+        _ready.add(kernels)
 
 
 def are_ready() -> bool:

@@ -6,7 +6,6 @@ They read the document as it was written, see `scenario.raw`.
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from tpss import library
 from tpss.scenario.feeding_points import placed_transformers
 from tpss.scenario.line import CLOSEST_KM
 from tpss.scenario.raw import Ends, Fault, ends_of, items, lines_of, number, places_of, table
@@ -15,15 +14,12 @@ from tpss.units import kilometres
 
 
 class _Stretch(NamedTuple):
-    """A stretch of a line with what is said about its contact line."""
+    """A stretch of a line, and whether its tracks are tied."""
 
     begin_km: float
     end_km: float
     tracks: int
     tied: object
-    catenary: object
-    key: str
-    """Where its catenary is given."""
 
 
 def check_wiring(document: Mapping[str, Any]) -> Iterator[Fault]:
@@ -66,24 +62,20 @@ def _stretches(
     """Stretches of a line, as far as it tells them."""
     counts = _counts(line, ends)
     others = [
-        (f"supply.contact_lines.{i}", each)
-        for i, each in items(supply, "contact_lines")
-        if alone or each.get("line") == name
+        each for _, each in items(supply, "contact_lines") if alone or each.get("line") == name
     ]
     borders = {*ends, *(km for begin, end, _ in counts for km in (begin, end))}
-    borders |= {km for _, each in others for km in _span(each)}
+    borders |= {km for each in others for km in _span(each)}
     inside = sorted(km for km in borders if ends[0] <= km <= ends[1])
     found = []
     for begin, end in zip(inside, inside[1:], strict=False):
         tracks = next((count for first, last, count in counts if first <= begin < last), 1)
-        tied, catenary, key = supply.get("tracks_tied"), supply.get("catenary"), "supply"
-        for place, each in others:
+        tied = supply.get("tracks_tied")
+        for each in others:
             first, last = _span(each)
             if first <= begin and end <= last:
                 tied = each.get("tracks_tied", tied)
-                if "catenary" in each:
-                    catenary, key = each["catenary"], place
-        found.append(_Stretch(begin, end, tracks, tied, catenary, key))
+        found.append(_Stretch(begin, end, tracks, tied))
     return found
 
 
@@ -114,9 +106,8 @@ def _early_tracks(key: str, line: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _untold(line: str, stretches: list[_Stretch]) -> Iterator[Fault]:
-    """Several tracks of which it is not said whether they are tied, or that cannot be told apart."""
-    several = [each for each in stretches if each.tracks > 1]
-    untold = next((each for each in several if each.tied is None), None)
+    """Several tracks of which it is not said whether they are tied."""
+    untold = next((each for each in stretches if each.tracks > 1 and each.tied is None), None)
     if untold is not None:
         problem = f"it is missing, and {line} has {untold.tracks} tracks"
         remedy = (
@@ -124,24 +115,6 @@ def _untold(line: str, stretches: list[_Stretch]) -> Iterator[Fault]:
             "factor of about two"
         )
         yield "supply.tracks_tied", "", problem, remedy
-    for each in several:
-        common = _common(each.catenary)
-        if each.tied in ("posts", "no") and common:
-            problem = f"not modelled: {common} of tracks that are not tied everywhere"
-            remedy = 'leave it out, or give tracks_tied = "everywhere"'
-            yield f"{each.key}.catenary", "", problem, remedy
-            return
-
-
-def _common(catenary: object) -> str:
-    """Key of a common impedance of two tracks that is not 0, if there is one."""
-    entries = library.entries("catenaries")
-    if isinstance(catenary, str) and catenary in entries:
-        catenary = entries[catenary]
-    if not isinstance(catenary, Mapping):
-        return ""
-    keys = ("mutual_r_ohm_per_km", "mutual_x_ohm_per_km")
-    return next((key for key in keys if number(catenary, key)), "")
 
 
 def _idle_post(

@@ -10,6 +10,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
+from tpss.powerflow.coupled import is_coupled, losses_of_groups
 from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
@@ -204,7 +205,9 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        lost_w += section_losses(s, network, flow)
+        if not is_coupled(network.groups, s):
+            lost_w += section_losses(s, network, flow)
+    lost_w += losses_of_groups(network.groups, flow)
     recording.network_losses[at(step)] = lost_w
 
 

@@ -20,7 +20,7 @@ def line(*nodes, room=()):
         SectionPart(middle, end, 10e3, 20e3, BT, 0.0),
     ]
     ends = sources((0, STIFF), (2, STIFF))
-    return assemble(4, parts, [], ends, SYSTEM, room)
+    return assemble(4, parts, [], ends, SYSTEM, room=room)
 
 
 def solved(network):
@@ -51,7 +51,7 @@ def test_it_follows_a_source_as_it_does_another_node():
 def test_where_the_other_is_not_fed_neither_is_it():
     """Two nodes that nothing reaches stay at 0."""
     parts = [SectionPart(0, 1, 0.0, 10e3, BT, 0.0)]
-    network = assemble(4, parts, [], sources((0, STIFF)), SYSTEM, [(2, 3)])
+    network = assemble(4, parts, [], sources((0, STIFF)), SYSTEM, room=[(2, 3)])
     both = following(mark_unfed(network), {3: 2})
     assert both.source_of_node.tolist() == [0, -1, UNFED, UNFED]
 

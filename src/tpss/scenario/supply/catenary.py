@@ -22,13 +22,13 @@ class Catenary(Part):
         default=0.0,
         ge=0,
         le=10,
-        description="Resistance common to it and that of a track beside it.",
+        description="Resistance that the contact lines of two tracks have in common, tied or not.",
     )
     mutual_x_ohm_per_km: Real = Field(
         default=0.0,
         ge=0,
         le=10,
-        description="Reactance common to both, by their mutual inductance.",
+        description="Reactance that they have in common, by their mutual inductance.",
     )
     connection_r_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Resistance between a feeding point and the line."
