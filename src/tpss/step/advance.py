@@ -84,11 +84,8 @@ def separate_trains(
         )  # fmt: skip
     recording.counters[Counter.TOO_NEAR] += keep_apart(
         count, step_s, standing, state.trains, model.types, model.legs, model.rules, state.turns,
-        state.occupancies, state.first_on_track, signalling,
+        state.occupancies, state.first_on_track, signalling, recording.waits_for[at(step)],
     )  # fmt: skip
-    for n in range(count):
-        i = standing[at(n)].train
-        recording.waits_for[at(step), at(i)] = state.turns.holdings[at(i)].waits_for
     if gated:
         state.clock[0].deadlocked_train = find_deadlock(
             count, standing, state.trains, model.rules, state.turns

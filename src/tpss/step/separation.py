@@ -22,6 +22,9 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Indices, Standing
 from tpss.record import Record, Records
@@ -268,8 +271,9 @@ def keep_apart(
     count: int, step_s: float, standing: Records[Standing], trains: Records[Train],
     types: Records[TrainType], legs: Records[Leg], rules: Gates, turns: Turns,
     occupancies: Records[Occupancy], first: Indices, signalling: Signalling,
+    waits_for: npt.NDArray[np.int32],
 ) -> int:  # fmt: skip
-    """Give the first `count` trains of `standing` their authorities in a step.
+    """Give the first `count` trains of `standing` their authorities in a step; note whom they wait for.
 
     Returns
     -------
@@ -295,4 +299,5 @@ def keep_apart(
             held.waits_for = whom
             if held.end_m - train.motion.position_m < RESTART_M:
                 held.waits_for = in_the_way(i, count, standing, trains, rules, turns)
+            waits_for[at(i)] = held.waits_for
     return too_near
