@@ -10,8 +10,7 @@ ALWAYS = (
     "Quasi-stationary: voltages and currents are phasors, forces and powers constant within a time "
     "step, or means of it. No transients, no harmonics, no protection.",
     "Results depend on the time step; run the scenario with half of it to see by how much.",
-    "Trains that meet on one track do not see each other, nor do those that follow unless they are kept "
-    "apart; drivers hold the speed limit and make no mistakes. No regenerative braking.",
+    "Drivers hold the speed limit and make no mistakes. No regenerative braking.",
 )
 
 SUPPLY = (
@@ -24,13 +23,30 @@ SUPPLY = (
 
 def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
-    sentences = [
+    told = list(scenarios)
+    sentences = [_of_traffic(scenario) for scenario in told]
+    sentences += [
         sentence
-        for scenario in scenarios
+        for scenario in told
         for name in dict.fromkeys(entry.train for entry in scenario.traffic)
         for sentence in _of_train(name, scenario.trains[name])
     ]
     return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY]
+
+
+def _of_traffic(scenario: Scenario) -> str:
+    """Which trains see each other."""
+    signalling = scenario.signalling
+    if signalling.has_gates:
+        return (
+            "Trains see those ahead of them on their track, and wait where they meet on a single one or "
+            "come together; those that cross each other's way on different tracks do not see each other."
+        )
+    if signalling.separation != "none":
+        return (
+            "Trains see those ahead of them on their track; those that meet do not see each other."
+        )
+    return "Trains that follow each other, or meet on one track, do not see each other."
 
 
 def _of_train(name: str, train: Train) -> Iterator[str]:
