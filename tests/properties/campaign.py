@@ -1,4 +1,4 @@
-"""Many random scenarios, half of them spoilt, each judged; a tally of outcomes, and the faults.
+"""Many random scenarios, some spoilt, some crowded, each judged; a tally of outcomes, and the faults.
 
     python -m tests.properties.campaign --cases 10000 --seed 1
 
@@ -20,6 +20,7 @@ from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
+from .crowds import crowded_scenarios
 from .judge import judge, warm_up
 from .strategies import sound_scenarios, spoilt_scenarios
 
@@ -28,7 +29,11 @@ Document = dict[str, Any]
 BATCH = 250
 """Cases that share a seed; the first fault of a batch ends it."""
 
-TITLES = ("sound", "spoilt")
+KINDS = {
+    "sound": sound_scenarios,
+    "spoilt": spoilt_scenarios,
+    "crowded": crowded_scenarios,
+}
 
 
 class Campaign:
@@ -52,7 +57,7 @@ class Campaign:
             suppress_health_check=list(HealthCheck),
             print_blob=False,
         )
-        @given(sound_scenarios() if title == "sound" else spoilt_scenarios())
+        @given(KINDS[title]())
         def look(document: Document) -> None:
             started = time.perf_counter()
             try:
@@ -74,7 +79,7 @@ class Campaign:
     def report(self) -> None:
         """Print tally and faults."""
         print(f"\n{sum(self.tally.values())} cases, the slowest took {self.slowest_s:.1f} s")
-        for title in TITLES:
+        for title in KINDS:
             print(f"\n{title} scenarios")
             for (of, outcome), count in sorted(self.tally.items(), key=lambda item: -item[1]):
                 if of == title:
@@ -101,7 +106,7 @@ def main() -> int:
     campaign = Campaign()
     for begun in range(0, asked.cases, BATCH):
         number = begun // BATCH
-        title = TITLES[number % 2]
+        title = list(KINDS)[number % len(KINDS)]
         campaign.run_batch(title, 100_000 * asked.seed + number, min(BATCH, asked.cases - begun))
         print(f"\r{begun + BATCH} cases, {len(campaign.faults)} faults", end="", file=sys.stderr)
     campaign.report()

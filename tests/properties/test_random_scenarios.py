@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from properties.crowds import crowded_scenarios
 from properties.judge import judge, warm_up
 from properties.strategies import sound_scenarios, spoilt_scenarios
 
@@ -43,6 +44,20 @@ def test_sound_scenarios_run_by_the_rules_or_say_why_not():
     assert outcomes["finished"] > cases / 3
     assert outcomes["stalled"] > cases / 50
     assert outcomes["collapsed"] > cases / 50
+
+
+def test_trains_that_meet_on_single_tracks_all_come_through():
+    """Whoever waits goes on: nobody is in anybody's way for ever, however few tracks there are."""
+    outcomes: Counter[str] = Counter()
+
+    @settings(CASES, max_examples=100)
+    @given(crowded_scenarios())
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document)] += 1
+
+    look()
+    assert outcomes["finished"] > 0.9 * sum(outcomes.values())
+    assert "deadlocked" not in outcomes
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():
