@@ -9,6 +9,7 @@ import numpy as np
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.gates import build_gates, no_gates
+from tpss.model.halts import build_halts
 from tpss.model.legs import build_legs
 from tpss.model.outages import layout_of, service_of
 from tpss.model.profiles import build_profiles, rows_seen
@@ -65,6 +66,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         legs=build_legs(routes, lines, plan.runs),
         signalling=_signalling(scenario),
         rules=_rules(scenario, routes),
+        halts=build_halts(scenario.events, routes),
     )
     return model, Layout(
         supply=plan,

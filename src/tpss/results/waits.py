@@ -27,9 +27,7 @@ class Wait(NamedTuple):
     waited_min: float
     """Without its dwell, if it stood at a stop."""
     waited_for: str
-    """The train that it waited for longest: one ahead of it, or that has to pass a gate first; empty:
-    none is known.
-    """
+    """The train that it waited for longest: one ahead of it, or that has to pass a gate first."""
 
 
 def waits(dataset: xr.Dataset) -> pd.DataFrame:
@@ -41,7 +39,8 @@ def waits(dataset: xr.Dataset) -> pd.DataFrame:
         for first, last in _stands(dataset, i):
             begin_s, end_s = (float(dataset.time[k]) for k in (first, last))
             waited_s = end_s - begin_s - _dwelled_s(dataset, i, begin_s, end_s)
-            if waited_s >= SHORTEST_S:
+            whom = _whom(dataset, i, first, last)
+            if waited_s >= SHORTEST_S and (whom or WAITS_FOR not in dataset):
                 rows.append(
                     Wait(
                         str(name),
@@ -50,7 +49,7 @@ def waits(dataset: xr.Dataset) -> pd.DataFrame:
                         begin_s / 60.0,
                         end_s / 60.0,
                         waited_s / 60.0,
-                        _whom(dataset, i, first, last),
+                        whom,
                     )
                 )
     return table_of(rows, Wait)

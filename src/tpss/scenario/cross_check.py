@@ -9,6 +9,7 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding
+from tpss.scenario.events import check_events
 from tpss.scenario.feeding_points import check_feeding_points
 from tpss.scenario.feeds import check_feeds
 from tpss.scenario.itineraries import check_traffic
@@ -32,7 +33,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += _separation(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
-    findings += check_traffic(document)
+    findings += [*check_traffic(document), *check_events(document)]
     return [Finding(file, *finding) for finding in findings]
 
 

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
+from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
 from tpss.scenario.outage_faults import outage_faults, unknown
@@ -66,6 +67,9 @@ class Scenario(Part):
     )
     signalling: Signalling = Field(
         default={}, validate_default=True, description="What keeps trains apart."
+    )
+    events: tuple[Restart, ...] = Field(
+        default=(), description="Times in which trains are held, to start at once."
     )
     standards: Standards = Field(
         default={}, validate_default=True, description="Criteria by which the result is judged."

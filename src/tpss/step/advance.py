@@ -84,7 +84,8 @@ def separate_trains(
         )  # fmt: skip
     recording.counters[Counter.TOO_NEAR] += keep_apart(
         count, step_s, standing, state.trains, model.types, model.legs, model.rules, state.turns,
-        state.occupancies, state.first_on_track, signalling, recording.waits_for[at(step)],
+        state.occupancies, state.first_on_track, signalling, step * step_s, model.halts,
+        recording.waits_for[at(step)],
     )  # fmt: skip
     if gated:
         state.clock[0].deadlocked_train = find_deadlock(

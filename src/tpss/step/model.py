@@ -7,6 +7,7 @@ from tpss.kernel import inlined
 from tpss.numerics.curve import Points
 from tpss.powerflow.network import Network
 from tpss.record import Records
+from tpss.step.halts import Halts
 from tpss.step.separation import Signalling
 from tpss.step.turns import Gates
 from tpss.track.leg import Leg
@@ -42,6 +43,7 @@ class Model(NamedTuple):
     signalling: Signalling
     rules: Gates
     """Gates of all routes; a route ends with one that is infinite."""
+    halts: Halts
 
 
 @inlined
@@ -69,6 +71,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.legs,
         model.signalling,
         model.rules,
+        model.halts,
     )
 
 

@@ -29,6 +29,7 @@ from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Indices, Standing
 from tpss.record import Record, Records
 from tpss.step.deadlock import in_the_way
+from tpss.step.halts import Halts, halt_ahead
 from tpss.step.precedence import reach_of
 from tpss.step.turns import AT_GATE_M, NOBODY, Gates, Holding, Turns
 from tpss.track.gate import Precedence
@@ -260,10 +261,10 @@ def give_authority(
 
 
 @inlined
-def _waits(motion: Motion, gate_m: float, whom: int) -> bool:
-    """Whether a train stands where it may not go on, because of others."""
+def _is_held(motion: Motion) -> bool:
+    """Whether a train stands where it may not go on."""
     held = motion.authority_m <= motion.position_m and motion.speed_m_s <= 0.0
-    return held and motion.phase == Phase.DRIVING and (gate_m < math.inf or whom != NOBODY)
+    return held and motion.phase == Phase.DRIVING
 
 
 @kernel
@@ -271,7 +272,7 @@ def keep_apart(
     count: int, step_s: float, standing: Records[Standing], trains: Records[Train],
     types: Records[TrainType], legs: Records[Leg], rules: Gates, turns: Turns,
     occupancies: Records[Occupancy], first: Indices, signalling: Signalling,
-    waits_for: npt.NDArray[np.int32],
+    now_s: float, halts: Halts, waits_for: npt.NDArray[np.int32],
 ) -> int:  # fmt: skip
     """Give the first `count` trains of `standing` their authorities in a step; note whom they wait for.
 
@@ -293,11 +294,16 @@ def keep_apart(
             i, reach_m, held.end_m, gate.aside, train, legs, occupancies, first, signalling
         )
         held.ahead_m = end_m
-        too_near += give_authority(end_m, held.end_m, step_s, train, kind, signalling)
+        stop_m = held.end_m
+        if halts.times_s.size > 0:
+            stop_m = min(stop_m, halt_ahead(now_s, train, kind, halts))
+        too_near += give_authority(end_m, stop_m, step_s, train, kind, signalling)
         held.waits_for = NOBODY
-        if _waits(train.motion, held.end_m, whom):
-            held.waits_for = whom
-            if held.end_m - train.motion.position_m < RESTART_M:
+        if _is_held(train.motion):
+            near_m = train.motion.position_m + RESTART_M
+            if held.end_m < near_m:
                 held.waits_for = in_the_way(i, count, standing, trains, rules, turns)
+            elif end_m < near_m:
+                held.waits_for = whom
             waits_for[at(i)] = held.waits_for
     return too_near
