@@ -336,3 +336,13 @@ def test_without_any_line_only_that_is_told():
     document = network({}, [service("up", "West", "East")])
     document["supply"]["converter_stations"][0].pop("line", None)
     assert ("line", "it is missing") in faults_of(document)
+
+
+def test_a_gradient_as_far_from_kilometre_0_as_may_be_stands_beyond_the_line_both_ways():
+    """At 100,000 km, far beyond the end of the line: its trains down it run as without it."""
+    far = {"from_km": 100_000.0, "permille": 0.0}
+    plain = network({"main": line(10.0, {"A": 0.0, "B": 10.0})}, [service("down", "B", "A")])
+    with_it = copy.deepcopy(plain)
+    with_it["lines"]["main"]["gradients"].append(far)
+    results = [run(document) for document in (plain, with_it)]
+    np.testing.assert_array_equal(*(each.dataset.route_position for each in results))

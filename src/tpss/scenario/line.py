@@ -25,6 +25,9 @@ from tpss.units import kilometres
 FARTHEST_KM = 10_000.0
 """No line begins farther from kilometre 0: nanometres would be lost in rounding. [km]"""
 
+FARTHEST_VALUE_KM = 100_000.0
+"""No gradient or limit begins farther from kilometre 0. [km]"""
+
 CLOSEST_KM = 0.001 - 1e-9
 """Least distance between feeding points, or a network's stations, less a margin for rounding. [km]"""
 
@@ -42,7 +45,9 @@ class Gradient:
     # A profile has thousands of them: with slots they need a fifth of the memory.
 
     from_km: Real = Field(
-        ge=-100_000, le=100_000, description="Position from which the gradient applies."
+        ge=-FARTHEST_VALUE_KM,
+        le=FARTHEST_VALUE_KM,
+        description="Position from which the gradient applies.",
     )
     permille: Real = Field(ge=-100, le=100, description="Rise over run, positive uphill.")
 
@@ -51,7 +56,9 @@ class SpeedLimit(Part):
     """A speed limit that applies from its position to that of the next one."""
 
     from_km: Position = Field(
-        ge=-100_000, le=100_000, description="Position from which the limit applies."
+        ge=-FARTHEST_VALUE_KM,
+        le=FARTHEST_VALUE_KM,
+        description="Position from which the limit applies.",
     )
     speed_kmh: Real = Field(ge=1, le=500, description="Highest speed.")
 
@@ -60,7 +67,9 @@ class TrackCount(Part):
     """A number of tracks that applies from its position to that of the next one."""
 
     from_km: Position = Field(
-        ge=-100_000, le=100_000, description="Position from which the number applies."
+        ge=-FARTHEST_VALUE_KM,
+        le=FARTHEST_VALUE_KM,
+        description="Position from which the number applies.",
     )
     count: Whole = Field(ge=1, le=8, description="Number of tracks.")
 
@@ -260,7 +269,8 @@ def end_of_line(begin_km: float, length_km: float) -> float:
 def _turned(profile: Sequence[tuple[float, float]], end_km: float) -> list[tuple[float, float]]:
     """A profile over minus its positions; the outer values continue there too. [km]"""
     last_km = profile[-1][0]
-    begins = [-end_km if last_km < end_km else -last_km - 1.0, *(-km for km, _ in profile[:0:-1])]
+    before_km = -end_km if last_km < end_km else max(-last_km - 1.0, -FARTHEST_VALUE_KM)
+    begins = [before_km, *(-km for km, _ in profile[:0:-1])]
     return list(zip(begins, (value for _, value in reversed(profile)), strict=True))
 
 
