@@ -81,3 +81,23 @@ def test_the_station_with_the_highest_loading_is_named_with_its_place(short):
     assert figures["station with highest peak loading"] == worst.station
     assert figures["place of highest peak loading"] == worst.position_km
     assert figures["highest peak loading"] == pytest.approx(100.0 * worst.peak_loading)
+
+
+def test_a_stretch_that_is_out_is_dark_all_along_whichever_way_it_is_drawn():
+    """From 20 to 30 km of 60 the line is out, and beyond it nobody feeds: 0 V from 20 km on.
+
+    Drawn down the line that is up to 40 km from its end; where the voltage falls two nodes stand, of
+    which that of the dark side comes first then.
+    """
+    lines = {"main": line(60.0, {"A": 0.0, "B": 60.0}), "spur": line(5.0, {"A": 0.0, "C": 5.0})}
+    document = network(lines, [service("up", "A", "B", departures_min=[89.0])])
+    section = {"line": "main", "from_km": 20.0, "to_km": 30.0}
+    document["outages"] = [{"name": "out", "sections": [section]}]
+    document["simulation"]["outage"] = "out"
+    result = run(document)
+    for way, dark in ((["A", "B"], (20.2, 60.0)), (["B", "A"], (0.0, 39.8))):
+        seen = line_voltage(along(result, way).dataset)
+        is_dark = (seen.position_km >= dark[0]) & (seen.position_km <= dark[1])
+        assert seen.highest_kv[is_dark].max() == 0.0
+        beside = np.abs(seen.position_km - (20.0 if way[0] == "A" else 40.0)) < 0.4
+        assert seen.lowest_kv[~is_dark & ~beside].min() > 15.0

@@ -234,6 +234,7 @@ def _with_fixed(
     owner = names[lines_of(data, what)]
     places_km = data[f"{what}_position"].to_numpy() / 1e3
     along_km = np.full(places_km.shape, np.nan)
+    rank = np.arange(places_km.size)  # nodes of one place stand in the order of rising kilometres
     for stretch in corridor:
         # Where lines meet that are not tied, each has a node of its own.
         own = set(places_km[owner == stretch.line].tolist()) if what == "node" else set()
@@ -241,12 +242,12 @@ def _with_fixed(
             here = owner == line
             if line != stretch.line:
                 here &= np.isin(places_km, [km for km, there in shift.items() if there not in own])
+            here &= np.isnan(along_km)
             own_km = np.array([shift.get(km, km) for km in places_km[here].tolist()])
-            along_km[here] = np.where(
-                np.isfinite(along_km[here]), along_km[here], stretch.along_km(own_km)
-            )
+            along_km[here] = stretch.along_km(own_km)
+            rank[here] = int(stretch.sign) * np.flatnonzero(here)
     chosen = np.flatnonzero(np.isfinite(along_km))
-    order = chosen[np.argsort(along_km[chosen], kind="stable")]
+    order = chosen[np.lexsort((rank[chosen], along_km[chosen]))]
     attributes = data[f"{what}_position"].attrs
     return data.isel({what: order}).assign_coords(
         {f"{what}_position": (what, 1e3 * along_km[order], attributes)}
