@@ -42,6 +42,13 @@ def closest(word: str, known: Sequence[str]) -> str:
     return next(iter([*near, *sorted(longer, key=len)]), "")
 
 
+def no_such(kind: str, name: str, known: Sequence[str]) -> tuple[str, str]:
+    """Problem and remedy of a name that there is not: the most similar known one, if any, and all."""
+    hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
+    several = f"{kind}es" if kind.endswith("ch") else f"{kind}s"
+    return f"there is no such {kind}", f"{hint}{several}: {', '.join(known) or 'none'}"
+
+
 def shortened(text: str) -> str:
     """The first characters of a long text."""
     return text if len(text) <= 60 else f"{text[:57]}..."

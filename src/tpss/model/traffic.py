@@ -17,7 +17,7 @@ from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.model import Model
 from tpss.units import kilometres, si
-from tpss.vehicle.braking import braking_square
+from tpss.vehicle.braking import braking_distance, braking_square
 from tpss.vehicle.train_type import TrainType
 
 
@@ -131,8 +131,7 @@ def _stopping_distance(speed_m_s: float, kind: TrainType, options: Options) -> f
     """Shortest distance in which a train stops. [m]"""
     retardation_m_s2 = kind.highest_retardation_m_s2
     if options.motion == MotionModel.CONTINUOUS:
-        square = plain(braking_square)(speed_m_s, retardation_m_s2, kind.braking)
-        return square / (2.0 * retardation_m_s2)
+        return plain(braking_distance)(speed_m_s, retardation_m_s2, kind.braking)
     return plain(stopping_distance)(speed_m_s, retardation_m_s2, options)
 
 

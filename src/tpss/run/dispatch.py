@@ -73,6 +73,14 @@ class _Train:
     place: int = -1
     """Crossing place at which it has a track, or to which it has been let."""
 
+    @property
+    def last_gate(self) -> object:
+        """The gate that it has passed last; one that has passed none shares it with nobody."""
+        if self.next == 0:
+            return id(self)
+        last = self.passages[self.next - 1]
+        return last.stretch, last.direction
+
 
 class Dispatcher:
     """Lets trains pass; see the module.
@@ -176,19 +184,12 @@ class Dispatcher:
         k = len(queue)
         while k > 0:
             other = self.trains[queue[k - 1]]
-            if self._last_gate(other) == self._last_gate(train) or (
+            if other.last_gate == train.last_gate or (
                 other.passages[other.next].ready_s + other.late_s <= here.ready_s + train.late_s
             ):
                 break
             k -= 1
         queue.insert(k, i)
-
-    def _last_gate(self, train: _Train) -> object:
-        """What gate a train has passed last; one that has passed none shares it with nobody."""
-        if train.next == 0:
-            return id(train)
-        last = train.passages[train.next - 1]
-        return last.stretch, last.direction
 
     def _plan_next(self, i: int) -> None:
         train = self.trains[i]

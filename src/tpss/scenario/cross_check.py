@@ -31,7 +31,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
     findings += [*check_feeds(document), *check_wiring(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
-    findings += _separation(document, simulation)
+    findings += [*_separation(document, simulation), *_planned_order(document, simulation)]
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
     return [Finding(file, *finding) for finding in findings]
@@ -55,17 +55,21 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Trains that are kept apart: with stepped motion, which knows no authorities, or without an end."""
+    """Trains that are kept apart, with stepped motion, which knows no authorities."""
     choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
     choices += made_of_stepped_motion(simulation.get)
-    signalling = table(document, "signalling")
-    if signalling.get("single_track") == "timetable-order" and "duration_min" not in simulation:
-        problem = "it is missing; the order of trains is planned for as long as the run lasts"
-        yield "simulation.duration_min", "", problem, "add it"
-    wanted = signalling.get("separation", "none")
+    wanted = table(document, "signalling").get("separation", "none")
     if choices and wanted != "none":
         problem = f"does not go with {choices[0]}"
         yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"
+
+
+def _planned_order(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
+    """Trains that keep a planned order, in a run of which it is not known how long it lasts."""
+    rule = table(document, "signalling").get("single_track")
+    if rule == "timetable-order" and "duration_min" not in simulation:
+        problem = "it is missing; the order of trains is planned for as long as the run lasts"
+        yield "simulation.duration_min", "", problem, "add it"
 
 
 def _bands(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:

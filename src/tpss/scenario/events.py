@@ -5,7 +5,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tpss.errors import closest
+from tpss.errors import no_such
 from tpss.scenario.clock import Moment
 from tpss.scenario.fields import Name, Part, fault
 from tpss.scenario.raw import Fault, items, lines_of, table
@@ -49,6 +49,4 @@ def check_events(document: Mapping[str, Any]) -> Iterator[Fault]:
         named = event.get("lines")
         for k, name in enumerate(named if isinstance(named, list | tuple) else []):
             if isinstance(name, str) and name not in known:
-                hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
-                listed = f"{hint}lines: {', '.join(known)}"
-                yield f"events.{i}.lines.{k}", repr(name), "there is no such line", listed
+                yield f"events.{i}.lines.{k}", repr(name), *no_such("line", name, known)

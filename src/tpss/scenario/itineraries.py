@@ -6,7 +6,7 @@ They read the document as it was written, see `scenario.raw`.
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from tpss.errors import closest
+from tpss.errors import no_such
 from tpss.scenario.raw import Ends, Fault, items, lines_of, number, places_of, table
 from tpss.scenario.routes import (
     Hop,
@@ -74,9 +74,7 @@ def _service_names(document: Mapping[str, Any]) -> Iterator[Fault]:
 
 def _unknown(key: str, name: object, known: list[str], kind: str) -> Iterator[Fault]:
     if isinstance(name, str) and name not in known:
-        hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
-        listed = ", ".join(known) or "none"
-        yield key, repr(name), f"there is no such {kind}", f"{hint}{kind}s: {listed}"
+        yield key, repr(name), *no_such(kind, name, known)
 
 
 def _names(

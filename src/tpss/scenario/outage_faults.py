@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from tpss.errors import Finding, closest
+from tpss.errors import Finding, no_such
 from tpss.scenario.line import Line
 from tpss.scenario.out_sections import section_faults
 from tpss.scenario.outages import SAME_PLACE_KM, SWITCHES, Outage
@@ -37,7 +37,7 @@ def outage_faults(
     ]
     names, chosen = [outage.name for outage in outages], simulation.outage
     if chosen is not None and chosen not in names:
-        problem, remedy = unknown("outage", chosen, names)
+        problem, remedy = no_such("outage", chosen, names)
         findings.append(Finding(file, "simulation.outage", repr(chosen), problem, remedy))
     if chosen is not None and simulation.load_flow == "least-squares":
         problem = "the original program's load flow knows no outages"
@@ -47,22 +47,15 @@ def outage_faults(
     return findings
 
 
-def unknown(kind: str, name: str, known: Sequence[str]) -> tuple[str, str]:
-    """Problem and remedy of a name that there is not."""
-    hint = f"did you mean {close}? " if (close := closest(name, known)) else ""
-    several = f"{kind}es" if kind.endswith("ch") else f"{kind}s"
-    return f"there is no such {kind}", f"{hint}{several}: {', '.join(known) or 'none'}"
-
-
 def _faults(outage: Outage, supply: Supply, switches: Sequence[str]) -> Iterator[Fault]:
     stations = {station.name: station for station in supply.stations}
     named = [(f"stations.{i}", name) for i, name in enumerate(outage.stations)]
     for key, name in [*named, *((f"units.{name}", name) for name in outage.units)]:
         if name not in stations:
-            yield key, repr(name), *unknown("station", name, list(stations))
+            yield key, repr(name), *no_such("station", name, list(stations))
     for i, name in enumerate(outage.opens):
         if name not in switches:
-            yield f"opens.{i}", repr(name), *unknown("switch", name, switches)
+            yield f"opens.{i}", repr(name), *no_such("switch", name, switches)
     for name, count in outage.units.items():
         if name in stations:
             yield from _units(name, count, stations[name])

@@ -8,7 +8,7 @@ from itertools import takewhile
 from operator import gt
 from typing import Any, NamedTuple
 
-from tpss.errors import closest
+from tpss.errors import no_such
 from tpss.scenario.line import CLOSEST_KM
 from tpss.scenario.raw import (
     Ends,
@@ -94,13 +94,7 @@ def check_stations_named(document: Mapping[str, Any]) -> Iterator[Fault]:
         if not isinstance(at, str):
             continue
         if at not in known:
-            hint = f"did you mean {close}? " if (close := closest(at, known)) else ""
-            yield (
-                f"{key}.at",
-                repr(at),
-                "there is no such station",
-                f"{hint}stations: {', '.join(known)}",
-            )
+            yield f"{key}.at", repr(at), *no_such("station", at, known)
         elif line in lines and at not in lines[str(line)]:
             yield f"{key}.at", repr(at), f"no station of {line}", "leave line out, or correct it"
         elif km is not None and km not in [p[at] for p in lines.values() if at in p]:
@@ -112,9 +106,7 @@ def _named_lines(document: Mapping[str, Any], names: list[str]) -> Iterator[Faul
     for key, part in _parts_on_lines(document):
         given = part.get("line")
         if isinstance(given, str) and given not in names:
-            hint = f"did you mean {close}? " if (close := closest(given, names)) else ""
-            remedy = f"{hint}lines: {', '.join(names)}"
-            yield f"{key}.line", repr(given), "there is no such line", remedy
+            yield f"{key}.line", repr(given), *no_such("line", given, names)
         elif given is None and len(names) > 1:
             remedy = f"add it; lines: {', '.join(names)}"
             yield f"{key}.line", "", "it is missing, and there are several lines", remedy

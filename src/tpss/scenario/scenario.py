@@ -10,11 +10,11 @@ from typing import Annotated, Any, Self
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from tpss import library
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, ScenarioError, no_such
 from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
-from tpss.scenario.outage_faults import outage_faults, unknown
+from tpss.scenario.outage_faults import outage_faults
 from tpss.scenario.outages import Outage, Outages
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.rolling_stock import Train
@@ -232,7 +232,7 @@ class Scenario(Part):
         """
         outage = next((each for each in self.outages if each.name == name), None)
         if outage is None:
-            problem, remedy = unknown("outage", name, [each.name for each in self.outages])
+            problem, remedy = no_such("outage", name, [each.name for each in self.outages])
             raise ScenarioError(
                 [Finding(str(self._source), "outages", repr(name), problem, remedy)]
             )

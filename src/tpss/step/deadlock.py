@@ -162,9 +162,7 @@ def find_deadlock(
     count: int, standing: Records[Standing], trains: Records[Train], rules: Gates, turns: Turns
 ) -> int:
     """A train of the first `count` of `standing` that waits in a circle; -1: there is none."""
-    # 1. All that wait may be stuck; whoever waits for nobody is not.
-    for i in range(trains.size):
-        turns.holdings[at(i)].stuck = False
+    # 1. All that wait may be stuck; whoever waits for nobody, or is not on the line, is not.
     waiting = 0
     for n in range(count):
         held = turns.holdings[at(standing[at(n)].train)]

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import at, kernel
-from tpss.vehicle.braking import braking_square
+from tpss.vehicle.braking import braking_distance
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -38,7 +38,7 @@ def halt_ahead(now_s: float, train: Train, kind: TrainType, halts: Halts) -> flo
     head_m, v, b = train.motion.position_m, train.motion.speed_m_s, kind.highest_retardation_m_s2
     nearest_m = head_m - ROUNDING_M
     if v > 0.0:
-        nearest_m += braking_square(v, b, kind.braking) / (2.0 * b)
+        nearest_m += braking_distance(v, b, kind.braking)
     halt_m = math.inf
     for e in range(halts.times_s.shape[0]):
         if not halts.times_s[at(e), 0] <= now_s < halts.times_s[at(e), 1]:

@@ -37,7 +37,7 @@ from tpss.step.turns import (
     has_track,
 )
 from tpss.track.gate import Gate
-from tpss.vehicle.braking import braking_square
+from tpss.vehicle.braking import braking_distance
 from tpss.vehicle.train import Phase, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -46,8 +46,7 @@ from tpss.vehicle.train_type import TrainType
 def reach_of(kind: TrainType, reaction_s: float, step_s: float) -> float:
     """Distance within which a train that runs as fast as it can has to know what it may do. [m]"""
     b, fastest = kind.highest_retardation_m_s2, kind.highest_speed_m_s
-    braking_m = braking_square(fastest, b, kind.braking) / (2.0 * b)
-    return braking_m + fastest * (reaction_s + 2.0 * step_s)
+    return braking_distance(fastest, b, kind.braking) + fastest * (reaction_s + 2.0 * step_s)
 
 
 @inlined

@@ -34,7 +34,7 @@ from tpss.step.precedence import reach_of
 from tpss.step.turns import AT_GATE_M, NOBODY, Gates, Holding, Turns
 from tpss.track.gate import Precedence
 from tpss.track.leg import Leg, place_on_line
-from tpss.vehicle.braking import braking_square
+from tpss.vehicle.braking import braking_distance
 from tpss.vehicle.train import Motion, Phase, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -157,8 +157,8 @@ def _rear(entry: Occupancy, leg: Leg) -> float:
 def _end_before(entry: Occupancy, leg: Leg, signalling: Signalling) -> float:
     """End of authority before an occupied part of a track, along the route of a train behind it. [m]"""
     if signalling.separation == Separation.MOVING_BLOCK:
-        rear_m = entry.low_m if leg.sign > 0.0 else entry.high_m
-    elif leg.sign > 0.0:
+        return _rear(entry, leg) - signalling.margin_m
+    if leg.sign > 0.0:
         rear_m = math.floor(entry.low_m / signalling.block_m) * signalling.block_m
     else:
         rear_m = math.ceil(entry.high_m / signalling.block_m) * signalling.block_m
@@ -220,7 +220,7 @@ def _brake_for(end_m: float, motion: Motion, kind: TrainType) -> tuple[float, bo
         at_end = room_m < RESTART_M
         motion.authority_m = min(motion.authority_m, motion.position_m if at_end else end_m)
         return room_m, False
-    braking_m = braking_square(v, b, kind.braking) / (2.0 * b)
+    braking_m = braking_distance(v, b, kind.braking)
     too_near = room_m < braking_m - ROUNDING_M
     if too_near:
         room_m, end_m = braking_m, motion.position_m + braking_m

@@ -29,10 +29,10 @@ class Status(IntEnum):
     FINISHED = 1
     COLLAPSED = 2
     STALLED = 3
-    DEADLOCKED = 5
-    """Trains wait for each other in a circle."""
     SEARCHING = 4
     """A step waits for the answer of a search."""
+    DEADLOCKED = 5
+    """Trains wait for each other in a circle."""
 
 
 class TrainState(IntEnum):

@@ -72,6 +72,17 @@ def band_below(speed_m_s: float, bands: BrakingBands) -> int:
 
 
 @fused
+def braking_distance(speed_m_s: float, highest_m_s2: float, bands: BrakingBands) -> float:
+    """Distance in which a train brakes to a stand; parameters are those of `braking_square`. [m]
+
+    References
+    ----------
+    [Boullanger2009]_, implied by eq. (2.29) and (2.30), in each band.
+    """
+    return braking_square(speed_m_s, highest_m_s2, bands) / (2.0 * highest_m_s2)
+
+
+@fused
 def braking_square(speed_m_s: float, highest_m_s2: float, bands: BrakingBands) -> float:
     """q of a speed: braking to a stand takes q / 2 b. [m²/s²]
 

@@ -1,0 +1,249 @@
+"""The network's part of the slow audit: powers at all nodes, laws of the stations, balance of energy.
+
+The solver pushes voltages and currents along chains; the audit starts from the recorded voltages,
+forms the current of every piece of line and every branch from the voltages at its ends (the nodal
+admittance equations), and compares the powers that this asks for with the recorded ones.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from slow_figures import intervals_s, largest, nan_is_largest
+from tpss.audit.balances import ALLOWED_BALANCE
+from tpss.powerflow.groups import sections_of
+from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
+from tpss.run.run import Outcome
+from tpss.sources.kinds import SourceKind
+from tpss.step.model import Model
+from tpss.step.state import TrainState
+
+Floats = npt.NDArray[np.float64]
+Complexes = npt.NDArray[np.complex128]
+
+
+def phasors(rows: Any, place: str) -> Complexes:
+    """Recorded voltages of trains ("pantograph") or nodes ("node"). [V]"""
+    return np.asarray(rows[f"{place}_real"] + 1j * rows[f"{place}_imag"], dtype=complex)
+
+
+def legs_of(outcome: Outcome, model: Model) -> Any:
+    """Leg of every train at every instant, shape (instants, trains)."""
+    along_m = np.asarray(outcome.recording.trains["route_position"])
+    found = np.empty(along_m.shape, dtype=model.legs.dtype)
+    for i, train in enumerate(outcome.trains):
+        for leg in model.legs[train.route]:
+            found[:, i] = np.where(~(along_m[:, i] < leg.from_m), leg, found[:, i])
+    return found
+
+
+def sections_and_places(outcome: Outcome, model: Model) -> tuple[Any, Floats]:
+    """Section above every train at every instant, and its place on the line. [m]"""
+    legs, sections = legs_of(outcome, model), model.network.sections
+    place_m = legs["sign"] * outcome.recording.trains["route_position"] + legs["offset_m"]
+    section = legs["first_section"].copy()
+    for s in range(1, len(sections)):
+        above = (legs["first_section"] < s) & (s < legs["end_section"])
+        section = np.where(above & (place_m >= sections.start_m[s]), s, section)
+    return section, np.asarray(place_m)
+
+
+def power_mismatch_va(outcome: Outcome, model: Model) -> float:
+    """Largest mismatch between recorded powers and those that the recorded voltages ask for. [VA]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (F.35)-(F.38).
+    """
+    if outcome.steps == 0:
+        return 0.0
+    rows, network = slice(0, outcome.steps), model.network
+    trains, nodes = outcome.recording.trains[rows], outcome.recording.nodes[rows]
+    stations = outcome.recording.stations[rows]
+    train_v, node_v = phasors(trains, "pantograph"), phasors(nodes, "node")
+    section, place_m = (each[rows] for each in sections_and_places(outcome, model))
+    train_a, leaving_a = _contact_line_currents(section, place_m, train_v, node_v, network)
+    for branch in network.branches:
+        current = node_v[:, branch.start_node] - node_v[:, branch.end_node]
+        current = current / branch.impedance_ohm
+        leaving_a[:, branch.start_node] += current
+        leaving_a[:, branch.end_node] -= current
+    fed = np.zeros_like(node_v)
+    fed[:, network.sources.node] = (
+        stations["station_active_power"] + 1j * stations["station_reactive_power"]
+    )
+    on_line = outcome.recording.train_state[rows] >= 0
+    on_line &= outcome.recording.train_state[rows] != TrainState.ARRIVED
+    drawn = trains["active_power"] + 1j * trains["reactive_power"]
+    return max(
+        largest(node_v * leaving_a.conj() - fed),
+        largest((train_v * train_a.conj() - drawn)[on_line]),
+        key=nan_is_largest,
+    )
+
+
+def _contact_line_currents(
+    section: Any, place_m: Floats, train_v: Complexes, node_v: Complexes, network: Network
+) -> tuple[Complexes, Complexes]:
+    """Current into each train, and current that leaves each node into the contact line. [A]
+
+    The points of a section, its nodes and the trains under it, are sorted by place at every instant.
+    """
+    drawn_a, leaving_a = np.zeros_like(train_v), np.zeros_like(node_v)
+    for group in sections_of(network.groups):
+        for k in range(len(place_m)):
+            _group_currents(
+                group, section[k], place_m[k], train_v[k], node_v[k], network,
+                drawn_a[k], leaving_a[k],
+            )  # fmt: skip
+    for s, part in enumerate(network.sections):
+        if any(s in group for group in sections_of(network.groups)):
+            continue
+        under = np.isfinite(train_v) & (section == s)
+        ends_m = np.ones((len(place_m), 1))
+        # A train may stand before the first node of a line, or behind the last one, by rounding.
+        keys = np.concatenate([-np.inf * ends_m, np.where(under, place_m, np.inf)], axis=1)
+        order = np.argsort(keys, axis=1, kind="stable")
+        points_m = np.concatenate([part.start_m * ends_m, place_m], axis=1)
+        volts = np.concatenate([node_v[:, [part.start_node]], train_v], axis=1)
+        there = np.concatenate([ends_m > 0.0, under], axis=1)
+        points_m, volts, there = (
+            np.take_along_axis(each, order, 1) for each in (points_m, volts, there)
+        )
+        last = there.sum(axis=1) - 1
+        leaving = np.zeros_like(volts)
+        for k in range(volts.shape[1]):
+            at_end = k == last
+            if not at_end.any() and not there[:, k].any():
+                break
+            after = min(k + 1, volts.shape[1] - 1)
+            ahead_v = np.where(at_end, node_v[:, part.end_node], volts[:, after])
+            ahead_m = np.where(at_end, part.end_m, points_m[:, after])
+            length_m = np.maximum(SHORTEST_PIECE_M, ahead_m - points_m[:, k])
+            here = there[:, k]
+            drop = np.where(here, volts[:, k] - ahead_v, 0.0)
+            current = drop / (part.impedance_ohm_per_m * np.where(here, length_m, 1.0))
+            half_shunt = 0.5j * part.susceptance_s_per_m * length_m
+            leaving[:, k] += np.where(here, current + half_shunt * volts[:, k], 0.0)
+            arriving = np.where(here, half_shunt * ahead_v - current, 0.0)
+            leaving_a[:, part.end_node] += np.where(at_end, arriving, 0.0)
+            leaving[:, after] += np.where(at_end, 0.0, arriving)
+        unsorted = np.zeros_like(leaving)
+        np.put_along_axis(unsorted, order, leaving, 1)
+        leaving_a[:, part.start_node] += unsorted[:, 0]
+        drawn_a -= np.where(under, unsorted[:, 1:], 0.0)
+    return drawn_a, leaving_a
+
+
+def _group_currents(
+    group: Any, section: Any, place_m: Floats, train_v: Complexes, node_v: Complexes,
+    network: Network, drawn_a: Complexes, leaving_a: Complexes,
+) -> None:  # fmt: skip
+    """Add the currents of coupled sections at an instant to those of their trains and nodes. [A]
+
+    Unknown are the currents of all pieces at once; two on different tracks have the impedance in common
+    of the length along which they lie beside each other.
+    """
+    pieces: list[tuple[int, float, float, complex, complex, Any, Any]] = []
+    for s in group:
+        part = network.sections[s]
+        if network.source_of_node[part.start_node] == UNFED:
+            continue
+        under = np.flatnonzero(np.isfinite(train_v) & (section == s))
+        under = under[np.argsort(place_m[under], kind="stable")]
+        points_m = [part.start_m, *place_m[under], part.end_m]
+        volts = [node_v[part.start_node], *train_v[under], node_v[part.end_node]]
+        ends = [("node", part.start_node), *(("train", i) for i in under), ("node", part.end_node)]
+        begin_m = 0.0
+        for k in range(len(points_m) - 1):
+            length_m = max(SHORTEST_PIECE_M, points_m[k + 1] - points_m[k])
+            pieces.append(
+                (s, begin_m, begin_m + length_m, volts[k], volts[k + 1], ends[k], ends[k + 1])
+            )
+            begin_m += length_m
+    if not pieces:
+        return
+    part = network.sections[group[0]]
+    impedance = np.zeros((len(pieces),) * 2, dtype=complex)
+    for i, (s, begin_m, end_m, *_) in enumerate(pieces):
+        for j, (other, from_m, to_m, *_) in enumerate(pieces):
+            beside_m = min(end_m, to_m) - max(begin_m, from_m)
+            if i == j:
+                impedance[i, j] = part.impedance_ohm_per_m * (end_m - begin_m)
+            elif other != s and beside_m > 0.0:
+                impedance[i, j] = network.groups.mutual_ohm_per_m[s] * beside_m
+    drops = np.array([piece[3] - piece[4] for piece in pieces])
+    for piece, current in zip(pieces, np.linalg.solve(impedance, drops), strict=True):
+        _, begin_m, end_m, begin_v, end_v, begin, end = piece
+        shunt = 0.5j * part.susceptance_s_per_m * (end_m - begin_m)
+        for (kind, number), leaving in (
+            (begin, current + shunt * begin_v),
+            (end, shunt * end_v - current),
+        ):
+            if kind == "node":
+                leaving_a[number] += leaving
+            else:
+                drawn_a[number] -= leaving
+
+
+def converter_residual(outcome: Outcome, network: Network) -> float:
+    """Largest distance of a station's voltage from the phasor that its law asks for. [p.u.]"""
+    rows = slice(0, outcome.steps)
+    stations, nodes = outcome.recording.stations[rows], outcome.recording.nodes[rows]
+    sources = network.sources
+    p, q = stations["station_active_power"], stations["station_reactive_power"]
+    n, node_v = stations["active_converters"], phasors(nodes, "node")[:, sources.node]
+    out = n == 0.0  # of service: nothing is asked of them, and nothing fed
+    assert (p[out] == 0.0).all()
+    assert (q[out] == 0.0).all()
+    n = np.where(out, 1.0, n)
+    asked_v = np.empty_like(node_v)
+    for kind, phasor in (
+        (SourceKind.CONVERTER, converter_phasor),
+        (SourceKind.GRID, grid_phasor),
+    ):
+        own = sources.kind == kind
+        asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
+    return largest(np.where(out, 0.0, node_v - asked_v) / network.system.base_voltage_v)
+
+
+def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any) -> Complexes:
+    """Voltage and angle that converters ask for, as a phasor. [V]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1)-(2.4).
+    """
+    law = sources.converter
+    voltage = law.no_load_voltage_v - law.droop_v_per_var * q / n
+    square = law.motor_voltage_v**2
+    q50 = law.grid_reactive_power_var
+    grid = np.arctan(law.grid_reactance_ohm * p / (square + law.grid_reactance_ohm * q50)) / 3
+    x_motor, x_generator = law.motor_reactance_ohm / n, law.generator_reactance_ohm / n
+    motor = np.arctan(x_motor * p / (square + x_motor * q50)) / 3
+    generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
+    angle = law.grid_angle_rad - grid - motor - generator
+    return np.asarray(voltage * np.exp(1j * angle))
+
+
+def grid_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any) -> Complexes:
+    """Voltage behind the impedances of grid and transformers, at the current that is fed. [V]"""
+    law = sources.grid
+    fed_a = np.conj((p + 1j * q) / node_v)
+    impedance_ohm = law.grid_impedance_ohm + law.transformer_impedance_ohm / n
+    return np.asarray(law.no_load_voltage_v - impedance_ohm * fed_a)
+
+
+def network_balance(outcome: Outcome, model: Model) -> float:
+    """Relative difference between the stations' energy and that of trains and losses. [1]"""
+    recording, step_s = outcome.recording, model.options.step_s
+    each_s = intervals_s(outcome, model)
+    rows = slice(0, outcome.steps)
+    fed = np.nansum(recording.stations["station_active_power"][rows].sum(axis=1) * each_s)
+    drawn = np.nansum(np.nansum(recording.trains["active_power"][rows], axis=1) * each_s)
+    lost = np.nansum(recording.network_losses[rows] * each_s)
+    # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
+    mismatch_w = TOLERANCE * model.network.system.base_power_va
+    least = mismatch_w / ALLOWED_BALANCE * step_s * max(outcome.steps, 1)
+    return float(abs(fed - drawn - lost) / max(abs(fed), least))
