@@ -134,7 +134,8 @@ def _meets_there(gate: _Gate, following: Sequence[_Gate]) -> bool:
     if gate.station is None or not following:
         return False
     after = following[0]
-    return isinstance(after.stretch, SingleTrack) and abs(after.from_m - gate.until_m) < 1.0
+    there = abs(after.from_m - gate.until_m) <= 1e3 * CLOSEST_KM
+    return there and isinstance(after.stretch, SingleTrack)
 
 
 def _courses(route: Route) -> Iterator[tuple[Course, Hop]]:
