@@ -15,6 +15,7 @@ from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transf
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
 from .networks import into_network
+from .neutral import with_neutral_section
 from .outages import outages
 from .ranges import numbers
 from .single_tracks import with_single_tracks
@@ -297,6 +298,8 @@ def sound_scenarios(draw: Draw) -> Document:
         continuous = moves_continuously(document["simulation"])
         document["outages"] = [draw(outages(document, span_min, continuous))]
         document["simulation"]["outage"] = "random"
+    if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
+        with_neutral_section(draw, document)
     return document
 
 

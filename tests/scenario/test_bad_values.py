@@ -261,7 +261,7 @@ ABSENT = [
     pytest.param({f"{FREIGHT}.regenerative_braking": True}, f"{FREIGHT}.regenerative_braking",
                  "trains do not feed power back", "leave it out", id="regeneration"),
     pytest.param({"line.neutral_sections": [{"from_km": 4.0, "to_km": 4.1}]}, "line.neutral_sections",
-                 "neutral sections", "leave it out", id="neutral sections"),
+                 "neutral sections", "write [[supply.neutral_sections]]", id="neutral sections"),
     pytest.param({"line.speed_limits": [{"from_km": 0.0, "to_km": 5.0, "speed_kmh": 80.0}]},
                  "line.speed_limits.0.to_km", "an end of a speed limit",
                  "holds until the next one begins; where limits overlap, give the lowest",

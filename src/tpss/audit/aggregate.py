@@ -18,7 +18,7 @@ from tpss.powerflow.network import TOLERANCE
 from tpss.record import Record, Records
 from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
-from tpss.step.recording import Recording
+from tpss.step.recording import Recording, lacks_power
 from tpss.step.state import TrainState
 from tpss.track.leg import Leg, leg_at, place_on_line
 from tpss.vehicle.train import Train
@@ -214,8 +214,8 @@ def _gather_trains(
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
         _note_place(row.route_position, train)
-        if math.isnan(voltage) or voltage == 0.0:  # it is not fed, and draws nothing
-            continue
+        if math.isnan(voltage) or voltage == 0.0 or lacks_power(step, i, h, recording):
+            continue  # it is not fed, and draws nothing
         train.energy_j += row.active_power * h
         train.steps += 1
         train.lowest_voltage_v = min(train.lowest_voltage_v, voltage)

@@ -48,6 +48,8 @@ def _audit_continuous(
     if step + 1 == train.timetable.arrival_step:
         present_s -= train.timetable.stood_s
     low, high = extremes(kind.efficiency, model.points)
+    if recording.without_power_s.shape[0] > 0:
+        present_s -= recording.without_power_s[step, i]
     fed = before.pantograph_real != 0.0 or before.pantograph_imag != 0.0
     auxiliary_w = kind.auxiliary_power_w if fed else 0.0
     for_motors_j = before.active_power * h - auxiliary_w * present_s

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from tpss import library, units
 from tpss.cli.library import KINDS
-from tpss.cli.notes import notes
+from tpss.cli.notes import notes, stuck
 from tpss.cli.terminal import say
 from tpss.model.build import build_model
 from tpss.model.outages import service_of
@@ -59,7 +59,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     for heading, text in summary(scenario):
         rows.add_row(f"[dim]{heading}[/dim]", escape(text))
     console.print(rows)
-    for note in notes(scenario):
+    for note in (*notes(scenario), *stuck(scenario, model)):
         console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
     say(console, f"\nNo faults in {file}")
 

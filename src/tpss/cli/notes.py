@@ -9,7 +9,8 @@ from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
 from tpss.model.effort_curve import adhesion
-from tpss.model.routes import Route, routes_of
+from tpss.model.neutral import strands
+from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.fields import LINE
@@ -18,6 +19,7 @@ from tpss.scenario.machine import EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import system_named
 from tpss.scenario.traffic import Traffic
+from tpss.step.model import Model
 from tpss.units import kilometres, on_line, si
 
 WHOLE = 1e-6
@@ -44,6 +46,19 @@ def notes(scenario: Scenario) -> list[str]:
         *_single_trains(scenario),
         *(note for each in _routes(scenario) for note in _climb(scenario, *each)),
     ]
+
+
+def stuck(scenario: Scenario, model: Model) -> Iterator[str]:
+    """Trains that no speed carries through a neutral section; where several do, the first service."""
+    running = running_trains(scenario, routes_of(scenario))
+    for i, entry, route in _routes(scenario):
+        kind = model.types[index_of(entry, route, running)]
+        for begin_m, speed_m_s, stands_m in strands(kind, (route.start_m, *route.stops_m), model):
+            yield (
+                f"traffic.{i}: {entry.name} cannot coast through the neutral section at "
+                f"{route.post(begin_m)} km: even at {3.6 * speed_m_s:.0f} km/h, the most that it may "
+                f"have there, it comes to stand near {route.post(stands_m)} km, without power to start"
+            )
 
 
 def _routes(scenario: Scenario) -> list[tuple[int, Traffic, Route]]:

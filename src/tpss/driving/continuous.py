@@ -14,6 +14,7 @@ it, the step becomes a passage, and is solved again.
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.motion import force_to_target, move_uniformly, set_target
+from tpss.driving.neutral import has_neutral, may_lack_power
 from tpss.driving.passage import LONGEST_PHASE_S
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
@@ -126,6 +127,8 @@ def look_ahead(
     if decision.course == Course.PASSAGE:
         train.demand.terms_speed_m_s = -1.0  # a passage leaves the terms of one of its phases
     decision.course = Course.PASSAGE
+    if has_neutral(data) and may_lack_power(motion, kind, data):
+        return
     if motion.phase == Phase.DWELLING and motion.wait_s > h:
         decision.course = Course.UNIFORM
         train.forces.running_resistance_n, train.forces.gradient_n = 0.0, 0.0

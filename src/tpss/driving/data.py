@@ -88,6 +88,10 @@ class Options(NamedTuple):
     motion: MotionModel
 
 
+WITH_POWER = -1.0
+"""In `DrivingData.neutral`: trains have power there. [s]"""
+
+
 class DrivingData(NamedTuple):
     """What drivers know."""
 
@@ -96,6 +100,8 @@ class DrivingData(NamedTuple):
     """Rise over run, as trains of each length feel it. [1]"""
     limits: Profiles
     """Speed limits, as trains of each length have to keep them. [m/s]"""
+    neutral: Profiles
+    """In neutral sections how long power stays off behind them, else `WITH_POWER`. [s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]

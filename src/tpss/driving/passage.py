@@ -9,7 +9,7 @@ It ends
 - where the train has to brake (`lookahead`), or where another limit begins.
 
 Without voltage a train has no force and draws nothing.  It coasts and brakes, and once it stands it
-stays, also on a gradient.
+stays, also on a gradient.  So it does in neutral sections (`neutral`), where phases begin and end.
 
 The powers that the train draws are means over the step.  Where the voltage decides about a force, their
 slopes over it are found by a second passage at a voltage close by; else those of the phases add up.
@@ -19,6 +19,7 @@ import math
 
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
+from tpss.driving.neutral import follow_power, has_neutral, room_to_change, time_without_power
 from tpss.driving.pull import Aim, End, Pull, find_pull, when_a_phase_ends
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
@@ -87,11 +88,11 @@ def _draw_standing(voltage_v: float, duration_s: float, passage: Passage, kind: 
 
 @inlined
 def _stand(
-    voltage_v: float, passage: Passage, train: Train, kind: TrainType, step_s: float
+    voltage_v: float, until_s: float, passage: Passage, train: Train, kind: TrainType, step_s: float
 ) -> None:
-    """Let a train wait; one that has not departed yet is not on the line."""
+    """Let a train wait, for a time at most; one that has not departed yet is not on the line. [s]"""
     motion = passage.motion
-    duration = min(motion.wait_s, passage.left_s)
+    duration = min(motion.wait_s, passage.left_s, until_s)
     if motion.phase == Phase.DWELLING:
         _draw_standing(voltage_v, duration, passage, kind)
     passage.left_s -= duration
@@ -111,10 +112,12 @@ def _is_held(voltage_v: float, motion: Motion) -> bool:
 
 
 @inlined
-def _hold(voltage_v: float, passage: Passage, kind: TrainType) -> None:
-    """Let a train stand for the rest of the step."""
-    _draw_standing(voltage_v, passage.left_s, passage, kind)
-    passage.left_s, passage.acceleration_m_s2 = 0.0, 0.0
+def _hold(voltage_v: float, until_s: float, passage: Passage, kind: TrainType) -> None:
+    """Let a train stand for the rest of the step, or for a time if that is less. [s]"""
+    duration = min(passage.left_s, until_s)
+    _draw_standing(voltage_v, duration, passage, kind)
+    passage.left_s -= duration
+    passage.acceleration_m_s2 = 0.0
 
 
 @inlined
@@ -211,14 +214,14 @@ def _aim(
 
 @inlined
 def _choose_pull(
-    voltage_v: float, aim: Aim, passage: Passage, train: Train, kind: TrainType,
+    voltage_v: float, until_s: float, aim: Aim, passage: Passage, train: Train, kind: TrainType,
     data: DrivingData, points: Points, scratch: Floats,
 ) -> tuple[Pull, int]:  # fmt: skip
     """Forces, duration and end of the next phase.  A speed held where nothing changes is one phase."""
     pull = find_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
     v, a, longest_s = passage.motion.speed_m_s, pull.acceleration_m_s2, aim.longest_s
     if a == 0.0 and v > 0.0:
-        longest_s = max(longest_s, _while_gradient_stays(passage, kind, data))
+        longest_s = min(until_s, max(longest_s, _while_gradient_stays(passage, kind, data)))
     aim = Aim(
         aim.acceleration_m_s2, aim.until_m_s, longest_s, aim.below_m2_s2, aim.room_m, aim.target_m,
         aim.retardation_m_s2, aim.slowest_m_s2,
@@ -241,11 +244,23 @@ def _is_caught(pull: Pull, end: int, aim: Aim) -> bool:
 
 
 @inlined
+def _with_power_unchanged(
+    until_s: float, aim: Aim, motion: Motion, kind: TrainType, data: DrivingData
+) -> Aim:
+    """What a driver wants as long as his train has power, or has none: for a time at most. [s]"""
+    room_m = min(aim.room_m, room_to_change(motion.position_m, kind, data))
+    return Aim(
+        aim.acceleration_m_s2, aim.until_m_s, min(aim.longest_s, until_s), aim.below_m2_s2, room_m,
+        aim.target_m, aim.retardation_m_s2, aim.slowest_m_s2,
+    )  # fmt: skip
+
+
+@inlined
 def _drive(
-    voltage_v: float, passage: Passage, train: Train, kind: TrainType, data: DrivingData,
-    points: Points, scratch: Floats,
+    voltage_v: float, until_s: float, passage: Passage, train: Train, kind: TrainType,
+    data: DrivingData, points: Points, scratch: Floats,
 ) -> None:  # fmt: skip
-    """Take the next phase of a train that moves, or is to start."""
+    """Take the next phase, for a time at most, of a train that moves, or is to start. [s]"""
     motion = passage.motion
     position_m, v = motion.position_m, motion.speed_m_s
     motion.gradient = index_from(
@@ -255,8 +270,10 @@ def _drive(
     here = index_at(position_m, data.limits.from_m[at(kind.profile)])
     square, target_m, target_m_s = what_to_brake_for(here, train.route, motion, kind, data)
     aim = _aim(here, square, target_m, target_m_s, passage, kind, data)
+    if has_neutral(data):
+        aim = _with_power_unchanged(until_s, aim, motion, kind, data)
     # 2. What the machine gives.
-    pull, end = _choose_pull(voltage_v, aim, passage, train, kind, data, points, scratch)
+    pull, end = _choose_pull(voltage_v, until_s, aim, passage, train, kind, data, points, scratch)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
     a = pull.acceleration_m_s2
     if voltage_v > 0.0 and (end == End.STANDSTILL or (v == 0.0 and a <= 0.0)):
@@ -298,6 +315,7 @@ def _begin(passage: Passage, train: Train, step_s: float) -> None:
     passage.resistance_n = 0.0
     passage.left_s = step_s
     passage.stood_s, passage.stop_error_m = 0.0, 0.0
+    passage.without_power_s = 0.0
     passage.departure_s[0] = math.nan
     passage.breaches = 0
     passage.stalled, passage.by_voltage = False, False
@@ -330,15 +348,27 @@ def pass_through(
     scratch : Array, shape `SCRATCH_SHAPE`
     """
     _begin(passage, train, data.options.step_s)
+    motion = passage.motion
     for _ in range(MOST_PHASES):
-        if passage.left_s <= 0.0 or passage.stalled or passage.motion.phase == Phase.ARRIVED:
+        if passage.left_s <= 0.0 or passage.stalled or motion.phase == Phase.ARRIVED:
             return
-        if passage.motion.wait_s > 0.0:
-            _stand(voltage_v, passage, train, kind, data.options.step_s)
-        elif _is_held(voltage_v, passage.motion):
-            _hold(voltage_v, passage, kind)
+        # 1. Whether it has power now, and until when that stays so.
+        here_v, off_s, until_s = voltage_v, 0.0, math.inf
+        if has_neutral(data):
+            off_s = time_without_power(motion, kind, data)
+            if off_s > 0.0:
+                here_v, until_s = 0.0, off_s
+        position_m, left_s = motion.position_m, passage.left_s
+        # 2. What it does.
+        if motion.wait_s > 0.0:
+            _stand(here_v, until_s, passage, train, kind, data.options.step_s)
+        elif _is_held(here_v, motion):
+            _hold(here_v, until_s, passage, kind)
         else:
-            _drive(voltage_v, passage, train, kind, data, points, scratch)
+            _drive(here_v, until_s, passage, train, kind, data, points, scratch)
+        # 3. Whether it has entered or left a neutral section.
+        if has_neutral(data):
+            follow_power(off_s, position_m, left_s, passage, kind, data)
     passage.stalled = True
 
 

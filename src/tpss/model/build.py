@@ -11,6 +11,7 @@ from tpss.kernel import switch
 from tpss.model.gates import build_gates, no_gates
 from tpss.model.halts import build_halts
 from tpss.model.legs import build_legs
+from tpss.model.neutral import build_neutral
 from tpss.model.outages import layout_of, service_of
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
@@ -59,6 +60,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         control=RunControl(),
         gradients=gradients,
         limits=limits,
+        neutral=build_neutral(scenario, rows_seen(running)),
         stops=_stops(scenario, routes, si(scenario.simulation, "time_step_min")),
         types=types,
         points=points,

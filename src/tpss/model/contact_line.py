@@ -207,7 +207,7 @@ class _Marks(NamedTuple):
     posts_km: set[float]
     """Where they are tied for a part of the run only. [km]"""
     breaks: dict[float, str]
-    """Names of the open breaks by their places. [km]"""
+    """Names of the open breaks, and the neutral sections, by their places. [km]"""
     closing: frozenset[str]
     """Names of those breaks that are open for a part of the run only."""
     out: list[OutSection]
@@ -235,6 +235,11 @@ def _marks_of(
         each.position_km: each.name
         for each in supply.section_breaks
         if not each.closed and line.holds(each.line)
+    }
+    breaks |= {
+        each.middle_km: "neutral section"
+        for each in supply.neutral_sections
+        if line.holds(each.line)
     }
     out = [each for each in parting.sections if line.holds(each.line)]
     ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}

@@ -115,12 +115,13 @@ def _rows(
     ]
     most = max(each.from_m.size for each in seen)
     return Profiles(
-        from_m=np.array([_filled(each.from_m, most, np.inf) for each in seen]),
-        value=np.array([_filled(each.value, most, float(each.value[-1])) for each in seen]),
+        from_m=np.array([filled(each.from_m, most, np.inf) for each in seen]),
+        value=np.array([filled(each.value, most, float(each.value[-1])) for each in seen]),
     )
 
 
-def _filled(values: Array, count: int, rest: float) -> Array:
+def filled(values: Array, count: int, rest: float) -> Array:
+    """A row of so many values, the rest of one kind."""
     return np.append(values, np.full(count - values.size, rest))
 
 

@@ -22,6 +22,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.routes import Hop, Way, find_way, hops_of
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
+from tpss.units import kilometres
 
 
 class Course(NamedTuple):
@@ -55,6 +56,11 @@ class Route(NamedTuple):
         hop = self.way.place(line, place_km)
         assert hop is not None, "the scenario was checked"
         return self.course_of(hop).position_m(1e3 * place_km)
+
+    def post(self, position_m: float) -> str:
+        """Kilometre of a position, on the line to which that belongs. [m]"""
+        course = next(c for c in reversed(self.courses) if c.from_m <= position_m)
+        return kilometres((course.sign * position_m + course.offset_m) / 1e3)
 
     def course_of(self, hop: int) -> Course:
         """Course to which a hop of the way belongs."""

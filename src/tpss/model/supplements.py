@@ -15,8 +15,10 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from tpss.driving.data import Floats, Profile, Profiles, Stop
+from tpss.driving.data import Profile, Profiles, Stop
+from tpss.model.profiles import filled
 from tpss.run.lone import EmptyLine
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
@@ -147,16 +149,18 @@ def with_types(model: Model, rows: Sequence[tuple[int, Sequence[Held]]]) -> Mode
     most = max(each.from_m.size for each in limits)
     return model._replace(
         types=types,
-        gradients=Profiles(*(np.concatenate([each, each[own]]) for each in model.gradients)),
+        gradients=_repeated(model.gradients, own),
+        neutral=_repeated(model.neutral, own),
         limits=Profiles(
-            from_m=np.array([_filled(each.from_m, most, np.inf) for each in limits]),
-            value=np.array([_filled(each.value, most, each.value[-1]) for each in limits]),
+            from_m=np.array([filled(each.from_m, most, np.inf) for each in limits]),
+            value=np.array([filled(each.value, most, each.value[-1]) for each in limits]),
         ),
     )
 
 
-def _filled(values: Floats, count: int, rest: float) -> Floats:
-    return np.append(values, np.full(count - values.size, rest))
+def _repeated(profiles: Profiles, rows: npt.NDArray[np.int64]) -> Profiles:
+    """Profiles with some of their rows once more."""
+    return Profiles(*(np.concatenate([each, each[rows]]) for each in profiles))
 
 
 def capped(limits: Profile, held: Sequence[Held]) -> Profile:

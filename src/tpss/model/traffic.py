@@ -9,6 +9,7 @@ from tpss.driving.speed_limits import UNIFORM, can_meet_limit
 from tpss.errors import Finding, ScenarioError
 from tpss.kernel import plain
 from tpss.model.gates import crossing_places
+from tpss.model.neutral import is_in_neutral
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.numerics.staircase import index_at
 from tpss.run.delays import Delays
@@ -16,7 +17,7 @@ from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.model import Model
-from tpss.units import kilometres, si
+from tpss.units import si
 from tpss.vehicle.braking import braking_distance, braking_square
 from tpss.vehicle.train_type import TrainType
 
@@ -55,6 +56,8 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
         for i in range(len(service.initial))
         for finding in _check_placed(service, route, i, model, str(scenario.source))
     ]
+    if scenario.supply.neutral_sections:
+        findings += _stops_without_power(scenario, services, routes, model)
     if scenario.signalling.has_gates:
         findings += _too_long(scenario, routes)
     if findings:
@@ -82,6 +85,24 @@ def _too_long(scenario: Scenario, routes: Sequence[Route]) -> list[Finding]:
     return list(found.values())
 
 
+def _stops_without_power(
+    scenario: Scenario, services: Sequence[Service], routes: Sequence[Route], model: Model
+) -> list[Finding]:
+    """Stops in neutral sections, from which no train could start."""
+    found = []
+    for number, (service, route) in enumerate(zip(services, routes, strict=True)):
+        kind, entry = model.types[service.train_type], scenario.traffic[number]
+        keys = ["from", *(f"stops.{k}.station" for k in range(len(entry.stops)))]
+        names = [entry.origin, *(stop.station for stop in entry.stops)]
+        for key, name, m in zip(keys, names, (route.start_m, *route.stops_m), strict=False):
+            if is_in_neutral(m, kind, model):
+                problem = "in a neutral section, where no train can start"
+                remedy = "let its trains pass there, or correct supply.neutral_sections"
+                key = f"traffic.{number}.{key}"
+                found.append(Finding(str(scenario.source), key, repr(name), problem, remedy))
+    return found
+
+
 def _delays(entry: Traffic) -> Delays | None:
     given = entry.delays
     return None if given is None else Delays(si(given, "mean_min"), given.share, given.seed)
@@ -107,24 +128,18 @@ def _check_placed(service: Service, route: Route, i: int, model: Model, file: st
     if speed > limit and model.options.driver != Driver.AGGRESSIVE:
         problem = f"faster than the limit here, {limit * 3.6:g} km/h"
     elif _stopping_distance(speed, kind, model.options) > stop_m - position_m:
-        problem = f"too fast to stop at {_post(stop_m, route)} km"
+        problem = f"too fast to stop at {route.post(stop_m)} km"
         problem += " in whole time steps" if model.options.braking == Braking.WHOLE_STEPS else ""
     else:
         for j in range(here + 1, limits.from_m.size):
             lower = limits.value[j] < limits.value[j - 1]
             distance_m = limits.from_m[j] - position_m
             if lower and not _meets(speed, distance_m, limits.value[j], kind, model.options):
-                problem = f"too fast to meet the limit at {_post(limits.from_m[j], route)} km"
+                problem = f"too fast to meet the limit at {route.post(limits.from_m[j])} km"
     if not problem:
         return []
     remedy = "lower the speed, or place the train earlier"
     return [Finding(file, key, f"{speed * 3.6:g}", problem, remedy)]
-
-
-def _post(position_m: float, route: Route) -> str:
-    """Kilometre of a position on a route, on the line to which that belongs."""
-    course = next(c for c in reversed(route.courses) if c.from_m <= position_m)
-    return kilometres((course.sign * position_m + course.offset_m) / 1e3)
 
 
 def _stopping_distance(speed_m_s: float, kind: TrainType, options: Options) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.data import (
+    WITH_POWER,
     Braking,
     Driver,
     DrivingData,
@@ -288,8 +289,8 @@ def loads_alone(trains: Records[Train], types: Records[TrainType]) -> Loads:
         braking=switch(Braking.WITHIN_STEP),
         motion=switch(MotionModel.CONTINUOUS),
     )
-    profiles = Profiles(nowhere, value)
-    driving = DrivingData(options, profiles, profiles, Stop.blank(1, 1), types)
+    profiles, neutral = Profiles(nowhere, value), Profiles(nowhere, np.array([[WITH_POWER]]))
+    driving = DrivingData(options, profiles, profiles, neutral, Stop.blank(1, 1), types)
     return Loads(trains, types, np.zeros(SCRATCH_SHAPE), driving, CurvePoint.blank(1))
 
 

@@ -12,11 +12,12 @@ from xarray.indexes import PandasIndex
 
 from tpss.model.build import Layout
 from tpss.results.contents import FORMAT, FORMAT_KEY
-from tpss.results.places import WAITS_FOR
+from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
 from tpss.step.recorded import RECORDED, Recorded
+from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
 
@@ -41,6 +42,9 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         words = {"units": "1", "long_name": "index of the train that it waits for; -1: none"}
         waits_for = outcome.recording.waits_for
         variables[WAITS_FOR] = xr.Variable(("time", "train"), waits_for, words)
+    if (off_s := outcome.recording.without_power_s).size:
+        words = {"units": "s", "long_name": "time with the power off, because of neutral sections"}
+        variables[WITHOUT_POWER] = xr.Variable(("time", "train"), off_s, words)
     return xr.Dataset(variables, coords=_indexed(_coordinates(outcome, model, layout)))
 
 
@@ -116,9 +120,17 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
             arrays[each.name] = rows[each.of][each.name]
     leg = legs_at(arrays["route_position"], outcome.trains, layout)
     arrays["position"] = _places(arrays["route_position"], leg)
+    if recording.without_power_s.size:
+        arrays["pantograph_voltage"][_lacking(outcome)] = 0.0
     arrays["node_voltage"] *= np.array(plan.node_level)
     arrays["branch_current"] = arrays["branch_current"] / np.array(plan.branch_levels())
     return arrays
+
+
+def _lacking(outcome: Outcome) -> npt.NDArray[np.bool_]:
+    """Trains and steps all through which they have their power off, shape (instants, trains)."""
+    lasts_s = np.append(np.diff(outcome.instants_s), np.inf)
+    return np.asarray(outcome.recording.without_power_s >= lasts_s[:, None] * (1.0 - ROUNDING))
 
 
 def _places(along_m: Floats, leg: Any) -> Floats:

@@ -32,6 +32,9 @@ TRACK = "train_track"
 WAITS_FOR = "waits_for"
 """Variable with the indices of the trains that others wait for, where trains are kept apart."""
 
+WITHOUT_POWER = "time_without_power"
+"""Variable with the times of each step in which trains have their power off, with neutral sections."""
+
 
 def train_tracks(dataset: xr.Dataset) -> Indices:
     """Track of each train at each instant, counted from 1, shape (time, train)."""

@@ -104,6 +104,7 @@ def step_calls(model: Model) -> list[Call]:
     train, kind, step = state.trains[0], model.types[0], switch(0)
     on_line = (state.flow.standing, state.trains)
     of_trains = (recording.trains, recording.train_state, recording.calls, recording.counters)
+    off_s = recording.without_power_s
     return [
         (decide, (step, *on_line, data)),
         (update_speed_terms, (1.0, kind, train.demand, model.points, state.scratch)),
@@ -113,7 +114,10 @@ def step_calls(model: Model) -> list[Call]:
         (stand_at_stop, (step, 1.0, train, model.stops)),
         (list_trains, (state.trains, state.flow)),
         (prepare_trains, (step, *on_line, data, model.points, state.scratch)),
-        (record_trains, (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains)),
+        (
+            record_trains,
+            (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains, off_s),
+        ),
         (record_instant, (step, state.trains, recording)),
     ]
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tpss.kernel import plain
 from tpss.powerflow.network import Network
 from tpss.record import Records, copy_of_records
 from tpss.run.limits import LONGEST_RUN_S, demand_room, has_room
@@ -19,7 +20,7 @@ from tpss.run.start import Start
 from tpss.run.switching import Switching, take_over
 from tpss.step.advance import advance
 from tpss.step.model import Model
-from tpss.step.recording import Memory, Recording, new_recording
+from tpss.step.recording import Memory, Recording, lacks_power, new_recording
 from tpss.step.state import State, Status, new_state
 from tpss.step.turns import Turn
 from tpss.vehicle.train import Phase, Train
@@ -232,8 +233,11 @@ def advance_to_end(
 
 def _is_stranded(run: Run) -> bool:
     """Whether the studied train stands without power."""
-    row = run.recording.trains[run.step - 1, run.model.control.studied_train]
-    return bool(row.speed == 0.0 and row.pantograph_real == 0.0 and row.pantograph_imag == 0.0)
+    step, studied = run.step - 1, run.model.control.studied_train
+    row = run.recording.trains[step, studied]
+    is_fed = row.pantograph_real != 0.0 or row.pantograph_imag != 0.0
+    lacks = plain(lacks_power)(step, studied, run.model.options.step_s, run.recording)
+    return bool(row.speed == 0.0 and (lacks or not is_fed))
 
 
 def switch(run: Run, switchings: Sequence[Switching], last: int) -> int:
@@ -286,6 +290,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         counters=kept.counters,
         calls=kept.calls[:count],
         waits_for=kept.waits_for[:rows, :count],
+        without_power_s=kept.without_power_s[:rows, :count],
     )
     return Outcome(
         status=status,

@@ -86,6 +86,7 @@ class ScheduledTrain(NamedTuple):
     dwell_steps_left: int = 0
     wait_s: float = 0.0
     under_way_s: float = 0.0
+    power_off_s: float = 0.0
     authority_m: float = math.inf
     ceiling_m_s: float = math.inf
     plan_step: int = 0

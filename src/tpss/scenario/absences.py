@@ -31,7 +31,8 @@ ABSENCES = (
     Absence(r"regen|recuperat|feed_?back", "regeneration: trains do not feed power back"),
     Absence(
         r"neutral|phase_(break|separation)|separation_section|dead_section|gaps?$",
-        "neutral sections and gaps of the contact line",
+        "neutral sections and gaps of the contact line at this place",
+        "write [[supply.neutral_sections]] with from_km, to_km and raise_s",
     ),
     Absence(
         _ENDS,

@@ -32,6 +32,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*check_feeds(document), *check_wiring(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += [*_separation(document, simulation), *_planned_order(document, simulation)]
+    findings += _neutral_sections(supply, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
     return [Finding(file, *finding) for finding in findings]
@@ -62,6 +63,15 @@ def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> I
     if choices and wanted != "none":
         problem = f"does not go with {choices[0]}"
         yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"
+
+
+def _neutral_sections(supply: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
+    """Neutral sections, with stepped motion, in which a train has power in whole steps."""
+    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
+    choices += made_of_stepped_motion(simulation.get)
+    if choices and supply.get("neutral_sections"):
+        problem = f"trains pass them for a part of a step, which {choices[0]} does not know"
+        yield "supply.neutral_sections", "", problem, f"leave {choices[0]} out"
 
 
 def _planned_order(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:

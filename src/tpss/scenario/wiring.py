@@ -39,6 +39,9 @@ def check_wiring(document: Mapping[str, Any]) -> Iterator[Fault]:
         yield from _idle_post(f"supply.posts.{i}", post, stretches)
     for i, each in items(supply, "section_breaks"):
         yield from _break_at_a_node(f"supply.section_breaks.{i}", each, document)
+    for i, each in items(supply, "neutral_sections"):
+        yield from _neutral_at_a_node(f"supply.neutral_sections.{i}", each, document)
+        yield from _meets_another(i, each, supply)
 
 
 def _overlaps(i: int, here: Mapping[str, Any], supply: Mapping[str, Any]) -> Iterator[Fault]:
@@ -136,11 +139,61 @@ def _break_at_a_node(
     key: str, section_break: Mapping[str, Any], document: Mapping[str, Any]
 ) -> Iterator[Fault]:
     """A break where the contact line is fed or meets others, so that it parts nothing."""
-    supply, lines = table(document, "supply"), lines_of(document)
     km = number(section_break, "position_km")
-    line = section_break.get("line", next(iter(lines)) if len(lines) == 1 else None)
-    if km is None or line not in lines:
+    if km is not None and any(
+        abs(place - km) < CLOSEST_KM for place in _nodes(section_break, document)
+    ):
+        problem = "the contact line is fed, tied or ends here"
+        yield f"{key}.position_km", kilometres(km), problem, "place it beside"
+
+
+def _neutral_at_a_node(
+    key: str, section: Mapping[str, Any], document: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """A neutral section in which the contact line is fed, tied or broken."""
+    begin, end = number(section, "from_km"), number(section, "to_km")
+    if begin is None or end is None:
         return
+    places = [*_nodes(section, document), *_breaks(section, document)]
+    inside = [km for km in places if begin - CLOSEST_KM < km < end + CLOSEST_KM]
+    if inside:
+        problem = (
+            f"the contact line is fed, tied, broken or ends in it, at {kilometres(inside[0])} km"
+        )
+        yield f"{key}.from_km", kilometres(begin), problem, "place it beside"
+
+
+def _meets_another(i: int, here: Mapping[str, Any], supply: Mapping[str, Any]) -> Iterator[Fault]:
+    """A neutral section that overlaps one before it in the file."""
+    for k, other in items(supply, "neutral_sections"):
+        (first, last), (begin, end) = (_span(each) for each in (here, other))
+        if k < i and here.get("line") == other.get("line") and first < end and begin < last:
+            problem = f"overlaps supply.neutral_sections.{k}"
+            yield f"supply.neutral_sections.{i}", "", problem, "make one of both"
+
+
+def _breaks(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
+    """Section breaks on the line of a part. [km]"""
+    breaks = items(table(document, "supply"), "section_breaks")
+    known = [
+        number(each, "position_km") for _, each in breaks if _on_one_line(part, each, document)
+    ]
+    return [km for km in known if km is not None]
+
+
+def _on_one_line(
+    one: Mapping[str, Any], other: Mapping[str, Any], document: Mapping[str, Any]
+) -> bool:
+    """Whether two parts are on one line."""
+    return len(lines_of(document)) == 1 or one.get("line") == other.get("line")
+
+
+def _nodes(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
+    """Where the contact line of a part's line is fed, meets others or ends. [km]"""
+    supply, lines = table(document, "supply"), lines_of(document)
+    line = part.get("line", next(iter(lines)) if len(lines) == 1 else None)
+    if line not in lines:
+        return []
     fed = [
         number(each, "position_km")
         for kind in (*STATIONS, "posts")
@@ -153,6 +206,4 @@ def _break_at_a_node(
     others = [places_of(other) for name, (_, other) in lines.items() if name != line]
     fed += [place for name, place in own.items() if any(name in each for each in others)]
     fed += list(ends_of(lines[str(line)][1]) or ())
-    if any(place is not None and abs(place - km) < CLOSEST_KM for place in fed):
-        problem = "the contact line is fed, tied or ends here"
-        yield f"{key}.position_km", kilometres(km), problem, "place it beside"
+    return [place for place in fed if place is not None]

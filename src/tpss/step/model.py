@@ -32,6 +32,8 @@ class Model(NamedTuple):
     """Rise over run, as trains of each length feel it. [1]"""
     limits: Profiles
     """Speed limits, as trains of each length have to keep them. [m/s]"""
+    neutral: Profiles
+    """In neutral sections how long power stays off behind them; see `driving.neutral`. [s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]
@@ -64,6 +66,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.control,
         model.gradients,
         model.limits,
+        model.neutral,
         model.stops,
         model.types,
         model.points,
@@ -78,4 +81,6 @@ def with_step(model: Model, step_s: float) -> Model:
 @inlined
 def driving_data(model: Model) -> DrivingData:
     """The part of a model that drivers know."""
-    return DrivingData(model.options, model.gradients, model.limits, model.stops, model.types)
+    return DrivingData(
+        model.options, model.gradients, model.limits, model.neutral, model.stops, model.types
+    )

@@ -17,7 +17,7 @@ from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Call, Indices, Recording
-from tpss.step.state import TrainState
+from tpss.step.state import Floats, TrainState
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
 from tpss.vehicle.train import (
@@ -81,6 +81,7 @@ def record_trains(
     states: npt.NDArray[np.int8],
     calls: Records[Call],
     counters: Indices,
+    without_power_s: Floats,
 ) -> None:
     """Forces, voltages and powers of the first `count` trains along the line.
 
@@ -90,7 +91,7 @@ def record_trains(
         When the step begins, and how long it lasts. [s]
     kinds : records of TrainType
     points : records of CurvePoint
-    rows, states, calls, counters
+    rows, states, calls, counters, without_power_s
         Of the recording, which as a whole would cost more to hand over.
     """
     for k in range(count):
@@ -99,6 +100,9 @@ def record_trains(
         kind = kinds[at(train.train_type)]
         states[at(step), at(i)] = state_code(train)
         record_train(standing[at(k)].voltage_v, step_s, train, row)
+        if without_power_s.shape[0] > 0:
+            passes = train.decision.course == Course.PASSAGE
+            without_power_s[at(step), at(i)] = train.passage.without_power_s if passes else 0.0
         if train.decision.course == Course.PASSAGE:
             record_passage(begin_s, step_s, i, train, kind, row, calls)
             count_breaches(train.passage.breaches, counters)

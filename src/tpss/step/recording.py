@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tpss.kernel import at, inlined
 from tpss.record import Record, Records
 from tpss.step.model import Model
 from tpss.step.recorded import NodeRow, StationRow, TrainRow
@@ -13,6 +14,9 @@ from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
 Indices = npt.NDArray[np.int64]
+
+ROUNDING = 1e-9
+"""Share of a step that is a rounding of times within it."""
 
 
 class Call(Record):
@@ -46,11 +50,21 @@ class Recording(NamedTuple):
     waits_for: npt.NDArray[np.int32]
     """Shape (instants, trains): train for which each one waits; -1: none.  Empty unless trains are kept
     apart."""
+    without_power_s: Floats
+    """Shape (instants, trains): time that each one has its power off.  Empty without neutral
+    sections. [s]"""
 
 
 def is_kept_apart(model: Model) -> bool:
     """Whether trains look out for others."""
     return model.signalling.separation != Separation.NONE
+
+
+@inlined
+def lacks_power(step: int, i: int, step_s: float, recording: Recording) -> bool:
+    """Whether a train has its power off all through a step of this length. [s]"""
+    off_s = recording.without_power_s
+    return off_s.shape[0] > 0 and off_s[at(step), at(i)] >= step_s * (1.0 - ROUNDING)
 
 
 def recording_bytes(model: Model, steps: int, trains: int) -> int:
@@ -60,8 +74,12 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += network.source_of_node.size * NodeRow.dtype.itemsize
     row += network.sources.size * StationRow.dtype.itemsize
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
-    row += 4 * trains * is_kept_apart(model)
+    row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
     return (steps + 1) * row
+
+
+def _has_neutral(model: Model) -> bool:
+    return model.neutral.from_m.shape[1] > 1
 
 
 def _no_calls(trains: int, stops: int) -> Records[Call]:
@@ -106,4 +124,5 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         counters=np.zeros(len(Counter), dtype=np.int64),
         calls=_no_calls(trains, model.stops.shape[1]),
         waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
+        without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
     )

@@ -80,6 +80,8 @@ class Motion(Record):
     """Time until it departs, if it moves continuously. [s]"""
     under_way_s: float
     """Time since it departed at its origin, or should have; infinite: not known. [s]"""
+    power_off_s: float
+    """Time until it has power again, behind a neutral section. [s]"""
     authority_m: float
     """Position that it may not pass in this step, because of others; infinite: any. [m]"""
     ceiling_m_s: float
@@ -155,6 +157,8 @@ class Passage(Record):
     """What is left of the step. [s]"""
     stood_s: float
     """Time that it stood at its destination. [s]"""
+    without_power_s: float
+    """Time that it had its power off, in neutral sections and behind them. [s]"""
     stop_error_m: float
     """Largest distance between where it came to stand and its stop. [m]"""
     arrival_s: Annotated[Floats, (MOST_CALLS,)]
@@ -234,6 +238,7 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.dwell_steps_left = source.dwell_steps_left
     target.wait_s = source.wait_s
     target.under_way_s = source.under_way_s
+    target.power_off_s = source.power_off_s
     target.authority_m = source.authority_m
     target.ceiling_m_s = source.ceiling_m_s
 

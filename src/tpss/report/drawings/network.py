@@ -268,7 +268,7 @@ def _high_voltage_line(result: Result, paths: Paths) -> Iterator[parts.Item]:
 
 
 def _switches(result: Result, paths: Paths) -> Iterator[parts.Places]:
-    """Coupling posts, open ones hollow, and open breaks of the contact line."""
+    """Coupling posts, open ones hollow, open breaks of the contact line, and neutral sections."""
     supply, line_of = result.scenario.supply, result.scenario.line_of
     kinds = (
         ("coupling post", parts.DIAMOND, COLOURS[3], False, [p for p in supply.posts if p.closed]),
@@ -283,6 +283,14 @@ def _switches(result: Result, paths: Paths) -> Iterator[parts.Places]:
             x, y = _spread(paths, [(line_of(each), each.position_km) for each in switches])
             words = [f"{name} {each.name}: km {kilometres(each.position_km)}" for each in switches]
             yield parts.Places(x, y, name, symbol, colour, words, hollow=hollow)
+    if supply.neutral_sections:
+        places = [(line_of(each), each.middle_km) for each in supply.neutral_sections]
+        words = [
+            f"neutral section: km {kilometres(each.from_km)}-{kilometres(each.to_km)}"
+            for each in supply.neutral_sections
+        ]
+        x, y = _spread(paths, places)
+        yield parts.Places(x, y, "neutral section", parts.CROSS, COLOURS[4], words)
 
 
 def _trains(colours: parts.Colours) -> parts.Curve:

@@ -1,7 +1,7 @@
 """The power supply, one file per noun."""
 
 from tpss.scenario.supply.catenary import Catenary
-from tpss.scenario.supply.contact_line import ContactLine, Post, SectionBreak
+from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
 from tpss.scenario.supply.supply import Station, Supply
@@ -15,6 +15,7 @@ __all__ = [
     "ConverterType",
     "HighVoltageLine",
     "LineType",
+    "NeutralSection",
     "Post",
     "SectionBreak",
     "Station",

@@ -10,10 +10,12 @@ from tpss.scenario.fields import (
     Name,
     Part,
     Position,
+    Real,
     fault,
     name_of_line,
     station_at,
 )
+from tpss.scenario.line import DECIMALS
 from tpss.scenario.supply.catenary import Catenary
 
 Tied = Literal["everywhere", "posts", "no"]
@@ -57,6 +59,36 @@ class Post(Part):
     at: Name | None = station_at()
     position_km: Position = Field(description="Position on its line.")
     closed: Flag = Field(default=True, description="Whether it ties the tracks.")
+
+
+class NeutralSection(Part):
+    """A neutral section, which parts two phases or systems: trains pass it with their power off."""
+
+    line: Name | None = name_of_line()
+    from_km: Position = Field(
+        description="Where it begins: trains switch off there, coming from lower kilometres."
+    )
+    to_km: Position = Field(description="Where it ends, at a higher position.")
+    raise_s: Real = Field(
+        default=0.0,
+        ge=0,
+        le=3_600,
+        description="Time until a train has power again after its head has left it.",
+    )
+
+    @property
+    def middle_km(self) -> float:
+        """Where the contact line is parted. [km]"""
+        return round((self.from_km + self.to_km) / 2.0, DECIMALS)
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        if self.to_km <= self.from_km:
+            raise fault(
+                f"the neutral section ends at {self.to_km:g} km, and begins at {self.from_km:g} km",
+                "give the lower position as from_km",
+            )
+        return self
 
 
 class SectionBreak(Part):

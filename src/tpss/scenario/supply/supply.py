@@ -7,7 +7,7 @@ from pydantic_core import PydanticKnownError
 
 from tpss.scenario.fields import Flag, FromLibrary, Part, Real, demand_unique, fault, unique
 from tpss.scenario.supply.catenary import Catenary
-from tpss.scenario.supply.contact_line import ContactLine, Post, SectionBreak, Tied
+from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
 from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
@@ -62,6 +62,9 @@ class Supply(Part):
     )
     section_breaks: Annotated[tuple[SectionBreak, ...], unique("name")] = Field(
         default=(), description="Breaks of the contact line, each with a switch."
+    )
+    neutral_sections: tuple[NeutralSection, ...] = Field(
+        default=(), description="Neutral sections, which part the contact line between phases."
     )
     junctions_tied: Flag = Field(
         default=True,
