@@ -336,6 +336,21 @@ def test_a_step_of_one_phase_and_a_passage_agree():
         assert one.summary[figure] == pytest.approx(several.summary[figure], rel=2e-4)
 
 
+@pytest.mark.parametrize("document", [TRAM, SUBURBAN, RAILCAR])
+def test_a_passage_that_stays_at_any_voltage_is_that_of_each_voltage(document):
+    """A machine of full force from 2 V on has it at all voltages of a run, but each is tried anew.
+
+    So the run is that of the machine of full force at any voltage, whose passages are found once.
+    """
+    followed = {"full_voltage_kv": 0.002, "zero_voltage_kv": 0.001}
+    effort = document["trains"]["t"]["tractive_effort"] | followed
+    once = run(document, 0.25)
+    anew = run(document, 0.25, trains__t__tractive_effort=effort)
+    assert (once.dataset.train_state == anew.dataset.train_state).all()
+    for name in ("speed", "route_position", "active_power", "reactive_power", "node_voltage"):
+        np.testing.assert_array_equal(once.dataset[name], anew.dataset[name], err_msg=name)
+
+
 def test_a_train_that_cannot_climb_stalls_where_it_comes_to_stand():
     """100 t on 100 ‰ need 98.1 kN of its 50 kN: it comes to stand, whatever the step."""
     document = line([0.0, 5.0], [(0.0, 72.0)], {"tractive_effort": EFFORT_OF_50_KN})

@@ -156,6 +156,7 @@ def look_ahead(
 def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) -> None:
     """Find all about a train that stays fixed while this step is solved, but what its driver decides."""
     decision = train.decision
+    train.passage.stays = False
     train.demand.driven_share = decision.moving_share = 1.0
     decision.hold_s = 0.0
     look_ahead(train, data.types[at(train.train_type)], data, points, scratch)

@@ -11,6 +11,9 @@ It ends
 Without voltage a train has no force and draws nothing.  It coasts and brakes, and once it stands it
 stays, also on a gradient.  So it does in neutral sections (`neutral`), where phases begin and end.
 
+The voltage is tried several times a step.  Where neither forces nor powers follow it, as of a train
+that brakes, or of a machine that gives its force at any voltage, the first passage stays.
+
 The powers that the train draws are means over the step.  Where the voltage decides about a force, their
 slopes over it are found by a second passage at a voltage close by; else those of the phases add up.
 """
@@ -162,6 +165,8 @@ def _add_phase(
     passage.breaches |= breaches
     if voltage_decides(pull.traction_n, pull.cap_n, kind, train.demand):
         passage.by_voltage = True
+    if pull.cap_n > 0.0 and not kind.pulls_at_any_voltage:
+        passage.at_any_voltage = False
     passage.active_j += active * duration
     passage.reactive_vars += reactive * duration
     passage.reactive_slope_vars += reactive_slope * duration
@@ -308,7 +313,7 @@ def _drive(
 
 
 @inlined
-def _begin(passage: Passage, train: Train, step_s: float) -> None:
+def _begin(passage: Passage, train: Train, kind: TrainType, step_s: float) -> None:
     """A passage at its start."""
     copy_motion(train.motion, passage.motion)
     passage.acceleration_m_s2 = train.decision.acceleration_m_s2
@@ -319,6 +324,7 @@ def _begin(passage: Passage, train: Train, step_s: float) -> None:
     passage.departure_s[0] = math.nan
     passage.breaches = 0
     passage.stalled, passage.by_voltage = False, False
+    passage.at_any_voltage = kind.filter_susceptance_s == 0.0
     passage.needed_n, passage.available_n = 0.0, 0.0
     passage.traction_ns, passage.traction_j = 0.0, 0.0
     passage.braking_ns, passage.braking_j = 0.0, 0.0
@@ -347,7 +353,7 @@ def pass_through(
     points : records of CurvePoint
     scratch : Array, shape `SCRATCH_SHAPE`
     """
-    _begin(passage, train, data.options.step_s)
+    _begin(passage, train, kind, data.options.step_s)
     motion = passage.motion
     for _ in range(MOST_PHASES):
         if passage.left_s <= 0.0 or passage.stalled or motion.phase == Phase.ARRIVED:
@@ -389,7 +395,9 @@ def demand_of_passage(
     Others are those of `pass_through`.
     """
     passage, per_second = train.passage, 1.0 / data.options.step_s
-    pass_through(voltage_v, passage, train, kind, data, points, scratch)
+    if not passage.stays or voltage_v <= 0.0:
+        pass_through(voltage_v, passage, train, kind, data, points, scratch)
+        passage.stays = passage.at_any_voltage and voltage_v > 0.0
     active_slope, reactive_slope = 0.0, passage.reactive_slope_vars
     if with_slopes and passage.by_voltage:
         trial, change_v = train.trial, VOLTAGE_CHANGE * voltage_v

@@ -84,6 +84,7 @@ def _train_type(train: Train, profile: int, book: CurveBook) -> Any:
         efficiency=_over_speed(train.efficiency, book),
         effort=_effort(train, book),
         line_current=_line_current(train),
+        pulls_at_any_voltage=_pulls_at_any_voltage(train),
         **_electric(train, book),
     )
 
@@ -129,6 +130,15 @@ def _effort(train: Train, book: CurveBook) -> Any:
         return TractiveEffort.row(kind=EffortKind.LIMITS, limits=limits)
     current_a = si(train, "max_motor_current_a")
     return TractiveEffort.row(kind=EffortKind.NETWORK, highest_current_a=current_a)
+
+
+def _pulls_at_any_voltage(train: Train) -> bool:
+    """Whether the motors' force and power have nothing to do with the line voltage."""
+    effort = train.tractive_effort
+    if not isinstance(effort, EffortLimits) or effort.full_voltage_kv is not None:
+        return False
+    limited = train.current_limitation is not None
+    return not limited and train.reactive_power != "double-bridge" and train.motor_voltage == "new"
 
 
 def _effort_table(train: Train, effort: EffortTable, book: CurveBook) -> Any:

@@ -176,6 +176,10 @@ class Passage(Record):
     """Force that it has. [N]"""
     by_voltage: bool
     """Whether the line voltage decides about its force in any phase."""
+    at_any_voltage: bool
+    """Whether forces and powers are known to be the same at any line voltage."""
+    stays: bool
+    """Whether it is the train's way through the present step, whatever the line voltage."""
     traction_ns: float
     """Impulse of the tractive force. [N s]"""
     braking_ns: float

@@ -71,6 +71,8 @@ class TrainType(Record):
     """Highest voltage of one motor; NaN: not known. [V]"""
     line_current: LineCurrentLimit
     """Limit of the current at the pantograph."""
+    pulls_at_any_voltage: bool
+    """Whether force and power of its motors do not follow the line voltage, if there is one."""
     highest_acceleration_m_s2: float
     """Highest acceleration; infinite without such a limit. [m/s²]"""
     highest_retardation_m_s2: float
