@@ -315,3 +315,9 @@ def test_a_misspelt_key_is_proposed_though_it_resembles_something_absent():
     changes = {"simulation.adhesion_speed_unt": "m/s"}
     finding = finding_at("simulation.adhesion_speed_unt", faults_of(changes))
     assert "did you mean adhesion_speed_unit?" in finding.remedy
+
+
+def test_what_follows_from_a_key_at_fault_is_no_fault_of_its_own():
+    """Without a system there is no frequency that follows from it."""
+    (finding,) = faults_of({"supply.system": "15 kV", "supply.frequency_hz": None})
+    assert finding.key == "supply.system"

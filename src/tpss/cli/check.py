@@ -117,6 +117,8 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
         yield "feeding", f"{station.name} {place}: {station.in_words}"
+    for section in supply.neutral_sections:
+        yield "neutral", section.in_words
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from tpss.model.supply import CONTACT_LINE
 from tpss.report.sampling import Floats
+from tpss.results.places import WITHOUT_POWER
 
 Phasors = npt.NDArray[np.complex128]
 
@@ -56,7 +57,7 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
     node_m = dataset.node_position.to_numpy()[on_line]
     position_m = np.linspace(node_m.min(), node_m.max(), MOST_POSITIONS)
     node_v = _phasors(dataset, "node")[:steps, on_line]
-    train_m, train_v = dataset.position.to_numpy()[:steps], _phasors(dataset, "pantograph")[:steps]
+    train_m, train_v = dataset.position.to_numpy()[:steps], _at_trains(dataset)[:steps]
     per_column = -(-steps // MOST_TIMES)
     highest, total = np.full(MOST_POSITIONS, -np.inf), np.zeros(MOST_POSITIONS)
     columns = np.full((-(-steps // per_column), MOST_POSITIONS), np.inf)
@@ -89,7 +90,7 @@ def phasors_at(dataset: xr.Dataset, place_m: float) -> Phasors:
         dataset.node_position.to_numpy()[on_line],
         _phasors(dataset, "node")[:, on_line],
     )
-    train_m, train_v = dataset.position.to_numpy(), _phasors(dataset, "pantograph")
+    train_m, train_v = dataset.position.to_numpy(), _at_trains(dataset)
     found = np.full(len(train_v), np.nan, dtype=np.complex128)
     for k, (at_nodes, at_trains) in enumerate(zip(node_v, train_v, strict=True)):
         there = np.isfinite(at_trains)
@@ -98,6 +99,14 @@ def phasors_at(dataset: xr.Dataset, place_m: float) -> Phasors:
         at_v = np.concatenate([at_nodes, at_trains[there]])
         found[k] = np.interp(place_m, at_m[order], at_v[order])
     return found
+
+
+def _at_trains(dataset: xr.Dataset) -> Phasors:
+    """Voltage at the trains, shape (time, train); NaN in neutral sections, of which it tells nothing."""
+    phasors = _phasors(dataset, "pantograph")
+    if WITHOUT_POWER in dataset:
+        phasors[(phasors == 0.0) & (dataset[WITHOUT_POWER].to_numpy() > 0.0)] = np.nan
+    return phasors
 
 
 def _phasors(dataset: xr.Dataset, place: str) -> Phasors:

@@ -102,6 +102,8 @@ def _follows_from_another(
         if location == ("traffic",) and inlined.document.get("timetables"):
             return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
+    if detail["type"] == "default_factory_not_called":
+        return True  # what is left out follows from another key, which has a fault
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.
         return (*location[:2], "model") in locations

@@ -17,6 +17,7 @@ from tpss.scenario.fields import (
 )
 from tpss.scenario.line import DECIMALS
 from tpss.scenario.supply.catenary import Catenary
+from tpss.units import kilometres, on_line
 
 Tied = Literal["everywhere", "posts", "no"]
 """Where the contact lines of several tracks are tied."""
@@ -75,6 +76,13 @@ class NeutralSection(Part):
         le=3_600,
         description="Time until a train has power again after its head has left it.",
     )
+
+    @property
+    def in_words(self) -> str:
+        """Where it is, and how long power stays off behind it."""
+        ends = f"{kilometres(self.from_km)}-{kilometres(self.to_km)} km"
+        off = f", {self.raise_s:g} s until power is back" if self.raise_s > 0.0 else ""
+        return f"{on_line(self.line or '', ends)}{off}"
 
     @property
     def middle_km(self) -> float:
