@@ -27,9 +27,11 @@ def two_stages(lead: int = 0) -> Problem:
     return Problem(tree, stages, (one_area(cost, change, ordered),))
 
 
-def one_area(cost, change, ordered, outlay=None, name="line") -> Area:
+def one_area(cost, change, ordered, outlay=None, name="line", initial=0) -> Area:
     outlay = np.where(np.isfinite(change), change, 0.0) if outlay is None else outlay
-    return Area(name, np.asarray(cost), Transitions(np.asarray(change), outlay), tuple(ordered))
+    return Area(
+        name, np.asarray(cost), Transitions(np.asarray(change), outlay, initial), tuple(ordered)
+    )
 
 
 def random_plan(seed, *, areas=1, budget=False, forbid=0.15, nodes=6) -> Problem:
