@@ -5,7 +5,8 @@ import pytest
 
 from tpss.planning import program
 from tpss.planning.costs import expected_cost, meets_budget, outlay
-from tpss.planning.dynamic import first_decisions, number_of_plans, solve
+from tpss.planning.counting import number_of_plans
+from tpss.planning.dynamic import first_decisions, solve
 from tpss.planning.flow import program_of
 from tpss.planning.ranking import best_plans
 from tpss.planning.regret import least_regret, parts_at_orders, regrets

@@ -8,7 +8,8 @@ traffic, stage 2 little with probability 0.6 and much with 0.4.
 import numpy as np
 import pytest
 
-from tpss.planning.dynamic import first_decisions, number_of_plans, solve
+from tpss.planning.counting import number_of_plans
+from tpss.planning.dynamic import first_decisions, solve
 from tpss.planning.ranking import best_plans
 from tpss.planning.regret import least_regret, regrets
 from tpss.planning.worth import compare, worth_of

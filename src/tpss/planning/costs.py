@@ -7,12 +7,23 @@ from tpss.planning.problem import Problem
 from tpss.planning.tree import NONE, Indices
 
 
-def transition_costs(problem: Problem, area: int, configuration: Indices, table: Array) -> Array:
-    """Entry of a table (stages, from, to) at the change into each node, shape (nodes,)."""
-    tree, initial = problem.tree, problem.areas[area].transitions.initial
-    before = np.where(tree.parent == NONE, initial, configuration[tree.parent])
-    entries: Array = table[tree.stage, before, configuration]
-    return entries
+def change_costs(problem: Problem, area: int, configuration: Indices) -> Array:
+    """What the change into each node is charged, of one area, shape (nodes,)."""
+    before = _before(problem, area, configuration)
+    return problem.areas[area].transitions.costs(problem.tree.stage, before, configuration)
+
+
+def change_outlays(problem: Problem, area: int, configuration: Indices) -> Array:
+    """What the change into each node spends, of one area, shape (nodes,)."""
+    before = _before(problem, area, configuration)
+    return problem.areas[area].transitions.outlays(problem.tree.stage, before, configuration)
+
+
+def _before(problem: Problem, area: int, configuration: Indices) -> Indices:
+    """Configuration before each node, shape (nodes,)."""
+    parent, initial = problem.tree.parent, problem.areas[area].transitions.initial
+    before: Indices = np.where(parent == NONE, initial, configuration[parent])
+    return before
 
 
 def node_costs(problem: Problem, policy: Indices) -> tuple[Array, Array]:
@@ -24,12 +35,7 @@ def node_costs(problem: Problem, policy: Indices) -> tuple[Array, Array]:
     yearly = np.array(
         [a.yearly_cost[nodes, row] for a, row in zip(problem.areas, policy, strict=True)]
     )
-    once = np.array(
-        [
-            transition_costs(problem, k, row, problem.areas[k].transitions.cost)
-            for k, row in enumerate(policy)
-        ]
-    )
+    once = np.array([change_costs(problem, k, row) for k, row in enumerate(policy)])
     return yearly, once
 
 
@@ -56,10 +62,7 @@ def cost_by_scenario(problem: Problem, policy: Indices) -> Array:
 
 def outlay(problem: Problem, policy: Indices) -> Array:
     """What a plan spends in each node, shape (nodes,), in all areas."""
-    spent = [
-        transition_costs(problem, k, row, problem.areas[k].transitions.outlay)
-        for k, row in enumerate(policy)
-    ]
+    spent = [change_outlays(problem, k, row) for k, row in enumerate(policy)]
     total: Array = np.sum(spent, axis=0)
     return total
 

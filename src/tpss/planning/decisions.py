@@ -49,6 +49,12 @@ class Decisions:
         """Sum of a figure of each node over the nodes of each group, shape (groups,)."""
         return _total(self.group_of_node, of_node, self.groups)
 
+    def smallest(self, of_node: Array) -> Array:
+        """Smallest figure of the nodes of each group, shape (groups,)."""
+        least = np.full(self.groups, np.inf)
+        np.minimum.at(least, self.group_of_node, of_node)
+        return least
+
     def nodes(self, group: int) -> Indices:
         """Nodes of a group."""
         return np.flatnonzero(self.group_of_node == group)

@@ -12,6 +12,7 @@ import numpy as np
 from tpss.errors import NoPlanError, PlanError
 from tpss.planning.costs import expected_cost
 from tpss.planning.decisions import Decisions, decisions_of
+from tpss.planning.level_transitions import table_of
 from tpss.planning.money import Array
 from tpss.planning.problem import Area, Problem, Solution
 from tpss.planning.tree import NONE, Indices
@@ -42,7 +43,12 @@ class Values:
         return groups[self.decisions.group_of_node]
 
 
-def values_of(area: Area, decisions: Decisions, multiplier: Array | None = None) -> Values:
+def values_of(
+    area: Area,
+    decisions: Decisions,
+    multiplier: Array | None = None,
+    limit: Array | None = None,
+) -> Values:
     """Costs of the best rests of a plan.
 
     Parameters
@@ -52,6 +58,8 @@ def values_of(area: Area, decisions: Decisions, multiplier: Array | None = None)
         Those of the area.
     multiplier : array, optional
         Price of what is spent in each group, on top of its cost and as worth today, shape (groups,).
+    limit : array, optional
+        What may be spent in each group, shape (groups,).
     """
     after = decisions.cost.copy()
     before = np.empty_like(after)
@@ -59,9 +67,14 @@ def values_of(area: Area, decisions: Decisions, multiplier: Array | None = None)
     for s in reversed(range(len(decisions.of_stage))):
         groups = decisions.of_stage[s]
         weight = decisions.weight[groups]
-        extra = None if multiplier is None else multiplier[groups] / weight
         each = after[groups] / weight[:, np.newaxis]
-        least, choice[groups] = area.transitions.cheapest(s, each, extra)
+        if multiplier is None and limit is None:
+            least, choice[groups] = area.transitions.cheapest(s, each)
+        else:
+            extra = None if multiplier is None else multiplier[groups] / weight
+            most = None if limit is None else limit[groups]
+            table = table_of(area.transitions)
+            least, choice[groups] = table.cheapest(s, each, extra, most)
         before[groups] = least * weight[:, np.newaxis]
         if s:
             np.add.at(after, decisions.parent[groups], before[groups])
@@ -139,7 +152,7 @@ def _with_each(
 ) -> list[FirstDecision]:
     """Plans with each configuration of a group before which nothing is decided."""
     initial, decisions = area.transitions.initial, values.decisions
-    change = area.transitions.cost[decisions.stage[group], initial]
+    change = area.transitions.costs_from(int(decisions.stage[group]), initial)
     cost = decisions.weight[group] * change + values.after[group]
     surplus = cost - values.before[group, initial]
     found = []
@@ -153,22 +166,6 @@ def _with_each(
     return found
 
 
-def number_of_plans(problem: Problem) -> int:
-    """How many plans there are, of any cost, whatever the budget."""
-    count = 1
-    for k, area in enumerate(problem.areas):
-        decisions = decisions_of(problem, k)
-        after = np.where(np.isfinite(decisions.cost), 1, 0).astype(object)
-        possible = np.isfinite(area.transitions.cost).astype(object)
-        for g in reversed(range(decisions.groups)):
-            before = possible[decisions.stage[g]] @ after[g]
-            if (parent := decisions.parent[g]) == NONE:
-                count *= int(before[area.transitions.initial])
-            else:
-                after[parent] = after[parent] * before
-    return count
-
-
 def no_plan(problem: Problem, k: int) -> NoPlanError:
     """Why an area has no plan: the nodes at which none of its configurations can be in service."""
     area, tree = problem.areas[k], problem.tree
@@ -177,8 +174,8 @@ def no_plan(problem: Problem, k: int) -> NoPlanError:
     for g, parent in enumerate(decisions.parent):
         start = np.arange(area.configurations) == area.transitions.initial
         before = start if parent == NONE else reached[parent]
-        follows = np.isfinite(area.transitions.cost[decisions.stage[g]])
-        reached[g] = follows[before].any(axis=0) & np.isfinite(decisions.cost[g])
+        follows = area.transitions.reached(int(decisions.stage[g]), before)
+        reached[g] = follows & np.isfinite(decisions.cost[g])
     stuck = [g for g in range(decisions.groups) if not reached[g].any()]
     first = [g for g in stuck if decisions.parent[g] == NONE or reached[decisions.parent[g]].any()]
     nodes = [int(n) for g in first for n in decisions.nodes(g)]

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.planning.decisions import Decisions, decisions_of
+from tpss.planning.level_transitions import table_of
 from tpss.planning.linear import LinearProgram, linear_program, moved
 from tpss.planning.money import Array
 from tpss.planning.problem import Problem
@@ -68,7 +69,8 @@ def columns_of(problem: Problem, k: int, keep: Flags | None = None) -> Columns:
         Those to be left in, shape (groups, from, to).
     """
     area, decisions = problem.areas[k], decisions_of(problem, k)
-    change = area.transitions.cost[decisions.stage]
+    table = table_of(area.transitions)
+    change = table.cost[decisions.stage]
     possible = np.isfinite(change) & np.isfinite(decisions.cost)[:, np.newaxis, :]
     if keep is not None:
         possible &= keep
@@ -81,7 +83,7 @@ def columns_of(problem: Problem, k: int, keep: Flags | None = None) -> Columns:
         possible[g] &= from_[:, np.newaxis]
     group, before, after = np.nonzero(possible)
     cost = decisions.weight[group] * change[group, before, after] + decisions.cost[group, after]
-    spent = area.transitions.outlay[decisions.stage[group], before, after]
+    spent = table.outlay[decisions.stage[group], before, after]
     return Columns(k, decisions, group, before, after, cost, spent)
 
 

@@ -1,17 +1,21 @@
 """Measures, their levels and renewals, and the transitions between configurations that follow."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tpss.errors import PlanError
+from tpss.planning.level_transitions import LevelTransitions
 from tpss.planning.money import Array, Stages
 from tpss.planning.transitions import Transitions
 from tpss.planning.tree import Indices
 
 Flags = npt.NDArray[np.bool_]
+
+MOST_IN_TABLE = 256
+"""Configurations up to which a table of all pairs is faster than sums over measures."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,8 @@ def make_transitions(
     measures: Sequence[Measure],
     renewals: Sequence[Renewal] = (),
     initial: int = 0,
-) -> Transitions:
+    most_in_table: int = MOST_IN_TABLE,
+) -> Transitions | LevelTransitions:
     """Transitions between configurations of measures.
 
     Measures stay once they are built, except where another takes their place.
@@ -118,16 +123,37 @@ def make_transitions(
     renewals : sequence of Renewal, optional
     initial : int
         Configuration that is there before the first stage.
+    most_in_table : int
+        Up to so many configurations all pairs are one table.
 
     Raises
     ------
     PlanError
-        Levels do not fit the measures, or a renewal lies outside the plan.
+        Levels do not fit the measures, a renewal lies outside the plan, or there are too many levels.
     """
     _check(levels, measures)
-    count = len(levels)
-    cost = np.zeros((len(stages), count, count))
-    outlay = np.zeros((len(stages), count, count))
+    extra = np.zeros((2, len(stages), len(levels)))
+    for renewal in renewals:
+        _renew(renewal, stages, levels, *extra)
+    if len(levels) <= most_in_table:
+        built = _built(stages, levels, measures)
+        cost, outlay = (
+            table + more[:, np.newaxis, :] for table, more in zip(built, extra, strict=True)
+        )
+        return Transitions(cost, outlay, initial)
+    axes, places = [], []
+    for together in _replacing_each_other(measures):
+        own, place = np.unique(levels[:, together], axis=0, return_inverse=True)
+        of_axis = [_on_axis(measures[m], together) for m in together]
+        axes.append(Transitions(*_built(stages, own, of_axis)))
+        places.append(place.reshape(-1))
+    return LevelTransitions(axes, np.stack(places, axis=1), extra[0], extra[1], initial)
+
+
+def _built(stages: Stages, levels: Indices, measures: Sequence[Measure]) -> tuple[Array, Array]:
+    """What changes of levels are charged and spend, each of the shape (stages, from, to)."""
+    shape = (len(stages), len(levels), len(levels))
+    cost, outlay = np.zeros(shape), np.zeros(shape)
     for m, measure in enumerate(measures):
         before, after = levels[:, m][:, np.newaxis], levels[:, m][np.newaxis, :]
         price = np.asarray(measure.price, dtype=np.float64)
@@ -137,9 +163,22 @@ def make_transitions(
             possible = stays & ((after <= before) | measure.may_be_built(s))
             outlay[s] += rise
             cost[s] += np.where(possible, stages.share(s, measure.lifetime_a) * rise, np.inf)
-    for renewal in renewals:
-        _renew(renewal, stages, levels, cost, outlay)
-    return Transitions(cost, outlay, initial)
+    return cost, outlay
+
+
+def _replacing_each_other(measures: Sequence[Measure]) -> list[list[int]]:
+    """Measures in groups, of which none takes the place of one in another group."""
+    group = list(range(len(measures)))
+    for m, measure in enumerate(measures):
+        for other in measure.replaces:
+            old, new = group[other], group[m]
+            group = [new if each == old else each for each in group]
+    return [[m for m, each in enumerate(group) if each == g] for g in sorted(set(group))]
+
+
+def _on_axis(measure: Measure, together: list[int]) -> Measure:
+    """A measure that knows others by their numbers among those of its axis."""
+    return replace(measure, replaces=tuple(together.index(m) for m in measure.replaces))
 
 
 def _check(levels: Indices, measures: Sequence[Measure]) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from tpss.errors import PlanError
 from tpss.planning.money import Array, Stages
-from tpss.planning.transitions import Transitions
+from tpss.planning.transitions import Changes
 from tpss.planning.tree import NONE, Indices, Tree
 
 
@@ -33,7 +33,7 @@ class Area:
     name: str
     yearly_cost: Array
     """Cost a year, shape (nodes, configurations); infinite where a configuration is not allowed."""
-    transitions: Transitions
+    transitions: Changes
     ordered_at: tuple[int, ...]
     """Stage at whose start it is decided what each stage has in service; -1: it was before the first, so
     it is what is there today."""
@@ -55,7 +55,7 @@ class Area:
         late = any(at > s or at < NONE for s, at in enumerate(order))
         if late or any(after < before for before, after in itertools.pairwise(order)):
             raise PlanError(f"area {self.name}: stages cannot be ordered at {list(order)}")
-        if len(order) != len(self.transitions.cost):
+        if len(order) != self.transitions.stages:
             raise PlanError(f"area {self.name}: transitions and orders have different stages")
 
     @property

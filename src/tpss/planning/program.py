@@ -7,20 +7,22 @@ import numpy as np
 
 from tpss.errors import NoPlanError, PlanError
 from tpss.planning import dynamic
-from tpss.planning.costs import expected_cost
+from tpss.planning.costs import expected_cost, meets_budget
 from tpss.planning.flow import Program, program_of
 from tpss.planning.highs import run_highs
+from tpss.planning.level_transitions import table_of
 from tpss.planning.linear import linear_program, moved
 from tpss.planning.money import Array
 from tpss.planning.problem import Problem, Solution
 from tpss.planning.relaxation import Relaxation, relax, worth_keeping
 from tpss.planning.tree import Indices
+from tpss.planning.turns import improved_in_turns
 
 GAP = 1e-9
 """Share of the cost up to which a plan counts as the best."""
 
-CHOICE_SHARE = 0.25
-"""Share of the time that the choice among plans found by prices may take."""
+CHOICE_S = 5.0
+"""Time that the choice among plans found by prices may take. [s]"""
 
 
 def solve_any(problem: Problem, gap: float = GAP, time_limit_s: float = np.inf) -> Solution:
@@ -55,12 +57,20 @@ def solve_program(problem: Problem, gap: float = GAP, time_limit_s: float = np.i
     if not problem.is_limited:
         return solve_flow(problem, program_of(problem), gap, time_limit_s)
     until = time.monotonic() + time_limit_s
-    relaxation = relax(problem)
-    if not np.isfinite(relaxation.bound):
+    areas = (replace(area, transitions=table_of(area.transitions)) for area in problem.areas)
+    problem = replace(problem, areas=tuple(areas))
+    relaxation = relax(problem, 0.1 * gap, time.monotonic() + 0.5 * time_limit_s)
+    if relaxation.bound == np.inf:
         raise over_budget(problem)
-    policy = relaxation.best_choice(gap, CHOICE_SHARE * time_limit_s)
+    policy: Indices | None = relaxation.sparing
+    if not meets_budget(problem, relaxation.sparing):
+        policy = relaxation.best_choice(gap, min(CHOICE_S, 0.25 * time_limit_s))
     if policy is None:
         return solve_flow(problem, program_of(problem), gap, until - time.monotonic())
+    enough = relaxation.bound + gap * abs(relaxation.bound)
+    policy = improved_in_turns(
+        problem, relaxation.found.decisions, policy, relaxation.sparing, enough
+    )
     first = _solution(problem, policy, relaxation.bound)
     if first.gap <= gap:
         return first

@@ -109,8 +109,8 @@ class AreaRanking:
     def _choices(self, group: int, before: int) -> Iterator[Item]:
         """Configurations of a group with what follows, by rising cost."""
         decisions = self.values.decisions
-        change = self.area.transitions.cost[decisions.stage[group], before]
-        change = decisions.weight[group] * change
+        stage = int(decisions.stage[group])
+        change = decisions.weight[group] * self.area.transitions.costs_from(stage, before)
         least = change + self.values.after[group]
         possible = np.flatnonzero(np.isfinite(least))
         waiting = [Item(float(least[c]), int(c), (0,)) for c in possible]

@@ -70,7 +70,8 @@ def _entries(problem: Problem, one: Columns, scenario: int) -> Array:
     found = [np.empty((3, 0))]
     for s, node in enumerate(problem.tree.node_of[scenario]):
         here = np.flatnonzero(one.group == one.decisions.group_of_node[node])
-        change = area.transitions.cost[s, one.before[here], one.after[here]]
+        stage = np.full(len(here), s)
+        change = area.transitions.costs(stage, one.before[here], one.after[here])
         yearly = area.yearly_cost[node, one.after[here]]
         cost = stages.discount[s] * (change + stages.annuity[s] * yearly)
         found.append(np.stack([np.zeros(len(here)), here, cost]))

@@ -10,15 +10,17 @@ mixture costs no more than the bound.  The best choice of a plan of the list for
 plan, and what costs more than it even with the prices can be left out of the exact search.
 """
 
+import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from tpss.planning.costs import transition_costs
-from tpss.planning.decisions import decisions_of
+from tpss.planning.costs import change_costs, change_outlays
+from tpss.planning.decisions import Decisions, decisions_of
 from tpss.planning.dynamic import Values, values_of
-from tpss.planning.highs import run_highs
+from tpss.planning.highs import Answer, run_highs
+from tpss.planning.level_transitions import table_of
 from tpss.planning.linear import LinearProgram, linear_program
 from tpss.planning.money import Array
 from tpss.planning.problem import Area, Problem
@@ -28,6 +30,9 @@ Flags = npt.NDArray[np.bool_]
 
 CLOSED = 1e-10
 """Share of the cost up to which the mixture costs no more than the bound."""
+
+EXCEEDED = 1e-7
+"""Share of a budget by which the best mixture may be over it."""
 
 ROUNDS = 300
 """After so many prices the best bound so far is taken; it is one at any time."""
@@ -51,6 +56,8 @@ class PlanList:
     problem: Problem
     nodes: Indices
     """Those with a budget."""
+    decisions: list[Decisions]
+    """Of each area."""
     plans: list[list[AreaPlan]] = field(init=False)
     known: set[tuple[int, bytes]] = field(default_factory=set)
 
@@ -63,19 +70,23 @@ class PlanList:
             return False
         self.known.add(key)
         area, tree, stages = self.problem.areas[k], self.problem.tree, self.problem.stages
-        once = transition_costs(self.problem, k, configuration, area.transitions.cost)
+        once = change_costs(self.problem, k, configuration)
         yearly = area.yearly_cost[np.arange(tree.nodes), configuration]
         cost = float(self.problem.weight @ (stages.annuity[tree.stage] * yearly + once))
-        spent = transition_costs(self.problem, k, configuration, area.transitions.outlay)
+        spent = change_outlays(self.problem, k, configuration)
         self.plans[k].append(AreaPlan(configuration, cost, spent[self.nodes]))
         return True
+
+    def limits(self) -> tuple[Array, Array]:
+        """Budget of each node that has one, and the unit in which it is 1, or 0."""
+        assert self.problem.budget is not None
+        limit: Array = self.problem.budget[self.nodes]
+        return limit, np.where(limit > 0.0, limit, 1.0)
 
     def mixture(self, excess: bool) -> LinearProgram:
         """Best mixture of plans within the budgets; or, if asked for, with the least excess."""
         flat = [(k, plan) for k, plans in enumerate(self.plans) for plan in plans]
-        assert self.problem.budget is not None
-        limit = self.problem.budget[self.nodes]
-        unit = np.where(limit > 0.0, limit, 1.0)
+        limit, unit = self.limits()
         areas, budgets = len(self.plans), len(self.nodes)
         spent = np.array([plan.outlay / unit for _, plan in flat]).T
         rows, columns = np.nonzero(spent)
@@ -100,6 +111,8 @@ class Relaxation:
     price: Array
     """Price of what is spent in each node, shape (nodes,), that gives the bound."""
     found: PlanList
+    sparing: Indices
+    """The plan that spends least, shape (areas, nodes), budgets in their own units."""
 
     def best_choice(self, gap: float, time_limit_s: float) -> Indices | None:
         """Best choice of a plan of each area, shape (areas, nodes), if one was found."""
@@ -115,62 +128,80 @@ class Relaxation:
         return np.array(rows)
 
 
-def relax(problem: Problem) -> Relaxation:
+def relax(problem: Problem, gap: float = CLOSED, until_s: float = np.inf) -> Relaxation:
     """Bound and plans by prices on budgets.
 
     Parameters
     ----------
     problem : Problem
         With a budget, and a plan without it.
+    gap : float
+        Share of the cost up to which the mixture counts as no more than the bound.
+    until_s : float
+        Time of `time.monotonic` after which the best bound so far is taken. [s]
     """
     assert problem.budget is not None
     nodes = np.flatnonzero(np.isfinite(problem.budget))
-    found = PlanList(problem, nodes)
-    free = replace(problem, areas=tuple(_without_costs(area) for area in problem.areas))
-    _price(free, found, np.zeros(problem.tree.nodes))
-    if _generate(free, found, excess=True)[0] > CLOSED:
-        return Relaxation(np.inf, np.zeros(problem.tree.nodes), found)
-    _price(problem, found, np.zeros(problem.tree.nodes))
-    bound, price = _generate(problem, found, excess=False)
-    return Relaxation(bound, price, found)
-
-
-def _generate(problem: Problem, found: PlanList, excess: bool) -> tuple[float, Array]:
-    """Highest bound, and its prices; of the excess of budgets in their own units, or of the cost."""
-    assert problem.budget is not None
-    limit = problem.budget[found.nodes]
-    unit = np.where(limit > 0.0, limit, 1.0)
-    best, at = -np.inf, np.zeros(problem.tree.nodes)
+    decisions = [decisions_of(problem, k) for k in range(len(problem.areas))]
+    found = PlanList(problem, nodes, decisions)
+    nothing = np.zeros(problem.tree.nodes)
+    is_possible = _fill(problem, found)
+    sparing = np.array([plans[0].configuration for plans in found.plans])
+    if not is_possible:
+        return Relaxation(np.inf, nothing, found, sparing)
+    limit, unit = found.limits()
+    best, at, price = -np.inf, nothing, nothing
     for _ in range(ROUNDS):
-        answer = run_highs(found.mixture(excess))
-        price = np.zeros(problem.tree.nodes)
-        price[found.nodes] = np.maximum(0.0, -answer.price[len(problem.areas) :]) / unit
-        least, is_new = _price(problem, found, price)
-        if (bound := least - float(price[found.nodes] @ limit)) > best:
+        least, is_new = _price(problem, decisions, found, price)
+        if (bound := least - float(price[nodes] @ limit)) > best:
             best, at = bound, price
-        if not is_new or answer.bound - best <= CLOSED * abs(answer.bound):
+        answer = run_highs(found.mixture(excess=False))
+        closed = answer.bound - best <= max(gap, CLOSED) * abs(answer.bound)
+        if answer.x is None or not is_new or closed or time.monotonic() > until_s:
             break
-    return best, at
+        price = _prices(problem, found, answer, unit)
+    return Relaxation(best, at, found, sparing)
 
 
-def _price(problem: Problem, found: PlanList, price: Array) -> tuple[float, bool]:
+def _fill(problem: Problem, found: PlanList) -> bool:
+    """Add plans until some mixture of them is within the budgets; whether there is one."""
+    free = replace(problem, areas=tuple(_without_costs(area) for area in problem.areas))
+    decisions = [decisions_of(free, k) for k in range(len(free.areas))]
+    limit, unit = found.limits()
+    price = np.zeros(problem.tree.nodes)
+    price[found.nodes] = 1.0 / unit
+    while True:
+        least, is_new = _price(free, decisions, found, price)
+        if least - float(price[found.nodes] @ limit) > EXCEEDED:
+            return False
+        answer = run_highs(found.mixture(excess=True))
+        if answer.bound <= EXCEEDED or not is_new:
+            return answer.bound <= EXCEEDED
+        price = _prices(problem, found, answer, unit)
+
+
+def _prices(problem: Problem, found: PlanList, answer: Answer, unit: Array) -> Array:
+    """Price of what is spent in each node at which a mixture of plans is the best, shape (nodes,)."""
+    price = np.zeros(problem.tree.nodes)
+    price[found.nodes] = np.maximum(0.0, -answer.price[len(problem.areas) :]) / unit
+    return price
+
+
+def _price(
+    problem: Problem, decisions: list[Decisions], found: PlanList, price: Array
+) -> tuple[float, bool]:
     """Least cost of all areas with prices on what they spend; whether a plan of it is new."""
     least, is_new = 0.0, False
     for k, area in enumerate(problem.areas):
-        values = _priced_values(problem, k, price)
+        values = values_of(area, decisions[k], decisions[k].total(price))
         least += values.least(area.transitions.initial)
         is_new |= found.add(k, values.policy(area.transitions.initial))
     return least, is_new
 
 
-def _priced_values(problem: Problem, k: int, price: Array) -> Values:
-    decisions = decisions_of(problem, k)
-    return values_of(problem.areas[k], decisions, decisions.total(price))
-
-
 def _without_costs(area: Area) -> Area:
     """The same area if nothing cost anything: what it spends is all that counts."""
-    transitions = area.transitions
+    transitions = table_of(area.transitions)
     change = np.where(np.isfinite(transitions.cost), 0.0, np.inf)
     yearly = np.where(np.isfinite(area.yearly_cost), 0.0, np.inf)
     return replace(area, yearly_cost=yearly, transitions=replace(transitions, cost=change))
@@ -181,8 +212,10 @@ def worth_keeping(problem: Problem, relaxation: Relaxation, cost: float) -> list
     spare = (cost - relaxation.bound) + CLOSED * abs(cost)
     keep = []
     for k, area in enumerate(problem.areas):
-        values = _priced_values(problem, k, relaxation.price)
-        through = _through(area, values, values.decisions.total(relaxation.price))
+        decisions = relaxation.found.decisions[k]
+        price = decisions.total(relaxation.price)
+        values = values_of(area, decisions, price)
+        through = _through(area, values, price)
         keep.append(through <= values.least(area.transitions.initial) + spare)
     return keep
 
@@ -190,7 +223,7 @@ def worth_keeping(problem: Problem, relaxation: Relaxation, cost: float) -> list
 def _through(area: Area, values: Values, price: Array) -> Array:
     """Least cost of an area's plans that contain a change, shape (groups, from, to)."""
     decisions, initial = values.decisions, area.transitions.initial
-    spent = np.where(np.isfinite(area.transitions.cost), area.transitions.outlay, 0.0)
+    table = table_of(area.transitions)
     total = values.least(initial)
     through = np.empty((decisions.groups, area.configurations, area.configurations))
     without: list[Array] = []
@@ -203,7 +236,7 @@ def _through(area: Area, values: Values, price: Array) -> Array:
             others = _difference(through[parent].min(axis=0), values.before[g])
         without.append(others)
         stage = decisions.stage[g]
-        change = decisions.weight[g] * area.transitions.cost[stage] + price[g] * spent[stage]
+        change = decisions.weight[g] * table.cost[stage] + price[g] * table.spent[stage]
         through[g] = others[:, np.newaxis] + change + values.after[g]
     return through
 
