@@ -14,7 +14,7 @@ from tpss.planning.regret import least_regret, parts_at_orders
 from tpss.planning.regret_program import least_regret_by_program
 from tpss.planning.switching import costs_of_first, switching
 from tpss.planning.tree import make_tree
-from tpss.planning.worth import compare, costs_by_part, known_plans
+from tpss.planning.worth import compare, costs_by_part, known_plans, worth_of
 
 from made_up_plans import one_area, random_plan, two_stages
 
@@ -149,8 +149,17 @@ def test_a_fixed_plan_may_not_exist():
     cost = np.array([[2.0, 1.0], [2.0, INF], [INF, 2.0]])
     problem = problem.with_costs([cost])
     assert solve(problem).policy.tolist() == [[0, 0, 1]]
-    with pytest.raises(NoPlanError):
-        solve(problem.decided_today())
+    worth = worth_of(problem, [cost[[0, 2]]])
+    assert (worth.fixed, worth.of_flexibility) == (None, None)
+    assert worth.expected_known_cost <= worth.best.cost
+
+
+def test_what_a_mean_future_decides_today_may_leave_no_plan():
+    """It builds strong supply at once, which a future of little traffic does not allow."""
+    problem = two_stages()
+    problem = problem.with_costs([np.array([[2.0, 1.0], [2.0, INF], [20.0, 2.0]])])
+    worth = worth_of(problem, [np.array([[20.0, 2.0], [20.0, 2.0]])])
+    assert (worth.mean, worth.of_the_tree) == (None, None)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tpss.errors import NoPlanError
 from tpss.planning.costs import expected_cost, node_costs
 from tpss.planning.dynamic import solve
 from tpss.planning.money import Array
@@ -36,9 +37,10 @@ class Worth:
     """Best plan of each scenario if it is known beforehand; its policy is of that scenario's stages."""
     probability: Array
     """Of each scenario, shape (scenarios,)."""
-    fixed: Solution
+    fixed: Solution | None
+    """The best that is decided today for ever; None if each leaves some future without a plan."""
     mean: Solution | None
-    """Today's decisions are those of a mean future; None if none was given."""
+    """Today's decisions are those of a mean future; None if none was given, or nothing can follow."""
 
     @property
     def known_cost(self) -> Array:
@@ -56,9 +58,9 @@ class Worth:
         return self.best.cost - self.expected_known_cost
 
     @property
-    def of_flexibility(self) -> float:
-        """What it is worth to be able to decide later."""
-        return self.fixed.cost - self.best.cost
+    def of_flexibility(self) -> float | None:
+        """What it is worth to be able to decide later; None if nothing else is possible."""
+        return None if self.fixed is None else self.fixed.cost - self.best.cost
 
     @property
     def of_the_tree(self) -> float | None:
@@ -82,15 +84,23 @@ def worth_of(
     Raises
     ------
     NoPlanError
-        There is no plan, or none if today's decisions are those of the mean future.
+        There is no plan.
     """
     return Worth(
         best=solver(problem),
         known=known_plans(problem, solver),
         probability=problem.tree.scenario_probability,
-        fixed=solver(problem.decided_today()),
+        fixed=_if_any(solver, problem.decided_today()),
         mean=None if mean_cost is None else _planned_for_mean(problem, mean_cost, solver),
     )
+
+
+def _if_any(solver: Solver, problem: Problem) -> Solution | None:
+    """Best plan of a problem that may have none."""
+    try:
+        return solver(problem)
+    except NoPlanError:
+        return None
 
 
 def known_plans(problem: Problem, solver: Solver = solve) -> tuple[Solution, ...]:
@@ -99,7 +109,9 @@ def known_plans(problem: Problem, solver: Solver = solve) -> tuple[Solution, ...
     return tuple(solver(problem.of_scenario(scenario)) for scenario in range(count))
 
 
-def _planned_for_mean(problem: Problem, mean_cost: Sequence[Array], solver: Solver) -> Solution:
+def _planned_for_mean(
+    problem: Problem, mean_cost: Sequence[Array], solver: Solver
+) -> Solution | None:
     """Best plan whose decisions of today are those of the best plan of a mean future."""
     stages = np.arange(problem.tree.stages)
     chain = Tree(("mean",), np.ones(1), stages[np.newaxis, :])
@@ -111,12 +123,14 @@ def _planned_for_mean(problem: Problem, mean_cost: Sequence[Array], solver: Solv
     budget = None
     if problem.budget is not None:
         budget = np.array([problem.budget[problem.tree.stage == s].min() for s in stages])
-    policy = solver(Problem(chain, problem.stages, areas, budget)).policy
+    mean = _if_any(solver, Problem(chain, problem.stages, areas, budget))
+    if mean is None:
+        return None
     for k, area in enumerate(problem.areas):
         for stage in decided_first(area):
             nodes = np.flatnonzero(problem.tree.stage == stage)
-            problem = problem.only(k, nodes, int(policy[k, stage]))
-    return solver(problem)
+            problem = problem.only(k, nodes, int(mean.policy[k, stage]))
+    return _if_any(solver, problem)
 
 
 def decided_first(area: Area) -> list[int]:
