@@ -116,13 +116,13 @@ BAD = {
     "an end before the beginning": (
         {"stages/end": 2035}, "stages", "the last stage begins in 2040", "after the last start",
     ),
-    "a lead longer than a stage": (
-        {"measures/Mid/lead_time_years": 12, "measures/AT/lead_time_years": 5},
-        "measures.Mid.lead_time_years", "longer than a stage", "10 years apart",
+    "a lead longer than all stages": (
+        {"measures/Mid/lead_time_years": 12, "measures/AT/lead_time_years": 12},
+        "measures.Mid.lead_time_years", "nothing is in service", "shorten the lead time",
     ),
-    "leads of two kinds": (
+    "leads of different stages": (
         {"measures/Mid/lead_time_years": 5},
-        "measures.*.lead_time_years", "others are not: AT", "all of them",
+        "measures.*.lead_time_years", "different stages: of Mid and AT", "lengthen the shorter",
     ),
     "a measure that comes at no stage": (
         {"measures/Mid/earliest": 2045}, "measures.Mid", "no stage begins", "2030, 2040",

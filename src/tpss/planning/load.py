@@ -7,9 +7,15 @@ from typing import Any
 
 from tpss.errors import Finding, ScenarioError, no_such
 from tpss.planning.plan import Future, PlanFile, PlannedMeasure, PlannedRenewal
-from tpss.planning.plan_faults import PRICES, area_of, measures_of, plan_faults, price_faults
+from tpss.planning.plan_faults import (
+    PRICES,
+    measures_of,
+    plan_faults,
+    price_faults,
+    renewals_of,
+)
 from tpss.scenario.files import read_toml
-from tpss.scenario.override import copy_of
+from tpss.scenario.override import copy_of, override
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.validate import validate
 
@@ -51,8 +57,30 @@ class Plan:
     """A plan with the scenarios that it starts from."""
 
     file: PlanFile
+    document: dict[str, Any]
+    """Of the plan, as in its file."""
     source: Path
     areas: tuple[PlannedArea, ...]
+
+    def with_(self, changes: Mapping[str, Any]) -> "Plan":
+        """The plan with values set by key path; its scenarios stay as they were read.
+
+        Raises
+        ------
+        ScenarioError
+            A path leads to no place, or the changed plan has faults.
+        """
+        document = override(self.document, changes, self.source)
+        file = read_plan_file(document, self.source)
+        areas = tuple(
+            replace(
+                area,
+                measures=measures_of(area.name, file),
+                renewals=renewals_of(area.name, file),
+            )
+            for area in self.areas
+        )
+        return replace(self, file=file, document=document, areas=areas)
 
     @property
     def futures(self) -> dict[str, Future]:
@@ -107,7 +135,7 @@ def plan_of(document: Mapping[str, Any], source: Path) -> Plan:
         findings += _unknown_outages(file, area, source)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
-    return Plan(file, source.absolute(), tuple(areas))
+    return Plan(file, copy_of(document), source.absolute(), tuple(areas))
 
 
 def read_plan_file(given: Mapping[str, Any], source: Path) -> PlanFile:
@@ -220,12 +248,9 @@ def _planned_area(name: str, scenario: str, file: PlanFile, source: Path) -> Pla
             str(source), key, repr(scenario), problem, "correct them, or name another scenario"
         )
         raise ScenarioError([first, *error.findings]) from error
-    renewals = {
-        own.removeprefix(f"{name}."): each
-        for own, each in file.renewals.items()
-        if area_of(own, file) == name
-    }
-    return PlannedArea(name, document, place, today, measures_of(name, file), renewals)
+    return PlannedArea(
+        name, document, place, today, measures_of(name, file), renewals_of(name, file)
+    )
 
 
 def _unknown_outages(file: PlanFile, area: PlannedArea, source: Path) -> list[Finding]:

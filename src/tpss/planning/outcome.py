@@ -142,13 +142,7 @@ def _of_services(steady: SteadyRun, window: Window) -> Iterator[tuple[str, Any]]
     arrived_s = arrivals_s(run)
     hours = window.per_s / 3600.0
     for number, entry in enumerate(scenario.traffic):
-        own = [
-            i
-            for i, train in enumerate(run.trains)
-            if train.route == number
-            and train.phase == Phase.PENDING
-            and window.begin_s < arrived_s[i] <= window.end_s
-        ]
+        own = _counted(run, number, window, round(trains_per_h(scenario, number, hours) * hours))
         trips_min = [(arrived_s[i] - _departure_s(run, i)) / 60.0 for i in own]
         late_min = [
             max(0.0, trip + run.trains[i].delay_s / 60.0 - entry.arrive_after_min)
@@ -163,6 +157,20 @@ def _of_services(steady: SteadyRun, window: Window) -> Iterator[tuple[str, Any]]
         yield f"{service}.mean_trip_min", _mean(trips_min)
         yield f"{service}.mean_late_min", _mean(late_min)
         yield f"{service}.mean_lost_min", _mean(lost_min)
+
+
+def _counted(run: Run, number: int, window: Window, count: int) -> list[int]:
+    """Trains of a service whose times count: the last so many that have arrived within the window.
+
+    The count is that of departures in the window: an arrival just at its end counts once or not at all.
+    """
+    arrived_s = arrivals_s(run)
+    own = [
+        i
+        for i, train in enumerate(run.trains)
+        if train.route == number and train.phase == Phase.PENDING and arrived_s[i] <= window.end_s
+    ]
+    return sorted(own, key=lambda i: arrived_s[i])[-max(count, 1) :]
 
 
 def trains_per_h(scenario: Scenario, number: int, hours: float) -> float:

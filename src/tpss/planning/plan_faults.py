@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tpss.errors import Finding, no_such
-from tpss.planning.plan import PlanFile, PlannedMeasure
+from tpss.planning.money import Stages, ordered_at
+from tpss.planning.plan import PlanFile, PlannedMeasure, PlannedRenewal
 from tpss.planning.price_fields import Price
 from tpss.scenario.scenario import Scenario
 
@@ -128,6 +129,15 @@ def measures_of(area: str, file: PlanFile) -> dict[str, PlannedMeasure]:
     }
 
 
+def renewals_of(area: str, file: PlanFile) -> dict[str, PlannedRenewal]:
+    """Renewals of an area by the names that they have within it."""
+    return {
+        name.removeprefix(f"{area}."): renewal
+        for name, renewal in file.renewals.items()
+        if area_of(name, file) == area
+    }
+
+
 def _of_names(file: PlanFile) -> Iterator[_Fault]:
     """Names of measures and areas that there are not."""
     for kind, given in (("measures", file.measures), ("renewals", file.renewals)):
@@ -160,24 +170,31 @@ def _unknown(key: str, names: Sequence[str], known: Sequence[str]) -> Iterator[_
 
 
 def _of_leads(file: PlanFile) -> Iterator[_Fault]:
-    """Lead times: none, or one stage, and the same for all measures."""
-    years = file.stages.years[:-1]
-    lead_stages: dict[str, int] = {}
-    for name, measure in file.measures.items():
-        lead = measure.lead_time_years
-        if lead > min(years, default=0):
-            problem = "a lead time longer than a stage" if years else "no stage is left to build in"
+    """Lead times: measures of an area are ordered the same number of stages ahead."""
+    economics, start = file.economics, tuple(float(year) for year in file.stages.start)
+    stages = Stages(start, float(file.stages.end), economics.discount_rate)
+    for area in file.areas or ("",):
+        orders: dict[tuple[int, ...], list[str]] = {}
+        for name, measure in measures_of(area, file).items():
+            orders.setdefault(ordered_at(stages, measure.lead_time_years), []).append(name)
+        before = f"measures.{area}" if area else "measures"
+        if len(orders) > 1:
+            groups = " and ".join(", ".join(names) for names in orders.values())
+            problem = f"lead times that lie in different stages: of {groups}"
             remedy = (
-                f"stages are {', '.join(map(str, years))} years apart; let them be as long, or shorten "
-                "the lead time"
+                "let them be ordered the same number of stages ahead: lengthen the shorter ones"
             )
-            yield f"measures.{name}.lead_time_years", f"{lead:g}", problem, remedy
-        lead_stages[name] = int(lead > 0.0)
-    if len(set(lead_stages.values())) > 1:
-        without = ", ".join(name for name, stages in lead_stages.items() if not stages)
-        problem = f"some measures are ordered a stage ahead, and others are not: {without}"
-        remedy = "give all of them a lead time, or none"
-        yield "measures.*.lead_time_years", "", problem, remedy
+            yield f"{before}.*.lead_time_years", "", problem, remedy
+        for order, names in orders.items():
+            if max(order) < 0:
+                problem = "nothing is in service before the last stage has begun"
+                remedy = "shorten the lead time, or let a later stage begin"
+                shown = f"{file.measures[_full(area, names[0])].lead_time_years:g}"
+                yield f"{before}.{names[0]}.lead_time_years", shown, problem, remedy
+
+
+def _full(area: str, name: str) -> str:
+    return f"{area}.{name}" if area else name
 
 
 def _of_budget(file: PlanFile) -> Iterator[_Fault]:

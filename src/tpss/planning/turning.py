@@ -1,0 +1,150 @@
+"""Where the first decision turns: prices, costs, rate and probabilities at which another one leads."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tpss.planning.money import Array, Stages
+from tpss.planning.problem import Problem
+from tpss.planning.served import FIXED
+from tpss.planning.solve import Model, price_of_node, transitions_of
+from tpss.planning.switching import Switching, costs_of_first, switching
+
+WIDEST = 4.0
+"""Times today's price or cost up to which it is looked where the decision turns; down to 0. [1]"""
+
+HIGHEST_RATE = 0.12
+"""Highest discount rate that is looked at. [1/a]"""
+
+EDGE = 1e-3
+"""Least probability of a scenario, and of the others, that is looked at. [1]"""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """What is varied, and where the first decision of an area turns."""
+
+    key: str
+    """Key path in the plan."""
+    area: int
+    found: Switching
+
+
+def turns_of(model: Model, area: int) -> Iterator[Turn]:
+    """Where the first decision of an area turns, for prices, costs of measures, rate, probabilities.
+
+    Each is varied alone; probabilities of the other scenarios keep their proportions.
+    """
+    problem = model.problem
+    for key, now, low, high, problem_at in _varied(model, problem, area):
+
+        def cost_of(value: float, at: Callable[[float], Problem] = problem_at) -> Array:
+            return costs_of_first(at(value), area)
+
+        yield Turn(key, area, switching(cost_of, now, low, high))
+
+
+_Varied = tuple[str, float, float, float, Callable[[float], Problem]]
+"""Key, today's value, lowest and highest value, and the problem at a value."""
+
+
+def _varied(model: Model, problem: Problem, area: int) -> Iterator[_Varied]:
+    file = model.plan.file
+    components = model.served[0].quantities.components
+    prices = price_of_node(model.plan, model.tree)
+    first = model.tree.stage == 0
+    for k, name in enumerate(components):
+        now = abs(float(model.tree.probability[first] @ prices[first, k]))
+        if name != FIXED and now > 0.0:
+            yield (
+                f"economics.{name}",
+                now,
+                0.0,
+                WIDEST * now,
+                _at_price(model, problem, prices, k, now),
+            )
+    for name, measure in model.areas[area].area.measures.items():
+        if max(measure.costs) > 0.0:
+            now = max(measure.costs)
+            at = _at_cost(model, problem, area, name)
+            yield model.areas[area].area.key(name) + ".cost", now, 0.0, WIDEST * now, at
+    rate = file.economics.discount_rate
+    yield "economics.discount_rate", rate, 0.0, max(HIGHEST_RATE, rate), _at_rate(model, problem)
+    for w, name in enumerate(model.tree.names if len(model.tree.names) > 1 else ()):
+        now = float(model.tree.scenario_probability[w])
+        yield f"scenarios.{name}.probability", now, EDGE, 1.0 - EDGE, _at_probability(problem, w)
+
+
+def _at_price(
+    model: Model, problem: Problem, prices: Array, k: int, now: float
+) -> Callable[[float], Problem]:
+    """The problem with all prices of a component in proportion to a value of today's."""
+
+    def at(value: float) -> Problem:
+        varied = prices.copy()
+        varied[:, k] *= value / now
+        tables = [each.quantities.priced(varied).yearly_cost for each in model.served]
+        return problem.with_costs(tables)
+
+    return at
+
+
+def _at_cost(model: Model, problem: Problem, area: int, name: str) -> Callable[[float], Problem]:
+    """The problem with the costs of a measure in proportion to a value of its highest level."""
+    cases = model.areas[area]
+    measure = cases.area.measures[name]
+    highest = max(measure.costs)
+
+    def at(value: float) -> Problem:
+        costs = tuple(cost * value / highest for cost in measure.costs)
+        dearer = measure.model_copy(update={"cost": costs})
+        measures = {**cases.area.measures, name: dearer}
+        changed = replace(cases, area=replace(cases.area, measures=measures))
+        transitions = transitions_of(model.plan, changed, model.stages)
+        own = replace(problem.areas[area], transitions=transitions)
+        return replace(problem, areas=(*problem.areas[:area], own, *problem.areas[area + 1 :]))
+
+    return at
+
+
+def _at_rate(model: Model, problem: Problem) -> Callable[[float], Problem]:
+    """The problem at another discount rate."""
+
+    def at(rate: float) -> Problem:
+        stages = Stages(model.stages.start_year, model.stages.end_year, rate)
+        areas = tuple(
+            replace(own, transitions=transitions_of(model.plan, cases, stages))
+            for own, cases in zip(problem.areas, model.areas, strict=True)
+        )
+        return replace(problem, stages=stages, areas=areas)
+
+    return at
+
+
+def _at_probability(problem: Problem, w: int) -> Callable[[float], Problem]:
+    """The problem with another probability of a scenario."""
+
+    def at(value: float) -> Problem:
+        now = problem.tree.scenario_probability
+        probability = now * (1.0 - value) / (1.0 - now[w])
+        probability[w] = value
+        return replace(problem, tree=replace(problem.tree, scenario_probability=probability))
+
+    return at
+
+
+def is_turned(turn: Turn) -> bool:
+    """Whether the first decision turns within the range that is looked at."""
+    return turn.found.below is not None or turn.found.above is not None
+
+
+def nearest(turns: list[Turn]) -> Turn | None:
+    """The turn that takes the least change, in proportion to today's value."""
+    found = [turn for turn in turns if is_turned(turn)]
+
+    def change(turn: Turn) -> float:
+        ends = [end for end in (turn.found.below, turn.found.above) if end is not None]
+        return min(abs(end / turn.found.now - 1.0) if turn.found.now else np.inf for end in ends)
+
+    return min(found, key=change, default=None)
