@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from tpss.planning.price_fields import Cost, Money, PriceOrNumber, Year, amounts
-from tpss.scenario.fields import Name, Part, Real, Version, Whole, ascending, fault
+from tpss.scenario.fields import Flag, Name, Part, Real, Version, Whole, ascending, fault
 
 PlainName = Annotated[Name, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 """A name without spaces, from which others are made."""
@@ -186,6 +186,9 @@ class PlannedRenewal(Part):
     lifetime_years: Real = Field(gt=0, le=500, description="Life of what takes its place.")
     unless: tuple[Name, ...] = Field(
         default=(), description="Measures of which one in service makes it unnecessary."
+    )
+    in_budget: Flag = Field(
+        default=False, description="Whether its cost counts towards the budget of its stage."
     )
     price_year: Year | None = Field(
         default=None, description="Year of its price; another than the plan's is a fault."

@@ -18,7 +18,7 @@ from tpss.planning.plan import Evaluation
 from tpss.scenario.scenario import Scenario
 from tpss.sweep.columns import FAILED, INVALID
 
-FILE_S = 5.0
+FILE_S = 1.0
 """Time after which finished cases are written. [s]"""
 
 

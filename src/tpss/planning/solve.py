@@ -167,6 +167,7 @@ def transitions_of(plan: Plan, area: AreaCases, stages: Stages) -> Changes:
             float(each.year),
             tuple(names.index(other) for other in each.unless),
             each.lifetime_years,
+            each.in_budget,
         )
         for name, each in area.area.renewals.items()
     ]

@@ -11,7 +11,7 @@ from tpss.planning.cases import INTACT
 from tpss.planning.costs import change_costs, change_outlays
 from tpss.planning.regret import regrets
 from tpss.planning.solve import Model
-from tpss.planning.tree import NONE
+from tpss.planning.tree import NONE, Indices
 from tpss.planning.worth import costs_by_part
 
 INVESTMENT = "investment"
@@ -115,6 +115,19 @@ def costs(answer: Answer) -> pd.DataFrame:
             for w, name in enumerate(model.tree.names)
         ]
     )
+
+
+def cost_difference(model: Model, policy: Indices, other: Indices) -> pd.DataFrame:
+    """Expected discounted costs of two plans by component, and what the first costs more."""
+    totals = []
+    for plan in (policy, other):
+        parts = [p.by_component(row) for p, row in zip(model.priced, plan, strict=True)]
+        discounted = costs_by_part(model.problem, plan, parts)[1]
+        totals.append(discounted.sum(axis=1) @ model.tree.scenario_probability)
+    components = (*model.served[0].quantities.components, INVESTMENT)
+    frame = pd.DataFrame({"component": components, "with": totals[0], "best": totals[1]})
+    frame["more"] = frame["with"] - frame["best"]
+    return frame[(frame["with"] != 0.0) | (frame["best"] != 0.0)].reset_index(drop=True)
 
 
 def regret(answer: Answer) -> pd.DataFrame:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tpss.planning.money import Array, Stages
+from tpss.planning.plan_faults import PRICES
 from tpss.planning.problem import Problem
 from tpss.planning.served import FIXED
 from tpss.planning.solve import Model, price_of_node, transitions_of
@@ -31,49 +32,62 @@ class Turn:
     found: Switching
 
 
-def turns_of(model: Model, area: int) -> Iterator[Turn]:
+@dataclass(frozen=True)
+class Varied:
+    """A number of the plan that can be varied without a simulation."""
+
+    key: str
+    """Key path in the plan."""
+    now: float
+    low: float
+    """Lowest and highest value that is looked at."""
+    high: float
+    problem_at: Callable[[float], Problem]
+    """The problem at a value."""
+
+    def turn(self, area: int, low: float, high: float) -> Turn:
+        """Where the first decision of an area turns between two values."""
+
+        def cost_of(value: float) -> Array:
+            return costs_of_first(self.problem_at(value), area)
+
+        return Turn(self.key, area, switching(cost_of, self.now, low, high))
+
+
+def turns_of(model: Model, area: int) -> list[Turn]:
     """Where the first decision of an area turns, for prices, costs of measures, rate, probabilities.
 
     Each is varied alone; probabilities of the other scenarios keep their proportions.
+
+    Raises
+    ------
+    PlanError
+        There is a budget, or the area has several first decisions, as scenarios part at once.
     """
-    problem = model.problem
-    for key, now, low, high, problem_at in _varied(model, problem, area):
-
-        def cost_of(value: float, at: Callable[[float], Problem] = problem_at) -> Array:
-            return costs_of_first(at(value), area)
-
-        yield Turn(key, area, switching(cost_of, now, low, high))
+    return [each.turn(area, each.low, each.high) for each in varied(model)]
 
 
-_Varied = tuple[str, float, float, float, Callable[[float], Problem]]
-"""Key, today's value, lowest and highest value, and the problem at a value."""
-
-
-def _varied(model: Model, problem: Problem, area: int) -> Iterator[_Varied]:
-    file = model.plan.file
-    components = model.served[0].quantities.components
-    prices = price_of_node(model.plan, model.tree)
-    first = model.tree.stage == 0
-    for k, name in enumerate(components):
+def varied(model: Model) -> Iterator[Varied]:
+    """Numbers of a plan that can be varied without a simulation."""
+    file, problem = model.plan.file, model.problem
+    prices, first = price_of_node(model.plan, model.tree), model.tree.stage == 0
+    for k, name in enumerate(model.served[0].quantities.components):
         now = abs(float(model.tree.probability[first] @ prices[first, k]))
         if name != FIXED and now > 0.0:
-            yield (
-                f"economics.{name}",
-                now,
-                0.0,
-                WIDEST * now,
-                _at_price(model, problem, prices, k, now),
-            )
-    for name, measure in model.areas[area].area.measures.items():
-        if max(measure.costs) > 0.0:
-            now = max(measure.costs)
-            at = _at_cost(model, problem, area, name)
-            yield model.areas[area].area.key(name) + ".cost", now, 0.0, WIDEST * now, at
+            at = _at_price(model, problem, prices, k, now)
+            yield Varied(f"{PRICES}.{name}", now, 0.0, WIDEST * now, at)
+    for number, cases in enumerate(model.areas):
+        for name, measure in cases.area.measures.items():
+            if (now := max(measure.costs)) > 0.0:
+                at = _at_cost(model, problem, number, name)
+                yield Varied(f"{cases.area.key(name)}.cost", now, 0.0, WIDEST * now, at)
     rate = file.economics.discount_rate
-    yield "economics.discount_rate", rate, 0.0, max(HIGHEST_RATE, rate), _at_rate(model, problem)
+    highest = max(HIGHEST_RATE, rate)
+    yield Varied(f"{PRICES}.discount_rate", rate, 0.0, highest, _at_rate(model, problem))
     for w, name in enumerate(model.tree.names if len(model.tree.names) > 1 else ()):
         now = float(model.tree.scenario_probability[w])
-        yield f"scenarios.{name}.probability", now, EDGE, 1.0 - EDGE, _at_probability(problem, w)
+        key, at = f"scenarios.{name}.probability", _at_probability(problem, w)
+        yield Varied(key, now, min(EDGE, now), max(1.0 - EDGE, now), at)
 
 
 def _at_price(
@@ -141,10 +155,9 @@ def is_turned(turn: Turn) -> bool:
 
 def nearest(turns: list[Turn]) -> Turn | None:
     """The turn that takes the least change, in proportion to today's value."""
-    found = [turn for turn in turns if is_turned(turn)]
 
     def change(turn: Turn) -> float:
         ends = [end for end in (turn.found.below, turn.found.above) if end is not None]
         return min(abs(end / turn.found.now - 1.0) if turn.found.now else np.inf for end in ends)
 
-    return min(found, key=change, default=None)
+    return min(filter(is_turned, turns), key=change, default=None)
