@@ -4,6 +4,7 @@ import pytest
 
 import tpss
 from planning.plans import plan
+from sweep.studies import small_cluster
 from tpss.errors import StudyError
 from tpss.planning import simulate
 from tpss.planning.case_folder import CaseFolder
@@ -148,3 +149,12 @@ def test_a_document_of_a_case_needs_no_files(tmp_path):
     document = listed.document(listed.cases[0])
     assert "gradients_file" not in document["line"]
     assert tpss.Scenario.from_document(document, "elsewhere") == listed.scenario(listed.cases[0])
+
+
+def test_workers_of_a_scheduler_come_to_the_same_rows(tmp_path):
+    loaded = plan(tmp_path)
+    _, here = run(loaded, tmp_path / "here")
+    with small_cluster() as address:
+        _, there = run(loaded, tmp_path / "there", scheduler=address)
+    own = [name for name in here.columns if not name.startswith("timing.")]
+    assert there.loc[here.index, own].equals(here[own])

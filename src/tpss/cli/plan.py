@@ -114,7 +114,7 @@ def _without_source(plan: "Plan") -> list[str]:
 def _print_time(case_list: "CaseList", console: Console) -> None:
     """How many cases there are, and how long they take, from a few of them."""
     from tpss.planning.cases import distinct
-    from tpss.planning.simulate import row_of
+    from tpss.planning.rows import row_of
 
     cases = distinct(case_list.cases)
     announce_compilation(Console(stderr=True))
@@ -141,6 +141,7 @@ def run_plan(
     file: Path,
     out: Path,
     workers: int | None,
+    scheduler: str | None,
     gap: float,
     time_limit_s: float | None,
     quiet: bool,
@@ -163,7 +164,12 @@ def run_plan(
         try:
             with progress_bar(case_list.plan.file.name, PROGRESS, _progress, console) as report:
                 table = simulate_cases(
-                    case_list, folder, case_list.cases, threads=workers, report=report
+                    case_list,
+                    folder,
+                    case_list.cases,
+                    threads=workers,
+                    scheduler=scheduler,
+                    report=report,
                 )
         except KeyboardInterrupt:
             print(

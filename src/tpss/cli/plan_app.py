@@ -70,6 +70,14 @@ def run(
     workers: Annotated[
         int | None, option(min=1, help="Cases at a time; by default one per core.")
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        option(
+            metavar="ADDRESS",
+            help="Dask scheduler whose workers simulate, such as tcp://10.0.0.1:8786; by default this "
+            "computer does.",
+        ),
+    ] = None,
     gap: Gap = 1e-9,
     time_limit: TimeLimit = None,
     quiet: Quiet = False,
@@ -85,7 +93,7 @@ def run(
     """
     from tpss.cli.plan import run_plan
 
-    raise typer.Exit(run_plan(file, out, workers, gap, time_limit, quiet))
+    raise typer.Exit(run_plan(file, out, workers, scheduler, gap, time_limit, quiet))
 
 
 @app.command(
