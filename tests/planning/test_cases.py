@@ -9,8 +9,11 @@ from tpss.errors import StudyError
 from tpss.planning import simulate
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList, distinct
+from tpss.planning.load import load_plan
 from tpss.planning.outcome import outcome_of
 from tpss.planning.simulate import simulate_cases
+
+from conftest import EXAMPLES
 
 
 def run(loaded, folder, **options):
@@ -144,7 +147,7 @@ def test_a_case_that_is_no_scenario_is_a_row_that_says_why(tmp_path, monkeypatch
 
 def test_a_document_of_a_case_needs_no_files(tmp_path):
     """It is what is sent to another computer."""
-    loaded = tpss.planning.load.load_plan("examples/plan_320km.toml")
+    loaded = load_plan(EXAMPLES / "plan_320km.toml")
     listed = CaseList(loaded)
     document = listed.document(listed.cases[0])
     assert "gradients_file" not in document["line"]

@@ -9,6 +9,7 @@ from tpss.planning.outcome import outcome_of
 from tpss.planning.period import period_of
 from tpss.planning.plan import Evaluation
 
+from conftest import EXAMPLES
 from scenarios import SHORT_LINE
 
 LINE = {**SHORT_LINE, "simulation": {"time_step_min": 0.5}}
@@ -55,7 +56,7 @@ def test_a_second_trip_changes_little():
 
 def test_powers_of_the_grid_are_those_of_the_stations_and_what_these_lose():
     """Transformer stations lose some of what they take; converter stations' losses are not described."""
-    scenario = tpss.load_scenario("examples/emu_25kv.toml", {"simulation.time_step_min": 0.5})
+    scenario = tpss.load_scenario(EXAMPLES / "emu_25kv.toml", {"simulation.time_step_min": 0.5})
     row = outcome_of(scenario, Evaluation())
     names = [station.name for station in scenario.supply.stations]
     fed = sum(row[f"station.{name}.station_active_power_mw"] for name in names)

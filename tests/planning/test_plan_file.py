@@ -1,11 +1,17 @@
 """The plan file: what it says, and what is wrong with it."""
 
+import tomllib
+
+import jsonschema
 import pytest
 import tomli_w
 
 import tpss
-from planning.plans import LINE, plan, write_plan
+from planning.plans import LINE, PLAN, changed, plan, write_plan
 from tpss.planning.load import load_plan
+from tpss.planning.schema import plan_schema
+
+from conftest import EXAMPLES
 
 
 def findings(folder, changes):
@@ -158,3 +164,23 @@ def test_a_scenario_is_no_plan(tmp_path):
     write_plan(tmp_path)
     with pytest.raises(tpss.ScenarioError, match="a scenario, not a plan"):
         load_plan(tmp_path / "line.toml")
+    with pytest.raises(tpss.ScenarioError, match="a plan, not a scenario"):
+        tpss.load_scenario(tmp_path / "plan.toml")
+
+
+def test_the_schema_knows_what_a_plan_may_say(tmp_path):
+    schema = plan_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    example = tomllib.loads((EXAMPLES / "plan_320km.toml").read_text("utf-8"))
+    assert list(validator.iter_errors(example)) == []
+    assert list(validator.iter_errors(PLAN)) == []
+    assert list(validator.iter_errors(changed({"measures/AT/sets": {}})))
+    assert list(validator.iter_errors(changed({"measures/AT/cost": None})))
+    assert list(validator.iter_errors(changed({"areas": {"a": {"scenario": "b.toml"}}})))
+
+
+def test_every_key_of_the_schema_is_described():
+    schema = plan_schema()
+    for part in (schema, *schema["$defs"].values()):
+        assert all(field.get("description") for field in part["properties"].values()), part

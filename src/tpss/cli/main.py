@@ -460,6 +460,9 @@ def schema(
     out: Annotated[
         Path | None, option(help="File to write; by default the schema is printed.")
     ] = None,
+    plan: Annotated[
+        bool, typer.Option("--plan", help="The schema of plan files, in place of scenarios.")
+    ] = False,
 ) -> None:
     """Print the JSON Schema of scenario files, which editors use to complete and check them.
 
@@ -468,7 +471,7 @@ def schema(
     """
     from tpss.cli.schema import write_schema
 
-    write_schema(out)
+    write_schema(out, plan)
 
 
 def main() -> None:
