@@ -61,7 +61,7 @@ def test_run_answers_in_a_sentence_and_in_tables(tpss_command, tmp_path):
     assert document["gap"] <= 1e-9
     tables = {file.stem for file in (tmp_path / "out" / "tables").glob("*.csv")}
     assert tables == {
-        "decisions", "first_decisions", "costs", "regret", "values", "configurations",
+        "decisions", "first_decisions", "best_plans", "costs", "regret", "values", "configurations",
         "switching_values",
     }  # fmt: skip
     decisions = pd.read_csv(tmp_path / "out" / "tables" / "decisions.csv")

@@ -103,3 +103,19 @@ def test_configurations_say_what_they_carry(folder):
     table = tables.configurations(modelled(folder, TIGHT))
     assert len(table) == 8
     assert (table.why_not == "").tolist() == table.carried.tolist()
+
+
+def test_the_best_plans_come_in_the_order_of_their_costs(folder):
+    """The first is the best one; all plans of three nodes in which what is built stays."""
+    answer = answer_of(modelled(folder, TIGHT))
+    table = tables.best_plans(answer)
+    costs = table.drop_duplicates("rank").cost.tolist()
+    assert costs == sorted(costs)
+    assert costs[0] == pytest.approx(answer.best.cost)
+    first = table[table["rank"] == 1]
+    assert first.configuration.tolist() == tables.decisions(answer).configuration.tolist()
+
+
+def test_no_plan_has_less_regret_than_the_one_of_least_regret(folder):
+    table = tables.regret(answer_of(modelled(folder, TIGHT))).set_index("plan").largest
+    assert table["least regret"] <= table.min() + 1e-9

@@ -85,3 +85,24 @@ def test_half_the_step_moves_a_year_s_energy_by_little(simulated):
         for step in (1.0, 0.5)
     )
     assert fine["drawn_from_grid_mw"] == pytest.approx(coarse["drawn_from_grid_mw"], rel=5e-3)
+
+
+def test_a_budget_turns_what_two_lines_do(tmp_path):
+    """Free, the freight line waits for its renewal; 600 a stage is too little then, so stations come."""
+    plan = load_plan(EXAMPLES / "plan_two_lines.toml")
+    listed, folder = CaseList(plan), CaseFolder(tmp_path / "out")
+    with folder.opened():
+        table = simulate_cases(listed, folder, listed.cases)
+    tied, free = (
+        answer_of(model_of(CaseList(plan.with_(changes)), table))
+        for changes in ({}, {"budget": None})
+    )
+    assert tied.best.cost > free.best.cost
+    assert tied.is_closed
+    firsts = {
+        name: tables.first_decisions(answer).drop_duplicates("area").configuration.tolist()
+        for name, answer in (("free", free), ("tied", tied))
+    }
+    assert firsts == {"free": ["as today", "AT"], "tied": ["stations", "as today"]}
+    spent = tables.decisions(tied).groupby(["in_service", "if"]).spent.sum()
+    assert (spent <= 600.0).all()

@@ -46,12 +46,13 @@ def test_where_the_run_ends_does_not_count():
         assert short[name] == pytest.approx(long[name], rel=1e-6), name
 
 
-def test_a_second_trip_changes_little():
-    """Means begin when the first train has arrived; an hour later they are nearly the same."""
-    busy = line({"traffic.0.headway_min": 4.0})
-    late = line({"traffic.0.headway_min": 4.0, "traffic.0.already_running": True})
-    first, second = outcome_of(busy, Evaluation()), outcome_of(late, Evaluation())
-    assert first["drawn_from_grid_mw"] == pytest.approx(second["drawn_from_grid_mw"], rel=1e-3)
+def test_means_are_of_the_steady_state_where_trains_lose_minutes_too():
+    """320 km, trains every 48 min that lose 6 min each: the mean of 2 periods is that of 10."""
+    scenario = tpss.load_scenario(EXAMPLES / "line_320km.toml", {"traffic.0.headway_min": 48.0})
+    short, long = (outcome_of(scenario, Evaluation(measured_min=m)) for m in (60.0, 480.0))
+    assert short["service.eastbound.mean_lost_min"] > 5.0
+    for name in ("drawn_from_grid_mw", "network_losses_mw", "service.eastbound.mean_lost_min"):
+        assert short[name] == pytest.approx(long[name], rel=1e-4), name
 
 
 def test_powers_of_the_grid_are_those_of_the_stations_and_what_these_lose():

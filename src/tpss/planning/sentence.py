@@ -12,6 +12,9 @@ from tpss.planning.turning import Turn, nearest
 ALTERNATIVES = 2
 """Other first decisions that are named."""
 
+TIE = 1e-3
+"""Share of the cost below which what one costs more is a tie: a time step moves energies as much. [1]"""
+
 
 def sentences(answer: Answer, turns: Sequence[Turn]) -> list[str]:
     """A sentence for each first decision of each area: one, unless futures part at once.
@@ -46,14 +49,19 @@ def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]
         )
         when = f" if {' or '.join(through)}"
     others = ", ".join(
-        f"{name} instead costs {money(each.surplus)} more" if i == 0
-        else f"{name} {money(each.surplus)} more"
+        _other(name, each, is_first=i == 0)
         for i, (name, each) in enumerate(zip(names[1:], firsts[1:], strict=True))
         if i < ALTERNATIVES
-    )  # fmt: skip
+    )
     parts = [f"{where}{what}{when}: {money(firsts[0].cost)} {currency} expected", others]
     parts.append(_turn_in_words(answer, [turn for turn in turns if turn.area == k]))
     return "; ".join(part for part in parts if part) + "."
+
+
+def _other(name: str, first: FirstDecision, is_first: bool) -> str:
+    """What another first decision costs more."""
+    tie = ", which is a tie" if first.is_tie(TIE) else ""
+    return f"{name}{' instead costs' if is_first else ''} {money(first.surplus)} more{tie}"
 
 
 def in_words(answer: Answer, first: FirstDecision) -> str:

@@ -1,12 +1,14 @@
 """A run up to the steady state of its timetable, and on over whole periods of it.
 
-The first trains find a line that fills up behind them.  Means are taken from when the first train of
-every service has arrived, over whole periods; where the run itself ends does not count.
+Trains of services with headways stand along the line at the start, as if they had always run, but each
+as if it were alone.  Means are taken from when the first train of every service that departed since has
+arrived, over whole periods; where the run itself ends does not count.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -68,9 +70,9 @@ def run_steadily(
 ) -> SteadyRun:
     """Run a scenario until its means are known, or it cannot go on.
 
-    Services with headways run for ever: the window begins when the first train of each has arrived, and
-    holds whole periods.  Listed departures are run until all trains have arrived, and all of it belongs
-    to one period.  With both, the window is one period from the start.
+    Services with headways run for ever: the window begins when the first train of each that departs
+    has arrived, and holds whole periods.  Listed departures are run until all trains have arrived, and
+    all of it belongs to one period.  With both, the window is one period from the start.
 
     Raises
     ------
@@ -143,9 +145,21 @@ def _of_periods(run: Run, start: Start, measured_s: float) -> Window | None:
 
 
 def _lasting(scenario: Scenario, duration_s: float) -> Scenario:
-    """The scenario with another end; it has been validated, and an end changes nothing else."""
+    """The scenario with another end, and trains on the line at the start wherever they can be placed.
+
+    It has been validated, and neither changes anything else.  On single tracks trains that were placed
+    as if they were alone might not come past each other.
+    """
     end = {"duration_min": duration_s / 60.0, "until": None}
-    return scenario.model_copy(update={"simulation": scenario.simulation.model_copy(update=end)})
+    changes: dict[str, Any] = {"simulation": scenario.simulation.model_copy(update=end)}
+    if not scenario.signalling.has_gates:
+        changes["traffic"] = tuple(
+            entry.model_copy(update={"already_running": True})
+            if entry.headway_min is not None and not entry.initial_trains
+            else entry
+            for entry in scenario.traffic
+        )
+    return scenario.model_copy(update=changes)
 
 
 def _first_arrivals_s(run: Run, start: Start) -> float:

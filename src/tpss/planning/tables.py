@@ -9,7 +9,8 @@ import pandas as pd
 from tpss.planning.answer import Answer, as_today, saved_against_today
 from tpss.planning.cases import INTACT
 from tpss.planning.costs import change_costs, change_outlays
-from tpss.planning.regret import regrets
+from tpss.planning.ranking import best_plans as ranked
+from tpss.planning.regret import least_regret, parts_at_orders, regrets
 from tpss.planning.solve import Model
 from tpss.planning.tree import NONE, Indices
 from tpss.planning.worth import costs_by_part
@@ -130,6 +131,32 @@ def cost_difference(model: Model, policy: Indices, other: Indices) -> pd.DataFra
     return frame[(frame["with"] != 0.0) | (frame["best"] != 0.0)].reset_index(drop=True)
 
 
+def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
+    """The best plans in the order of their costs, node by node; none with a budget."""
+    model = answer.model
+    if model.problem.is_limited:
+        return pd.DataFrame(
+            columns=["rank", "cost", "surplus", "area", "in_service", "if", "configuration"]
+        )
+    start = model.plan.file.stages.start
+    return pd.DataFrame(
+        [
+            {
+                "rank": rank,
+                "cost": solution.cost,
+                "surplus": solution.cost - answer.best.cost,
+                "area": area.name,
+                "in_service": start[model.tree.stage[n]],
+                "if": " or ".join(model.tree.scenarios_through(n)),
+                "configuration": configuration_names(model, k)[solution.policy[k, n]],
+            }
+            for rank, solution in enumerate(ranked(model.problem, count), start=1)
+            for k, area in enumerate(model.problem.areas)
+            for n in range(model.tree.nodes)
+        ]
+    )
+
+
 def regret(answer: Answer) -> pd.DataFrame:
     """What each plan costs more than the best one of a scenario would, were that known."""
     model = answer.model
@@ -141,6 +168,8 @@ def regret(answer: Answer) -> pd.DataFrame:
         plans[f"first {label}" if len(model.areas) == 1 else f"first {label} at {first}"] = (
             each.policy
         )
+    if len(model.areas) == 1 and not model.problem.is_limited and parts_at_orders(model.problem):
+        plans["least regret"] = least_regret(model.problem, answer.worth.known_cost)
     plans["the plan"] = answer.best.policy
     values = regrets(model.problem, list(plans.values())[::-1], answer.worth.known_cost)
     frame = pd.DataFrame(values, columns=list(model.tree.names))

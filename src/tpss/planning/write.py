@@ -40,6 +40,7 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
     found = {
         "decisions": tables.decisions(answer),
         "first_decisions": tables.first_decisions(answer),
+        "best_plans": tables.best_plans(answer),
         "costs": tables.costs(answer),
         "regret": tables.regret(answer),
         "values": tables.values(answer),
