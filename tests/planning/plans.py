@@ -13,7 +13,10 @@ from scenarios import SHORT_LINE
 LINE: dict[str, Any] = copy.deepcopy(SHORT_LINE)
 LINE["simulation"] = {"time_step_min": 0.5}
 LINE["supply"]["converter_stations"] = LINE["supply"]["converter_stations"][:1]
-LINE["outages"] = [{"name": "one out", "units": {"West": 1}}]
+LINE["outages"] = [
+    {"name": "one out", "units": {"West": 1}},
+    {"name": "a while", "units": {"West": 1}, "to_min": 10.0},
+]
 
 PLAN: dict[str, Any] = {
     "format": 1,

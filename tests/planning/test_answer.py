@@ -9,7 +9,8 @@ from planning.test_served import BOTH, modelled
 from tpss.planning import tables
 from tpss.planning.answer import answer_of
 from tpss.planning.costs import expected_cost
-from tpss.planning.turning import nearest, turns_of
+from tpss.planning.sentence import sentences
+from tpss.planning.turning import all_turns, nearest, turns_of
 
 
 @pytest.fixture(scope="module")
@@ -119,3 +120,13 @@ def test_the_best_plans_come_in_the_order_of_their_costs(folder):
 def test_no_plan_has_less_regret_than_the_one_of_least_regret(folder):
     table = tables.regret(answer_of(modelled(folder, TIGHT))).set_index("plan").largest
     assert table["least regret"] <= table.min() + 1e-9
+
+
+def test_futures_that_part_at_once_have_a_first_decision_each(folder):
+    """Both are told in a sentence; where they turn is not asked, as there is no single one."""
+    parted = {"scenarios/high/traffic.eastbound.headway_min": [5.0, 5.0]}
+    answer = answer_of(modelled(folder, {**TIGHT, **parted}))
+    low, high = sentences(answer, all_turns(answer))
+    assert "in 2030 if low: " in low
+    assert "in 2030 if high: " in high
+    assert all_turns(answer) == []

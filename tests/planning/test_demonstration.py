@@ -106,3 +106,18 @@ def test_a_budget_turns_what_two_lines_do(tmp_path):
     assert firsts == {"free": ["as today", "AT"], "tied": ["stations", "as today"]}
     spent = tables.decisions(tied).groupby(["in_service", "if"]).spent.sum()
     assert (spent <= 600.0).all()
+
+
+def test_a_network_s_timetable_grows(tmp_path):
+    """Today's branch does not even carry today's timetable; either measure carries the denser one."""
+    plan = load_plan(EXAMPLES / "plan_network.toml")
+    listed, folder = CaseList(plan), CaseFolder(tmp_path / "out")
+    with folder.opened():
+        answer = answer_of(model_of(listed, simulate_cases(listed, folder, listed.cases)))
+    table = tables.configurations(answer.model)
+    weak = table[~table.carried]
+    assert weak.configuration.tolist() == ["as today", "as today"]
+    assert weak.why_not.str.startswith("lowest voltage 11").all()
+    served = answer.model.served[0].quantities
+    assert served.may_serve.tolist() == [[True, False, True], [True, True, True]]
+    assert tables.first_decisions(answer).configuration.tolist()[:2] == ["AT", "Gruvan"]

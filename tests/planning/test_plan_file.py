@@ -140,6 +140,9 @@ BAD = {
     "an unknown outage": (
         {"require/also_with": ["two out"]}, "require.also_with", "no such outage", "one out",
     ),
+    "an outage that ends": (
+        {"require/also_with": ["a while"]}, "require.also_with", "a part of a run", "without from_min",
+    ),
     "itself alike": (
         {"measures/AT/like": "Mid", "measures/Mid/like": "AT"},
         "measures.AT.like", "in a circle", "all its keys",

@@ -153,7 +153,7 @@ def run_plan(
     from tpss.planning.load import load_plan
     from tpss.planning.simulate import simulate_cases
     from tpss.planning.solve import model_of
-    from tpss.planning.turning import turns_of
+    from tpss.planning.turning import all_turns
     from tpss.planning.write import write_answer
 
     case_list = _checked(load_plan(file))
@@ -185,8 +185,7 @@ def run_plan(
         except NoPlanError as error:
             print(str(error), file=sys.stderr)
             return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
-        areas = range(len(case_list.areas)) if not answer.model.problem.is_limited else ()
-        turns = [turn for area in areas for turn in turns_of(answer.model, area)]
+        turns = all_turns(answer)
         write_answer(out, answer, turns)
     if not quiet:
         print_answer(answer, turns, Console())

@@ -21,6 +21,9 @@ from tpss.scenario.scenario import Scenario
 NAMES = ("name", "description", "variants")
 """Keys of a scenario's document on which nothing depends."""
 
+ENDS = ("until", "duration_min")
+"""Keys that say when a run ends, which a case decides itself."""
+
 INTACT = ""
 """Names the case of a supply without outage."""
 
@@ -88,7 +91,9 @@ class CaseList:
         """Document of a configuration with today's traffic, with the files that it names."""
         document = document_of(self.plan, area, configuration, State({}))
         inlined = inline_files(document, area.source).document
-        return {key: value for key, value in inlined.items() if key not in NAMES}
+        simulation = {k: v for k, v in inlined["simulation"].items() if k not in ENDS}
+        kept = {key: value for key, value in inlined.items() if key not in NAMES}
+        return {**kept, "simulation": simulation}
 
     def document(self, case: Case) -> dict[str, Any]:
         """Document of the scenario of a case, with the files that it names: it can be sent anywhere."""

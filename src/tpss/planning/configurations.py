@@ -91,8 +91,7 @@ def document_of(
     simulation = dict(document.get("simulation", {}))
     if plan.file.evaluate.time_step_min is not None:
         simulation["time_step_min"] = plan.file.evaluate.time_step_min
-    for key in ("until", "duration_min", "outage"):
-        simulation.pop(key, None)
+    simulation.pop("outage", None)
     document["simulation"] = simulation
     parts = (area.today.name, configuration.name if configuration.size else "")
     document["name"] = "-".join(_slug(part) for part in parts if part)

@@ -1,6 +1,6 @@
 """Load a plan from its file, with the scenarios that it starts from."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -132,7 +132,7 @@ def plan_of(document: Mapping[str, Any], source: Path) -> Plan:
             findings += error.findings
     for area in areas:
         findings += price_faults(file, area.today, str(source))
-        findings += _unknown_outages(file, area, source)
+    findings += _of_outages(file, areas, source)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
     return Plan(file, copy_of(document), source.absolute(), tuple(areas))
@@ -253,15 +253,17 @@ def _planned_area(name: str, scenario: str, file: PlanFile, source: Path) -> Pla
     )
 
 
-def _unknown_outages(file: PlanFile, area: PlannedArea, source: Path) -> list[Finding]:
-    """Outages of the requirements that neither a scenario has nor a measure adds."""
-    known = [outage.name for outage in area.today.outages]
-    known += [name for measure in area.measures.values() for name in _outages_added(measure)]
-    return [
-        Finding(str(source), "require.also_with", repr(name), *no_such("outage", name, known))
-        for name in file.require.also_with
-        if name not in known
-    ]
+def _of_outages(file: PlanFile, areas: list[PlannedArea], source: Path) -> Iterator[Finding]:
+    """Outages of the requirements that no area has, nor any measure adds, or that end."""
+    own = {outage.name: outage for area in areas for outage in area.today.outages}
+    added = [n for area in areas for each in area.measures.values() for n in _outages_added(each)]
+    for name in file.require.also_with:
+        place = (str(source), "require.also_with", repr(name))
+        if name not in own and name not in added:
+            yield Finding(*place, *no_such("outage", name, [*own, *added]))
+        elif name in own and not own[name].is_throughout:
+            problem = "it holds for a part of a run, and a year is all of one"
+            yield Finding(*place, problem, "name an outage without from_min and to_min")
 
 
 def _outages_added(measure: PlannedMeasure) -> list[str]:

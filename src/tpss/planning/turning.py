@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tpss.planning.answer import Answer
 from tpss.planning.money import Array, Stages
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.problem import Problem
@@ -52,6 +53,22 @@ class Varied:
             return costs_of_first(self.problem_at(value), area)
 
         return Turn(self.key, area, switching(cost_of, self.now, low, high))
+
+
+def all_turns(answer: Answer) -> list[Turn]:
+    """Where the first decision of each area turns that has a single one; none with a budget.
+
+    An area has several if scenarios part at once.
+    """
+    model = answer.model
+    if model.problem.is_limited:
+        return []
+    nodes = [
+        {tuple(each.nodes.tolist()) for each in answer.firsts if each.area == area}
+        for area in range(len(model.areas))
+    ]
+    single = [area for area, own in enumerate(nodes) if len(own) == 1]
+    return [turn for area in single for turn in turns_of(model, area)]
 
 
 def turns_of(model: Model, area: int) -> list[Turn]:
