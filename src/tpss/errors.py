@@ -88,6 +88,10 @@ class ApproximatorError(TpssError):
     """An approximator cannot be trained, written or read."""
 
 
+class AuditError(TpssError):
+    """The audit of a run failed whose figures were to be used."""
+
+
 class PlanError(TpssError):
     """A plan cannot be made, written or read."""
 

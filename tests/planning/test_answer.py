@@ -5,6 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
+import tpss
+from planning.plans import write_plan
 from planning.test_served import BOTH, modelled
 from tpss.planning import tables
 from tpss.planning.answer import answer_of
@@ -130,3 +132,13 @@ def test_futures_that_part_at_once_have_a_first_decision_each(folder):
     assert "in 2030 if low: " in low
     assert "in 2030 if high: " in high
     assert all_turns(answer) == []
+
+
+def test_a_plan_is_run_from_python(tmp_path):
+    """The same answer as by its parts, and the files of the command line."""
+    answered = tpss.run_plan(
+        tpss.load_plan(write_plan(tmp_path, TIGHT)), tmp_path / "out", threads=1
+    )
+    by_parts = answer_of(modelled(tmp_path, TIGHT))
+    assert answered.answer.best.cost == by_parts.best.cost
+    assert (tmp_path / "out" / "plan.json").exists()

@@ -140,5 +140,5 @@ def test_a_case_whose_audit_failed_is_not_used(folder):
     def failed(table):
         return table.assign(audit_passed=False, problem="network balance 1e-3")
 
-    with pytest.raises(tpss.ScenarioError, match="network balance"):
+    with pytest.raises(tpss.AuditError, match="network balance"):
         modelled(folder, tamper=failed)

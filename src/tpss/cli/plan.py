@@ -14,7 +14,7 @@ from tpss.cli.plan_tables import print_answer
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED, NO_SOLUTION
 from tpss.cli.sweep import demand_packages
 from tpss.cli.terminal import announce_compilation, progress_bar, say
-from tpss.errors import NoPlanError
+from tpss.errors import AuditError, NoPlanError
 
 if TYPE_CHECKING:
     from tpss.planning.cases import CaseList
@@ -33,8 +33,9 @@ TRIAL_S, TRIAL_CASES = 2.0, 12
 def check_plan(file: Path) -> int:
     """Print what a plan consists of; return the exit code."""
     from tpss.planning.load import load_plan
+    from tpss.planning.run import check_plan as checked
 
-    case_list = _checked(load_plan(file))
+    case_list = checked(load_plan(file))
     console = Console()
     _print_size(case_list, console)
     _print_tree(case_list, console)
@@ -42,33 +43,6 @@ def check_plan(file: Path) -> int:
         say(console, line)
     _print_time(case_list, console)
     return DONE
-
-
-def _checked(plan: "Plan") -> "CaseList":
-    """Cases of a plan, all of whose configurations are valid scenarios.
-
-    Raises
-    ------
-    ScenarioError
-        Some are not, or there are too many cases.
-    """
-    from tpss.errors import Finding, ScenarioError
-    from tpss.planning.cases import CaseList
-    from tpss.planning.configurations import check_configurations
-    from tpss.planning.solve import tree_of
-
-    case_list = CaseList(plan)
-    most = plan.file.evaluate.most_cases
-    if len(case_list) > most:
-        problem = f"{len(case_list):,} cases are more than that"
-        remedy = "raise it, or let measures exclude each other"
-        raise ScenarioError(
-            [Finding(str(plan.source), "evaluate.most_cases", str(most), problem, remedy)]
-        )
-    for each in case_list.areas:
-        check_configurations(plan, each.area, list(each.configurations), each.states)
-    tree_of(case_list)
-    return case_list
 
 
 def _print_size(case_list: "CaseList", console: Console) -> None:
@@ -148,49 +122,37 @@ def run_plan(
 ) -> int:
     """Simulate the cases of a plan, solve it and write the answer; return the exit code."""
     demand_packages()
-    from tpss.planning.answer import Effort, answer_of
-    from tpss.planning.case_folder import CaseFolder
     from tpss.planning.load import load_plan
-    from tpss.planning.simulate import simulate_cases
-    from tpss.planning.solve import model_of
-    from tpss.planning.turning import all_turns
-    from tpss.planning.write import write_answer
+    from tpss.planning.run import run_plan as run
 
-    case_list = _checked(load_plan(file))
+    plan = load_plan(file)
     console = Console(stderr=True, quiet=quiet)
     announce_compilation(console)
-    folder = CaseFolder(out)
-    with folder.opened():
-        try:
-            with progress_bar(case_list.plan.file.name, PROGRESS, _progress, console) as report:
-                table = simulate_cases(
-                    case_list,
-                    folder,
-                    case_list.cases,
-                    threads=workers,
-                    scheduler=scheduler,
-                    report=report,
-                )
-        except KeyboardInterrupt:
-            print(
-                "Interrupted; finished cases are kept, and the same command continues.",
-                file=sys.stderr,
-            )
-            return INTERRUPTED
-        if (failed := int((table.audit_passed == False).sum())) > 0:  # noqa: E712, it may be null
-            print(f"The audit of {failed} case(s) failed; see {out / 'cases'}", file=sys.stderr)
-            return AUDIT_FAILED
-        try:
-            answer = answer_of(model_of(case_list, table), Effort(gap, time_limit_s or math.inf))
-        except NoPlanError as error:
-            print(str(error), file=sys.stderr)
-            return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
-        turns = all_turns(answer)
-        write_answer(out, answer, turns)
+    try:
+        with progress_bar(plan.file.name, PROGRESS, _progress, console) as report:
+            answered = run(
+                plan, out, threads=workers, scheduler=scheduler, gap=gap,
+                time_limit_s=time_limit_s, report=report,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        print(
+            "Interrupted; finished cases are kept, and the same command continues.", file=sys.stderr
+        )
+        return INTERRUPTED
+    except (AuditError, NoPlanError) as error:
+        print(str(error), file=sys.stderr)
+        return exit_code_of(error)
     if not quiet:
-        print_answer(answer, turns, Console())
+        print_answer(answered.answer, answered.turns, Console())
         say(Console(), f"The plan is in {out / 'plan.json'}, its tables are in {out / 'tables'}")
-    return DONE if answer.is_closed else GAP_LEFT
+    return DONE if answered.answer.is_closed else GAP_LEFT
+
+
+def exit_code_of(error: AuditError | NoPlanError) -> int:
+    """Exit code of a plan that has no answer."""
+    if isinstance(error, AuditError):
+        return AUDIT_FAILED
+    return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
 
 
 def _progress(state: "Advance") -> dict[str, Any]:

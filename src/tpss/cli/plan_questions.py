@@ -6,12 +6,12 @@ from pathlib import Path
 
 from rich.console import Console
 
-from tpss.cli.plan import GAP_LEFT
+from tpss.cli.plan import GAP_LEFT, exit_code_of
 from tpss.cli.plan_tables import print_firsts, print_frame
-from tpss.cli.run import BAD_INPUT, DONE, NO_SOLUTION
+from tpss.cli.run import DONE, NO_SOLUTION
 from tpss.cli.sweep import demand_packages
 from tpss.cli.terminal import say
-from tpss.errors import Finding, NoPlanError, ScenarioError, no_such
+from tpss.errors import AuditError, Finding, NoPlanError, ScenarioError, no_such
 
 
 def price_plan(
@@ -25,12 +25,12 @@ def price_plan(
     from tpss.planning.write import read_model, switching_table
     from tpss.scenario.override import parse_assignment
 
-    model = read_model(folder, dict(parse_assignment(text) for text in assignments))
     try:
+        model = read_model(folder, dict(parse_assignment(text) for text in assignments))
         answer = answer_of(model, Effort(gap, time_limit_s or math.inf))
-    except NoPlanError as error:
+    except (AuditError, NoPlanError) as error:
         print(str(error), file=sys.stderr)
-        return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
+        return exit_code_of(error)
     console = Console()
     for sentence in sentences(answer, ()):
         say(console, sentence)

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import AuditError, Finding, ScenarioError
 from tpss.planning.cases import AreaCases, Case
 from tpss.planning.plan import Requirements
 from tpss.planning.steady import FINISHED
@@ -60,20 +60,24 @@ def verdicts(
     Raises
     ------
     ScenarioError
-        A case could not be simulated, or its audit failed.
+        A case could not be simulated.
+    AuditError
+        The audit of a case failed.
     """
     found: dict[tuple[int, int], list[str]] = {}
     rows = records_of(table)
     faults: list[Finding] = []
     for case in own:
         row = rows[case.digest]
-        if row["status"] in (INVALID, FAILED) or not row["audit_passed"]:
-            name = cases.configurations[case.configuration].name
-            state = cases.states.states[case.state].name
-            problem = f"{name} with {state}: {row['problem']}"
+        named = f"{cases.configurations[case.configuration].name} with "
+        named += cases.states.states[case.state].name
+        if row["status"] in (INVALID, FAILED):
+            problem = f"{named}: {row['problem']}"
             remedy = "leave out or change what leads to it; the folder's table has all of them"
             faults.append(Finding(str(cases.area.source), "", "", problem, remedy))
             continue
+        if not row["audit_passed"]:
+            raise AuditError(f"the audit of {named} failed: {row['problem']}")
         behind = f" with {case.outage}" if case.outage else ""
         words = [f"{each}{behind}" for each in failures(row, require)]
         found.setdefault((case.state, case.configuration), []).extend(words)

@@ -76,7 +76,9 @@ def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node:
     Raises
     ------
     ScenarioError
-        A case could not be simulated, its audit failed, or what it feeds back has no price.
+        A case could not be simulated, or what it feeds back has no price.
+    AuditError
+        The audit of a case failed.
     """
     area, file = case_list.areas[number], case_list.plan.file
     own = [case for case in case_list.cases if case.area == number]

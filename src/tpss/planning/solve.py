@@ -86,7 +86,9 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     Raises
     ------
     ScenarioError
-        A case could not be simulated, or its audit failed.
+        A case could not be simulated.
+    AuditError
+        The audit of a case failed.
     PlanError
         The tables make no plan.
     """
