@@ -104,7 +104,10 @@ TABLES = """`tpss plan run` writes `plan.json` and these files of CSV into the f
 | `regret` | what each plan costs more in a scenario than the best one of that scenario |
 | `values` | worth of knowing the future, and of being able to decide later |
 | `configurations` | every configuration with every traffic: whether it carries it, and why not |
-| `switching_values` | at which price, cost, rate or probability the first decision turns |"""
+| `switching_values` | at which price, cost, rate or probability the first decision turns |
+
+`switching_values` is empty with a budget, of an area whose scenarios part at once, and of plans of more
+than some thousand configurations, which `tpss plan price --sweep` may be asked about one by one."""
 
 
 def page() -> str:

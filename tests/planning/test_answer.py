@@ -12,7 +12,8 @@ from tpss.planning import tables
 from tpss.planning.answer import answer_of
 from tpss.planning.costs import expected_cost
 from tpss.planning.sentence import sentences
-from tpss.planning.turning import all_turns, nearest, turns_of
+from tpss.planning.switching import costs_of_first
+from tpss.planning.turning import all_turns, first_costs, nearest, turns_of
 
 
 @pytest.fixture(scope="module")
@@ -142,3 +143,10 @@ def test_a_plan_is_run_from_python(tmp_path):
     by_parts = answer_of(modelled(tmp_path, TIGHT))
     assert answered.answer.best.cost == by_parts.best.cost
     assert (tmp_path / "out" / "plan.json").exists()
+
+
+def test_costs_of_first_decisions_are_those_of_the_plans_that_contain_them(folder):
+    lead = {"measures/Mid/lead_time_years": 8, "measures/AT/lead_time_years": 5}
+    for changes in (TIGHT, {**TIGHT, **lead}):
+        problem = modelled(folder, changes).problem
+        assert first_costs(problem, 0) == pytest.approx(costs_of_first(problem), rel=1e-12)

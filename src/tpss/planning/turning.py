@@ -1,23 +1,30 @@
 """Where the first decision turns: prices, costs, rate and probabilities at which another one leads."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tpss.errors import PlanError
 from tpss.planning.answer import Answer
+from tpss.planning.decisions import decisions_of
+from tpss.planning.dynamic import values_of
 from tpss.planning.money import Array, Stages
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.problem import Problem
 from tpss.planning.served import FIXED
 from tpss.planning.solve import Model, price_of_node, transitions_of
-from tpss.planning.switching import Switching, costs_of_first, switching
+from tpss.planning.switching import Switching, switching
 
 WIDEST = 4.0
 """Times today's price or cost up to which it is looked where the decision turns; down to 0. [1]"""
 
 HIGHEST_RATE = 0.12
 """Highest discount rate that is looked at. [1/a]"""
+
+MOST_TO_TURN = 10_000
+"""Configurations times nodes up to which it is looked where all numbers turn: some seconds."""
 
 EDGE = 1e-3
 """Least probability of a scenario, and of the others, that is looked at. [1]"""
@@ -50,18 +57,48 @@ class Varied:
         """Where the first decision of an area turns between two values."""
 
         def cost_of(value: float) -> Array:
-            return costs_of_first(self.problem_at(value), area)
+            return first_costs(self.problem_at(value), area)
 
         return Turn(self.key, area, switching(cost_of, self.now, low, high))
 
 
-def all_turns(answer: Answer) -> list[Turn]:
-    """Where the first decision of each area turns that has a single one; none with a budget.
+def first_costs(problem: Problem, area: int) -> Array:
+    """Least cost of a plan with each first decision of an area, shape (configurations,).
 
-    An area has several if scenarios part at once.
+    That of `tpss.planning.switching.costs_of_first`, without the plans, in a fraction of the time.
+
+    Raises
+    ------
+    PlanError
+        There is a budget, or the area has several first decisions, as scenarios part at once.
+    """
+    if problem.is_limited:
+        raise PlanError("where a decision turns is not looked for with a budget")
+    own = problem.areas[area]
+    values = [values_of(each, decisions_of(problem, k)) for k, each in enumerate(problem.areas)]
+    stage = own.first_free
+    groups = [] if stage is None else values[area].decisions.of_stage[stage].tolist()
+    if len(groups) != 1:
+        raise PlanError("scenarios part at once, or nothing is decided: no single first decision")
+    group, initial = groups[0], own.transitions.initial
+    decisions = values[area].decisions
+    change = own.transitions.costs_from(int(decisions.stage[group]), initial)
+    rest = values[area].after[group] + decisions.weight[group] * change
+    # What comes before the first decision is as it is today.
+    least = [each.least(problem.areas[k].transitions.initial) for k, each in enumerate(values)]
+    total: Array = rest + (math.fsum(least) - values[area].before[group, initial])
+    return total
+
+
+def all_turns(answer: Answer) -> list[Turn]:
+    """Where the first decision of each area turns that has a single one.
+
+    An area has several if scenarios part at once.  There are none with a budget, and none of a plan of
+    so many configurations that it would take minutes: `Varied.turn` looks for single ones.
     """
     model = answer.model
-    if model.problem.is_limited:
+    size = sum(area.configurations for area in model.problem.areas) * model.tree.nodes
+    if model.problem.is_limited or size > MOST_TO_TURN:
         return []
     nodes = [
         {tuple(each.nodes.tolist()) for each in answer.firsts if each.area == area}
