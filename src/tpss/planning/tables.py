@@ -160,7 +160,9 @@ def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
 def regret(answer: Answer) -> pd.DataFrame:
     """What each plan costs more than the best one of a scenario would, were that known."""
     model = answer.model
-    plans = {"as today": as_today(model.problem), "decided today": answer.worth.fixed.policy}
+    plans = {"as today": as_today(model.problem)}
+    if answer.worth.fixed is not None:
+        plans["decided today"] = answer.worth.fixed.policy
     for each in reversed(answer.firsts):
         names = configuration_names(model, each.area)
         first = model.problem.areas[each.area].name
@@ -180,13 +182,14 @@ def regret(answer: Answer) -> pd.DataFrame:
 def values(answer: Answer) -> pd.DataFrame:
     """What the plan, knowledge and freedom are worth."""
     worth = answer.worth
+    fixed = np.nan if worth.fixed is None else worth.fixed.cost
     rows = [
         ("plan", worth.best.cost, "expected cost of the plan"),
         ("bound", worth.best.bound, "no plan costs less"),
         ("known", worth.expected_known_cost, "expected cost if each future were known"),
         ("information", worth.of_information, "worth of knowing the future, at most"),
-        ("fixed", worth.fixed.cost, "expected cost if all is decided today"),
-        ("flexibility", worth.of_flexibility, "worth of being able to decide later"),
+        ("fixed", fixed, "expected cost if all is decided today"),
+        ("flexibility", fixed - worth.best.cost, "worth of being able to decide later"),
         ("saved", saved_against_today(answer), "saved against leaving everything as it is"),
     ]
     return pd.DataFrame(rows, columns=["value", "cost", "meaning"])
