@@ -4,7 +4,7 @@ import json
 
 import pandas as pd
 
-from planning.plans import write_plan
+from small_plans import write_plan
 
 TIGHT = {"require/lowest_voltage_kv": 14.0}
 

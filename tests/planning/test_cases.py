@@ -3,7 +3,6 @@
 import pytest
 
 import tpss
-from planning.plans import plan
 from sweep.studies import small_cluster
 from tpss.errors import StudyError
 from tpss.planning import simulate
@@ -14,6 +13,7 @@ from tpss.planning.outcome import outcome_of
 from tpss.planning.simulate import simulate_cases
 
 from conftest import EXAMPLES
+from small_plans import plan
 
 
 def run(loaded, folder, **options):

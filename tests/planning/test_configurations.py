@@ -3,10 +3,11 @@
 import pytest
 
 import tpss
-from planning.plans import plan
 from tpss.planning.configurations import check_configurations, configurations_of, document_of
 from tpss.planning.states import State, states_of
 from tpss.scenario.scenario import Scenario
+
+from small_plans import plan
 
 MID = {
     "set": {"supply.converter_stations.West.converters": "{level}"},

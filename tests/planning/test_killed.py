@@ -10,8 +10,9 @@ import time
 
 import pytest
 
-from planning.plans import write_plan
 from tpss.planning.case_folder import CaseFolder
+
+from small_plans import write_plan
 
 SLOW = {"evaluate": {"time_step_min": 0.01}, "require/also_with": ["one out"]}
 """Cases of some tenths of a second, so that there is time to kill what runs them."""

@@ -7,11 +7,11 @@ import pytest
 import tomli_w
 
 import tpss
-from planning.plans import LINE, PLAN, changed, plan, write_plan
 from tpss.planning.load import load_plan
 from tpss.planning.schema import plan_schema
 
 from conftest import EXAMPLES
+from small_plans import LINE, PLAN, changed, plan, write_plan
 
 
 def findings(folder, changes):

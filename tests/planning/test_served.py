@@ -4,35 +4,20 @@ import numpy as np
 import pytest
 
 import tpss
-from planning.plans import plan
-from tpss.planning.case_folder import CaseFolder
-from tpss.planning.cases import CaseList
 from tpss.planning.served import NO_TRAFFIC
-from tpss.planning.simulate import simulate_cases
-from tpss.planning.solve import model_of, price_of_node
+from tpss.planning.solve import price_of_node
+
+from small_plans import modelled
 
 HOURS = 6000.0
 SPARSE, DENSE, NOTHING = 0, 1, 2
-TODAY, AT, MID, BOTH = range(4)
+TODAY, AT, MID, _ = range(4)
 """Configurations of the small plan, in their order."""
-
-NODES = ("2030", "2040 low", "2040 high")
-"""Nodes of the tree of the small plan: its futures part in 2040."""
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("plan")
-
-
-def modelled(folder, changes=None, tamper=None):
-    """Model of the small plan; its cases are simulated once for all tests."""
-    listed, cases = CaseList(plan(folder, changes)), CaseFolder(folder / "out")
-    with cases.opened():
-        table = simulate_cases(listed, cases, listed.cases, threads=1)
-    if tamper is not None:
-        table = tamper(table.copy())
-    return model_of(listed, table)
 
 
 def row(model, state, configuration):

@@ -6,7 +6,11 @@ from typing import Any
 
 import tomli_w
 
+from tpss.planning.case_folder import CaseFolder
+from tpss.planning.cases import CaseList
 from tpss.planning.load import Plan, load_plan
+from tpss.planning.simulate import simulate_cases
+from tpss.planning.solve import model_of
 
 from scenarios import SHORT_LINE
 
@@ -87,3 +91,13 @@ def write_plan(folder: Path, changes: dict[str, Any] | None = None) -> Path:
 def plan(folder: Path, changes: dict[str, Any] | None = None) -> Plan:
     """The small plan with values set by key path (`/` between keys)."""
     return load_plan(write_plan(folder, changes))
+
+
+def modelled(folder, changes=None, tamper=None):
+    """Model of the small plan; its cases are simulated once for all tests."""
+    listed, cases = CaseList(plan(folder, changes)), CaseFolder(folder / "out")
+    with cases.opened():
+        table = simulate_cases(listed, cases, listed.cases, threads=1)
+    if tamper is not None:
+        table = tamper(table.copy())
+    return model_of(listed, table)
