@@ -15,7 +15,9 @@ from tpss.kernel import plain
 
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
-EXAMPLE_SCENARIOS = sorted({*EXAMPLES.glob("*.toml")} - {*EXAMPLES.glob("study_*.toml")})
+EXAMPLE_SCENARIOS = sorted(
+    {*EXAMPLES.glob("*.toml")} - {*EXAMPLES.glob("study_*.toml"), *EXAMPLES.glob("plan_*.toml")}
+)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -10,6 +10,7 @@ import command_line_page
 import evidence_page
 import library_page
 import nomenclature_tables
+import plan_page
 import result_page
 import scenario_page
 import study_page
@@ -20,6 +21,7 @@ PAGES = {
     "command_line.md": command_line_page.page,
     "evidence.md": evidence_page.page,
     "library.md": library_page.page,
+    "plan.md": plan_page.page,
     "result.md": result_page.page,
     "scenario.md": scenario_page.page,
     "study.md": study_page.page,

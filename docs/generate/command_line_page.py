@@ -22,6 +22,7 @@ INTRODUCTION = """# Command line
 | 2 | bad input; nothing was simulated |
 | 3 | the line cannot carry its load, or a train stalls; results up to then are saved |
 | 4 | the audit failed |
+| 5 | a plan within a budget may not be the best one: the time was over |
 | 130 | interrupted; results up to then are saved |"""
 
 VALUES = {Path: "PATH", str: "TEXT", int: "NUMBER", float: "NUMBER"}

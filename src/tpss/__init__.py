@@ -18,13 +18,19 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.approximator.approximator import load_approximator as load_approximator
     from tpss.approximator.train import train_approximator as train_approximator
     from tpss.errors import ApproximatorError as ApproximatorError
+    from tpss.errors import AuditError as AuditError
     from tpss.errors import Finding as Finding
+    from tpss.errors import NoPlanError as NoPlanError
+    from tpss.errors import PlanError as PlanError
     from tpss.errors import ResultError as ResultError
     from tpss.errors import ScenarioError as ScenarioError
     from tpss.errors import StudyError as StudyError
     from tpss.errors import TpssError as TpssError
     from tpss.many import simulate_many as simulate_many
     from tpss.outages.run import compare_outages as compare_outages
+    from tpss.planning.load import Plan as Plan
+    from tpss.planning.load import load_plan as load_plan
+    from tpss.planning.run import run_plan as run_plan
     from tpss.report.html import write_report as write_report
     from tpss.results.key_figures import KeyFigures as KeyFigures
     from tpss.results.result import Result as Result
@@ -41,9 +47,13 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
 _HOME = {
     "Approximator": "tpss.approximator.approximator",
     "ApproximatorError": "tpss.errors",
+    "AuditError": "tpss.errors",
     "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
     "KeyFigures": "tpss.results.key_figures",
+    "NoPlanError": "tpss.errors",
+    "Plan": "tpss.planning.load",
+    "PlanError": "tpss.errors",
     "Prepared": "tpss.api",
     "Progress": "tpss.run.run",
     "Result": "tpss.results.result",
@@ -55,11 +65,13 @@ _HOME = {
     "TpssError": "tpss.errors",
     "compare_outages": "tpss.outages.run",
     "load_approximator": "tpss.approximator.approximator",
+    "load_plan": "tpss.planning.load",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",
     "load_study": "tpss.sweep.study",
     "load_table": "tpss.sweep.folder",
     "prepare": "tpss.api",
+    "run_plan": "tpss.planning.run",
     "run_study": "tpss.sweep.campaign",
     "simulate": "tpss.api",
     "simulate_many": "tpss.many",

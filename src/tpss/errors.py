@@ -86,3 +86,30 @@ class StudyError(TpssError):
 
 class ApproximatorError(TpssError):
     """An approximator cannot be trained, written or read."""
+
+
+class AuditError(TpssError):
+    """The audit of a run failed whose figures were to be used."""
+
+
+class PlanError(TpssError):
+    """A plan cannot be made, written or read."""
+
+
+class NoPlanError(PlanError):
+    """No plan meets the requirements, or none the budgets.
+
+    Parameters
+    ----------
+    limit : str
+        What no plan meets: ``requirement`` or ``budget``.
+    problem : str
+        Where, and by how much.
+    nodes : sequence of int
+        Nodes of the tree at which it is not met.
+    """
+
+    def __init__(self, limit: str, problem: str, nodes: Sequence[int]) -> None:
+        self.limit = limit
+        self.nodes = tuple(nodes)
+        super().__init__(problem)

@@ -1,7 +1,7 @@
 """Entry point of the command line.
 
 Exit codes: 0 done, 2 bad input, 3 no solution, a stalled train or a deadlock (results up to then are
-saved), 4 the audit failed, 130 interrupted (results are saved).
+saved), 4 the audit failed, 5 a better plan may exist, 130 interrupted (results are saved).
 """
 
 import atexit
@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli import approximate_app, complete, import_app
+from tpss.cli import approximate_app, complete, import_app, plan_app
 from tpss.cli.arguments import (
     Assignments,
     Corridor,
@@ -50,6 +50,7 @@ app = typer.Typer(
 )
 app.add_typer(import_app.app, name="import")
 app.add_typer(approximate_app.app, name="approximate")
+app.add_typer(plan_app.app, name="plan")
 
 
 def _print_version(value: bool) -> None:
@@ -459,6 +460,9 @@ def schema(
     out: Annotated[
         Path | None, option(help="File to write; by default the schema is printed.")
     ] = None,
+    plan: Annotated[
+        bool, typer.Option("--plan", help="The schema of plan files, in place of scenarios.")
+    ] = False,
 ) -> None:
     """Print the JSON Schema of scenario files, which editors use to complete and check them.
 
@@ -467,7 +471,7 @@ def schema(
     """
     from tpss.cli.schema import write_schema
 
-    write_schema(out)
+    write_schema(out, plan)
 
 
 def main() -> None:

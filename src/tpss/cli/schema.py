@@ -1,24 +1,29 @@
-"""The command ``tpss schema``: the JSON Schema of the scenario format."""
+"""The command ``tpss schema``: the JSON Schema of the formats of scenarios and plans."""
 
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 from tpss.errors import ResultError
 from tpss.files.refusals import explained
 from tpss.files.whole import write_file
 from tpss.scenario.schema import TITLE, scenario_schema
 
+TITLES = (TITLE, "TPSS plan")
+"""Titles of schemas that TPSS writes."""
 
-def write_schema(out: Path | None) -> None:
-    """Print the schema, or write it into a file, whole or not at all.
+
+def write_schema(out: Path | None, plan: bool = False) -> None:
+    """Print the schema of scenarios, or of plans, or write it into a file, whole or not at all.
 
     Raises
     ------
     ResultError
         The file cannot be written, or exists and holds something other than a schema of TPSS.
     """
-    text = json.dumps(scenario_schema(), indent=2, ensure_ascii=False) + "\n"
+    schema = _plan_schema() if plan else scenario_schema()
+    text = json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
     if out is None:
         print(text, end="")
         return
@@ -26,9 +31,14 @@ def write_schema(out: Path | None) -> None:
         raise ResultError(f"{out} exists and is not a schema of TPSS; name another file")
     with explained(out, "name another file"):
         write_file(out, text.encode())
-    print(
-        f"Wrote {out}.  In a scenario, the first line  #:schema {out.name}  makes editors use it."
-    )
+    kind = "plan" if plan else "scenario"
+    print(f"Wrote {out}.  In a {kind}, the first line  #:schema {out.name}  makes editors use it.")
+
+
+def _plan_schema() -> dict[str, Any]:
+    from tpss.planning.schema import plan_schema
+
+    return plan_schema()
 
 
 def _is_our_schema(file: Path) -> bool:
@@ -36,4 +46,4 @@ def _is_our_schema(file: Path) -> bool:
         document = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(document, dict) and document.get("title") == TITLE
+    return isinstance(document, dict) and document.get("title") in TITLES

@@ -66,23 +66,37 @@ def lost_to_voltage(
     LostTime or None
         None if no train has arrived, or the comparison was interrupted.
     """
-    if run.step == 0 or not np.isfinite(arrivals_s(run)).any():
-        return None
-    model = start.model._replace(control=RunControl(fixed_voltage_v=voltage_v))
-    stiff = replace(start, model=model, steps=run.step, switchings=())
-    other = run_of(stiff)
-    if advance_to_end(other, stiff, report, interrupted) == INTERRUPTED:
-        return None
-    arrived = _arrivals_by_name(other)
-    lost_s = {
-        name: time_s - arrived[name]
-        for name, time_s in _arrivals_by_name(run).items()
-        if name in arrived
-    }
+    lost_s = lost_by_train(run, start, voltage_v, report, interrupted)
     if not lost_s:
         return None
     worst = max(lost_s, key=lambda name: lost_s[name])
     return LostTime(voltage_v, len(lost_s), math.fsum(lost_s.values()), lost_s[worst], worst)
+
+
+def lost_by_train(
+    run: Run,
+    start: Start,
+    voltage_v: float,
+    report: Callable[[Progress], None] | None = None,
+    interrupted: Sequence[int] | None = None,
+) -> dict[str, float]:
+    """What each train lost to the voltage that has arrived in the run and in one at one voltage. [s]
+
+    Parameters are those of `lost_to_voltage`; there is none if that was interrupted.
+    """
+    if run.step == 0 or not np.isfinite(arrivals_s(run)).any():
+        return {}
+    model = start.model._replace(control=RunControl(fixed_voltage_v=voltage_v))
+    stiff = replace(start, model=model, steps=run.step, switchings=())
+    other = run_of(stiff)
+    if advance_to_end(other, stiff, report, interrupted) == INTERRUPTED:
+        return {}
+    arrived = _arrivals_by_name(other)
+    return {
+        name: time_s - arrived[name]
+        for name, time_s in _arrivals_by_name(run).items()
+        if name in arrived
+    }
 
 
 def _arrivals_by_name(run: Run) -> dict[str, float]:

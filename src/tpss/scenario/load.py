@@ -30,4 +30,7 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
     if {"scenario", "design"} <= document.keys():
         remedy = "run it with tpss sweep, or name the scenario that it varies"
         raise ScenarioError([Finding(str(source), "", "", "a study, not a scenario", remedy)])
+    if {"stages", "economics"} <= document.keys():
+        remedy = "run it with tpss plan, or name the scenario that it starts from"
+        raise ScenarioError([Finding(str(source), "", "", "a plan, not a scenario", remedy)])
     return Scenario.from_own_document(override(document, changes or {}, source), source)

@@ -11,18 +11,21 @@ from tpss.scenario.scenario import Scenario
 TITLE = "TPSS scenario"
 
 
-class _OfToml(GenerateJsonSchema):
+class OfToml(GenerateJsonSchema):
     """Schema for TOML, which has no null; its keys need no titles."""
 
     def nullable_schema(self, schema: Any) -> JsonSchemaValue:
+        """Schema of a value that may be left out: that of the value."""
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: Any) -> JsonSchemaValue:
+        """Schema of a value with a default, which is not told where it is none."""
         if schema.get("default") is None:
             return self.generate_inner(schema["schema"])
         return super().default_schema(schema)
 
     def field_title_should_be_set(self, _: Any) -> bool:
+        """Whether a key has a title."""
         return False
 
 
@@ -33,12 +36,12 @@ def scenario_schema() -> dict[str, Any]:
     Faults between the parts (a train that does not exist, a stop outside the line) are detected by
     `tpss.load_scenario` only.
     """
-    schema = Scenario.model_json_schema(by_alias=True, schema_generator=_OfToml)
+    schema = Scenario.model_json_schema(by_alias=True, schema_generator=OfToml)
     parts = schema["$defs"]
     for part in (schema, *parts.values()):
         part.pop("title", None)
         for key, field in part["properties"].items():
-            _add_unit(key, field)
+            add_unit(key, field)
     _start_from_a_model(parts["Train"])
     _start_from_a_system(parts["VoltageLimits"])
     line = schema["properties"]["line"]
@@ -53,10 +56,11 @@ def scenario_schema() -> dict[str, Any]:
     for station in ("ConverterStation", "TransformerStation"):
         _stand_at_a_station(parts[station])
     schema["description"] = "A line, its power supply, its trains and its traffic."
-    return {"$schema": _OfToml.schema_dialect, "title": TITLE, **schema}
+    return {"$schema": OfToml.schema_dialect, "title": TITLE, **schema}
 
 
-def _add_unit(key: str, field: dict[str, Any]) -> None:
+def add_unit(key: str, field: dict[str, Any]) -> None:
+    """Add the unit of a key to its description."""
     unit = units.label(key)
     if unit:
         field["description"] = f"{field.get('description', '')} [{unit}]".strip()

@@ -75,14 +75,34 @@ def apply_variant(
     changed["name"] = f"{document['name']}-{name}"
     if variant.description:
         changed["description"] = variant.description
+    make_changes(changed, f"variants.{name}", variant, source)
+    return changed
+
+
+def make_changes(document: dict[str, Any], place: str, variant: Variant, source: Path) -> None:
+    """Make a variant's changes in a document itself.
+
+    Parameters
+    ----------
+    document : dict
+    place : str
+        Key path of the variant in its file, which findings name.
+    variant : Variant
+    source : Path
+        That file.
+
+    Raises
+    ------
+    ScenarioError
+        A path leads to no place.
+    """
     for path, value in _flat(variant.changes):
-        _put(changed, f"variants.{name}.set", path, value, source)
+        _put(document, f"{place}.set", path, value, source)
     for path, items in _flat(variant.additions):
         for item in items if isinstance(items, list | tuple) else [items]:
-            _put(changed, f"variants.{name}.add", f"{path}.+", item, source)
+            _put(document, f"{place}.add", f"{path}.+", item, source)
     for path in variant.removals:
-        _take_out(changed, f"variants.{name}.remove", path, source)
-    return changed
+        _take_out(document, f"{place}.remove", path, source)
 
 
 def _flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

@@ -4,6 +4,7 @@ Workers build a case from its number, so that the scheduler holds a few batches 
 whatever the number of cases.
 """
 
+import itertools
 import os
 import time
 import uuid
@@ -148,47 +149,69 @@ def _results(
         return
     # This also compiles the kernels, before any worker does.
     case_s = time_per_case(design)
-    with _client(scheduler, workers) as client:
+    with client_of(scheduler, workers) as client:
         threads = sum(client.nthreads().values())
-        _prepare_workers(client, plan)
+        prepare_workers(client, warm_up, plan)
         left = sum(end - first for first, end in todo)
         size = max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-left // (4 * threads))))
-        yield from _in_turn(client, plan, batches(todo, size), BATCHES_AHEAD * threads)
+        tasks = (
+            Task(f"cases {first} to {end - 1}", run_batch, (plan, first, end))
+            for first, end in batches(todo, size)
+        )
+        for task, content in in_turn(client, tasks, BATCHES_AHEAD * threads):
+            _, first, end = task.arguments
+            yield first, end, content
 
 
-def _in_turn(
-    client: distributed.Client, plan: Plan, waiting: Iterator[tuple[int, int]], ahead: int
-) -> Iterator[tuple[int, int, bytes]]:
-    """Results of batches, of which only a limited number is with the scheduler at a time."""
-    own = uuid.uuid4().hex[:8]
+@dataclass(frozen=True)
+class Task:
+    """A call that is made by a worker."""
+
+    name: str
+    """What it works on, in words."""
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+
+def in_turn(
+    client: distributed.Client, tasks: Iterator[Task], ahead: int
+) -> Iterator[tuple[Task, Any]]:
+    """Tasks with their results, as they are done; only so many are with the scheduler at a time.
+
+    Raises
+    ------
+    StudyError
+        One of them failed.
+    """
+    own, count = uuid.uuid4().hex[:8], itertools.count()
     running = distributed.as_completed([], with_results=False)
-    ranges: dict[str, tuple[int, int]] = {}
+    sent: dict[str, Task] = {}
 
     def submit() -> None:
-        cases = next(waiting, None)
-        if cases is not None:
-            key = f"tpss-{own}-{cases[0]}-{cases[1]}"
-            ranges[key] = cases
-            running.add(client.submit(run_batch, plan, *cases, key=key, pure=False))
+        task = next(tasks, None)
+        if task is not None:
+            key = f"tpss-{own}-{next(count)}"
+            sent[key] = task
+            running.add(client.submit(task.function, *task.arguments, key=key, pure=False))
 
     for _ in range(ahead):
         submit()
     for future in running:
-        first, end = ranges.pop(future.key)
+        task = sent.pop(future.key)
         try:
-            content: bytes = future.result()
+            content = future.result()
         except Exception as error:
             raise StudyError(
-                f"cases {first} to {end - 1} could not be run ({type(error).__name__}: {error}); the "
-                "others are kept, and the same command continues from there"
+                f"{task.name} could not be run ({type(error).__name__}: {error}); the others are kept, "
+                "and the same command continues from there"
             ) from error
         future.release()
         submit()
-        yield first, end, content
+        yield task, content
 
 
 @contextmanager
-def _client(scheduler: str | None, workers: int | None) -> Iterator[distributed.Client]:
+def client_of(scheduler: str | None, workers: int | None) -> Iterator[distributed.Client]:
     """Client of a running scheduler, or of a local cluster that ends with it."""
     if scheduler is None:
         with _local_cluster(workers) as cluster, distributed.Client(cluster) as client:
@@ -224,10 +247,23 @@ def _local_cluster(workers: int | None) -> distributed.LocalCluster:
         ) from error
 
 
-def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
+def prepare_workers(
+    client: distributed.Client, warm_up: Callable[..., None], *arguments: Any
+) -> None:
     """Ensure that workers are of this version and have loaded the kernels.
 
     One worker on each computer compiles them first, as otherwise every worker would compile them.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    warm_up : callable
+        Compiles the kernels, or loads them; called with the arguments that follow.
+
+    Raises
+    ------
+    StudyError
+        Workers are of another version.
     """
     try:
         theirs: dict[str, Any] = client.run(versions)
@@ -238,8 +274,8 @@ def _prepare_workers(client: distributed.Client, plan: Plan) -> None:
         ) from error
     demand_version(theirs)
     hosts = {urlsplit(address).hostname: address for address in theirs}
-    client.run(warm_up, plan, workers=list(hosts.values()))
-    client.run(warm_up, plan)
+    client.run(warm_up, *arguments, workers=list(hosts.values()))
+    client.run(warm_up, *arguments)
 
 
 def demand_version(workers: Mapping[str, Mapping[str, str]]) -> None:

@@ -53,7 +53,7 @@ class Folder:
         with explained(self.path, REMEDY, StudyError, within=True):
             self._refuse_others()
             (self.path / CASES).mkdir(parents=True, exist_ok=True)
-            with _lock(self.path):
+            with lock(self.path):
                 begun = self._begin(manifest)
                 for leftover in (self.path / CASES).glob("*.unfinished"):
                     leftover.unlink()
@@ -109,7 +109,7 @@ LOCK = ".lock"
 
 
 @contextmanager
-def _lock(path: Path) -> Iterator[None]:
+def lock(path: Path) -> Iterator[None]:
     """Keep other processes out until this one ends, in whatever manner."""
     try:
         import fcntl

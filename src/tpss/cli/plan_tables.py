@@ -1,0 +1,89 @@
+"""What ``tpss plan`` prints of an answer: sentences, decisions, first decisions, values."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss.cli.terminal import say
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tpss.planning.answer import Answer
+    from tpss.planning.turning import Turn
+
+MOST_FIRSTS = 6
+"""First decisions of an area that are printed."""
+
+
+def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) -> None:
+    """Print an answer: its sentences, what is done when, what else one could do, what it is worth."""
+    from tpss.planning import tables
+    from tpss.planning.sentence import sentences
+    from tpss.planning.uncounted import uncounted
+
+    economics = answer.model.plan.file.economics
+    unit = f"{economics.currency} of {economics.price_year}"
+    for sentence in sentences(answer, turns):
+        say(console, sentence)
+    say(console, answer.claim)
+    if not answer.is_closed:
+        say(
+            console,
+            f"A better plan may cost {100 * answer.best.gap:.2g} % less: more time decides.",
+        )
+    decisions = tables.decisions(answer)
+    several = decisions.area.nunique() > 1
+    columns = {
+        "area": "area", "ordered": "ordered", "in_service": "in service", "if": "if",
+        "builds": "builds", "configuration": "configuration", "spent": "spent",
+        "operation_per_year": "a year",
+    }  # fmt: skip
+    if not several:
+        del columns["area"]
+    print_frame(decisions, f"Decisions [{unit}]", columns, console)
+    print_firsts(answer, console)
+    values = tables.values(answer)[["meaning", "cost"]]
+    print_frame(values, f"Values [{unit}, discounted]", {"meaning": "", "cost": ""}, console)
+    say(console, "Not counted: " + " ".join(uncounted(answer.model)))
+
+
+def print_firsts(answer: "Answer", console: Console) -> None:
+    """Print the best first decisions of each area."""
+    from tpss.planning import tables
+
+    firsts = tables.first_decisions(answer)
+    columns = {"ordered": "ordered", "in_service": "in service", "configuration": "configuration",
+               "cost": "cost", "surplus": "more"}  # fmt: skip
+    for (area, scenarios), group in firsts.groupby(["area", "if"], sort=False):
+        title = f"First decisions of {area}"
+        if firsts["if"].nunique() > 1:
+            title += f", if {scenarios}"
+        print_frame(group.head(MOST_FIRSTS), title, columns, console)
+
+
+def print_frame(
+    frame: "pd.DataFrame", title: str, columns: dict[str, str], console: Console
+) -> None:
+    """Print some columns of a table with their headings."""
+    table = Table(title=escape(title), title_justify="left", box=None, pad_edge=False)
+    for name, heading in columns.items():
+        numeric = frame[name].map(lambda value: isinstance(value, int | float)).all()
+        table.add_column(escape(heading), justify="right" if numeric else "left")
+    for row in frame[list(columns)].itertuples(index=False):
+        table.add_row(*(escape(_cell(value)) for value in row))
+    console.print(table)
+
+
+def _cell(value: Any) -> str:
+    if value is None or value != value:
+        return "-"
+    if isinstance(value, float) and not value.is_integer():
+        return f"{value:,.1f}"
+    is_year = isinstance(value, int | float) and 1900 <= value <= 2300 and float(value).is_integer()
+    return (
+        f"{int(value)}" if is_year else f"{value:,.1f}" if isinstance(value, float) else str(value)
+    )

@@ -1,0 +1,107 @@
+"""The answer to a plan: what to do when, what else one could do, and what it is worth to know."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from tpss.errors import NoPlanError
+from tpss.planning.claim import claim
+from tpss.planning.costs import expected_cost
+from tpss.planning.counting import number_of_plans
+from tpss.planning.dynamic import FirstDecision, first_decisions
+from tpss.planning.problem import Problem, Solution
+from tpss.planning.program import GAP, solve_any
+from tpss.planning.prove import Grade, Proof
+from tpss.planning.solve import Model
+from tpss.planning.tree import Indices
+from tpss.planning.worth import Worth, decided_first, worth_of
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How long a plan with budgets is looked for."""
+
+    gap: float = GAP
+    """Share of the cost within which a better plan is not looked for."""
+    time_limit_s: float = np.inf
+    """Time after which the best plan so far is taken, of each problem. [s]"""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The best plan of a model, and what belongs to it."""
+
+    model: Model
+    worth: Worth
+    firsts: tuple[FirstDecision, ...]
+    """First decisions of each area with the best plan that contains each, the best one first."""
+    claim: str
+    """What may be claimed of the plan."""
+    is_closed: bool
+    """Whether no better plan is possible, up to the gap that was asked for."""
+
+    @property
+    def best(self) -> Solution:
+        """The best plan."""
+        return self.worth.best
+
+
+def answer_of(model: Model, effort: Effort = Effort()) -> Answer:
+    """Solve a model all of whose cases were simulated.
+
+    Raises
+    ------
+    NoPlanError
+        No plan meets the budgets.
+    PlanError
+        There is no plan yet when the time is over, or a solver is not installed.
+    """
+    problem = model.problem
+    solver = partial(solve_any, gap=effort.gap, time_limit_s=effort.time_limit_s)
+    worth = worth_of(problem, solver=solver)
+    firsts = first_choices(problem, worth.best, effort)
+    cases = len({case.digest for case in model.case_list.cases})
+    proof = Proof(worth.best, Grade.EXHAUSTIVE, (), (), cases, cases, 0)
+    sentence = claim(proof, number_of_plans(problem), effort.gap)
+    return Answer(model, worth, tuple(firsts), sentence, worth.best.gap <= effort.gap)
+
+
+def first_choices(problem: Problem, best: Solution, effort: Effort) -> list[FirstDecision]:
+    """Every first decision with the best plan that contains it, within budgets too."""
+    if not problem.is_limited:
+        return first_decisions(problem)
+    found: list[FirstDecision] = []
+    for k, area in enumerate(problem.areas):
+        own: list[FirstDecision] = []
+        for stage in decided_first(area)[:1]:
+            nodes = np.flatnonzero(problem.tree.stage == stage)
+            for c in range(area.configurations):
+                solution = with_first(problem, k, nodes, c, effort)
+                if solution is not None:
+                    surplus = max(0.0, solution.cost - best.cost)
+                    own.append(FirstDecision(k, nodes, c, solution.cost, surplus, solution.policy))
+        found += sorted(own, key=lambda each: each.cost)
+    return found
+
+
+def with_first(
+    problem: Problem, area: int, nodes: Indices, configuration: int, effort: Effort
+) -> Solution | None:
+    """Best plan with a configuration of an area in some nodes; None if there is none."""
+    try:
+        return solve_any(problem.only(area, nodes, configuration), effort.gap, effort.time_limit_s)
+    except NoPlanError:
+        return None
+
+
+def as_today(problem: Problem) -> Indices:
+    """The plan that leaves everything as it is, shape (areas, nodes)."""
+    initial = [area.transitions.initial for area in problem.areas]
+    return np.repeat(np.array(initial)[:, np.newaxis], problem.tree.nodes, axis=1)
+
+
+def saved_against_today(answer: Answer) -> float:
+    """How much less the plan costs than to leave everything as it is; infinite if one may not."""
+    problem = answer.model.problem
+    return expected_cost(problem, as_today(problem)) - answer.best.cost

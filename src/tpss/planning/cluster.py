@@ -1,0 +1,91 @@
+"""Cases on the workers of a Dask scheduler: they are sent as documents, and rows come back."""
+
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from tpss.planning.cases import Case, CaseList
+from tpss.planning.plan import Evaluation
+from tpss.planning.rows import row_of
+from tpss.scenario.scenario import Scenario
+
+MOST_IN_BATCH = 200
+"""Documents that are sent at a time, some thousand bytes each."""
+
+Sent = tuple[Case, dict[str, Any]]
+"""A case, and the document of its scenario."""
+
+
+def rows_on_cluster(
+    case_list: CaseList, cases: Sequence[Case], scheduler: str
+) -> Iterator[dict[str, Any]]:
+    """Rows of cases, as they are done.
+
+    Parameters
+    ----------
+    case_list : CaseList
+    cases : sequence of Case
+    scheduler : str
+        Address of a Dask scheduler.
+
+    Raises
+    ------
+    StudyError
+        It does not answer, its workers are of another version, or some cases could not be run.
+    """
+    # Dask takes long to import, and is needed here only.
+    from tpss.sweep.campaign import (
+        BATCH_S,
+        BATCHES_AHEAD,
+        Task,
+        client_of,
+        in_turn,
+        prepare_workers,
+    )
+
+    if not cases:
+        return
+    evaluation = case_list.plan.file.evaluate.model_dump_json()
+    first = (cases[0], case_list.document(cases[0]))
+    run_documents([first], evaluation)  # which compiles
+    started = time.perf_counter()
+    run_documents([first], evaluation)
+    case_s = time.perf_counter() - started
+    with client_of(scheduler, None) as client:
+        threads = sum(client.nthreads().values())
+        prepare_workers(client, warm_up, [first], evaluation)
+        size = max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-len(cases) // (4 * threads))))
+        batches = (cases[begin : begin + size] for begin in range(0, len(cases), size))
+        tasks = (
+            Task(
+                f"{len(batch)} cases",
+                run_documents,
+                ([(case, case_list.document(case)) for case in batch], evaluation),
+            )
+            for batch in batches
+        )
+        for _, rows in in_turn(client, tasks, BATCHES_AHEAD * threads):
+            yield from rows
+
+
+def warm_up(sent: list[Sent], evaluation: str) -> None:
+    """Prepare a process: a case compiles the kernels, or loads them."""
+    run_documents(sent, evaluation)
+
+
+def run_documents(sent: list[Sent], evaluation: str) -> list[dict[str, Any]]:
+    """Rows of cases that are given as documents: the task of a worker.
+
+    Parameters
+    ----------
+    sent : list of Case and document
+    evaluation : str
+        How they are evaluated, in JSON.
+    """
+    how = Evaluation.model_validate_json(evaluation)
+    return [row_of(case, _maker(document), how) for case, document in sent]
+
+
+def _maker(document: dict[str, Any]) -> Any:
+    return lambda: Scenario.from_document(document, Path("case"))

@@ -1,0 +1,103 @@
+"""A plan from its file to its answer: checked, simulated, solved and written."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tpss.errors import Finding, ScenarioError
+from tpss.planning.answer import Answer, Effort, answer_of
+from tpss.planning.case_folder import CaseFolder
+from tpss.planning.cases import CaseList
+from tpss.planning.configurations import check_configurations
+from tpss.planning.load import Plan
+from tpss.planning.simulate import Advance, simulate_cases
+from tpss.planning.solve import model_of, tree_of
+from tpss.planning.turning import Turn, all_turns
+from tpss.planning.write import write_answer
+
+
+@dataclass(frozen=True)
+class Answered:
+    """The answer to a plan, and where its first decisions turn."""
+
+    answer: Answer
+    turns: tuple[Turn, ...]
+
+
+def check_plan(plan: Plan) -> CaseList:
+    """Build every configuration of a plan; give its cases.
+
+    Raises
+    ------
+    ScenarioError
+        Configurations are no valid scenarios, or there are more cases than the plan allows.
+    """
+    case_list = CaseList(plan)
+    most = plan.file.evaluate.most_cases
+    if len(case_list) > most:
+        problem = f"{len(case_list):,} cases are more than that"
+        remedy = "raise it, or let measures exclude each other"
+        place = (str(plan.source), "evaluate.most_cases", str(most))
+        raise ScenarioError([Finding(*place, problem, remedy)])
+    for each in case_list.areas:
+        check_configurations(plan, each.area, list(each.configurations), each.states)
+    tree_of(case_list)
+    return case_list
+
+
+def run_plan(
+    plan: Plan,
+    folder: str | Path,
+    *,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    gap: float | None = None,
+    time_limit_s: float | None = None,
+    report: Callable[[Advance], None] | None = None,
+) -> Answered:
+    """Simulate the cases of a plan that its folder does not hold, solve it, and write the answer there.
+
+    Parameters
+    ----------
+    plan : Plan
+    folder : path
+        Made, or continued if it is one of a plan.
+    threads : int, optional
+        Cases at a time; by default one for each core.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers simulate in place of threads.
+    gap : float, optional
+        With a budget: share of the cost within which a better plan is not looked for.
+    time_limit_s : float, optional
+        With a budget: time after which the best plan so far is taken, of each search. [s]
+    report : callable, optional
+        Called after every case.
+
+    Returns
+    -------
+    Answered
+        If the time was over, its ``answer.is_closed`` says that a better plan may exist.
+
+    Raises
+    ------
+    ScenarioError
+        The plan has faults, or a case could not be simulated.
+    AuditError
+        The audit of a case failed.
+    NoPlanError
+        No plan meets the budgets.
+    StudyError, PlanError
+        The folder cannot be written, the scheduler does not answer, or a package is missing.
+    """
+    effort = Effort()
+    effort = Effort(effort.gap if gap is None else gap, time_limit_s or math.inf)
+    case_list, target = check_plan(plan), CaseFolder(Path(folder))
+    with target.opened():
+        table = simulate_cases(
+            case_list, target, case_list.cases, threads=threads, scheduler=scheduler, report=report
+        )
+        answer = answer_of(model_of(case_list, table), effort)
+        answered = Answered(answer, tuple(all_turns(answer)))
+        write_answer(target.path, answer, answered.turns)
+    return answered

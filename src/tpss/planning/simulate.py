@@ -1,0 +1,100 @@
+"""Simulate the cases of a plan that its folder does not hold yet."""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from tpss.many import in_threads
+from tpss.planning.case_folder import CaseFolder
+from tpss.planning.cases import Case, CaseList, distinct
+from tpss.planning.cluster import rows_on_cluster
+from tpss.planning.rows import row_of
+
+FILE_S = 1.0
+"""Time after which finished cases are written. [s]"""
+
+
+@dataclass(frozen=True)
+class Advance:
+    """Progress of the cases of a plan."""
+
+    cases: int
+    done: int
+    """Finished cases."""
+    before: int
+    """Cases that were finished at the start."""
+    elapsed_s: float
+
+
+def simulate_cases(
+    case_list: CaseList,
+    folder: CaseFolder,
+    cases: Sequence[Case],
+    *,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    report: Callable[[Advance], None] | None = None,
+) -> pd.DataFrame:
+    """Rows of cases, by their digests, of which those are simulated that a folder does not hold.
+
+    Parameters
+    ----------
+    case_list : CaseList
+    folder : CaseFolder
+        Opened.
+    cases : sequence of Case
+    threads : int, optional
+        Number of threads; by default one for each core.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers simulate in place of threads.
+    report : callable, optional
+        Called after every case.
+
+    Raises
+    ------
+    StudyError
+        The folder cannot be written, or the scheduler does not answer.
+    """
+    wanted = distinct(cases)
+    known = set(folder.table().index)
+    todo = [case for case in wanted if case.digest not in known]
+    started, before = time.perf_counter(), len(wanted) - len(todo)
+    if scheduler is None:
+        rows = _in_threads(case_list, todo, threads)
+    else:
+        rows = rows_on_cluster(case_list, todo, scheduler)
+    for done in _written(rows, folder):
+        if report is not None:
+            elapsed_s = time.perf_counter() - started
+            report(Advance(len(wanted), before + done, before, elapsed_s))
+    return folder.table()
+
+
+def _in_threads(
+    case_list: CaseList, cases: Sequence[Case], threads: int | None
+) -> Iterator[dict[str, Any]]:
+    evaluation = case_list.plan.file.evaluate
+
+    def work(case: Case) -> dict[str, Any]:
+        return row_of(case, lambda: case_list.scenario(case), evaluation)
+
+    return in_threads(work, cases, threads)
+
+
+def _written(rows: Iterable[dict[str, Any]], folder: CaseFolder) -> Iterator[int]:
+    """Numbers of rows, as they are done; they are written now and then, and when it ends early too."""
+    waiting: list[dict[str, Any]] = []
+    written_at = time.perf_counter()
+    try:
+        for done, row in enumerate(rows, start=1):
+            waiting.append(row)
+            if time.perf_counter() - written_at > FILE_S:
+                folder.add(waiting)
+                waiting, written_at = [], time.perf_counter()
+            yield done
+    finally:
+        if waiting:
+            folder.add(waiting)
