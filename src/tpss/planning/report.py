@@ -18,7 +18,7 @@ from tpss.report.page import fill
 from tpss.report.render.inline import inline
 from tpss.results.contents import REPORT
 
-MOST_LETTERS = 1_200_000
+MOST_LETTERS = 800_000
 """Letters of all pictures of a page; areas whose pictures would be beyond it are in the tables only."""
 
 

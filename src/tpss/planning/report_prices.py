@@ -7,9 +7,10 @@ import pandas as pd
 
 from tpss.planning.plan import PlanFile
 from tpss.planning.plan_faults import prices_of
+from tpss.planning.report_tables import cut
 from tpss.planning.wording import number, varied_in_words
 from tpss.planning.written import Written
-from tpss.report.tables import Table, of_frame
+from tpss.report.tables import Table
 
 NO_SOURCE = "none given"
 """Stands where a price has no source."""
@@ -24,7 +25,7 @@ def tables_of_prices(written: Written) -> list[Table]:
         "scenarios": ("Scenarios", _scenarios(written)),
     }
     frames = {key: (caption, pd.DataFrame(list(rows))) for key, (caption, rows) in tables.items()}
-    return [of_frame(key, caption, each) for key, (caption, each) in frames.items() if len(each)]
+    return [cut(key, caption, each) for key, (caption, each) in frames.items() if len(each)]
 
 
 def without_source(file: PlanFile) -> list[str]:

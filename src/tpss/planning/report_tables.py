@@ -16,6 +16,9 @@ from tpss.planning.wording import (
 from tpss.planning.written import Written
 from tpss.report.tables import Cell, Table, cell, of_frame
 
+MOST_CELLS, MOST_COLUMNS = 1_500, 40
+"""Cells and columns of a table of the page; those in the folder have all."""
+
 YEARS = ("in_service", "ordered")
 """Columns of years, which may be missing."""
 
@@ -81,7 +84,7 @@ def best_plans(written: Written) -> Table:
     caption = (
         f"The best {len(wide)} plans, with what is in service where they differ [{written.money}]"
     )
-    return of_frame("best-plans", caption, wide.rename(columns=MORE))
+    return cut("best-plans", caption, wide.rename(columns=MORE))
 
 
 def costs(written: Written, kind: str) -> Table:
@@ -108,7 +111,7 @@ def costs(written: Written, kind: str) -> Table:
     wide["stage"] = wide.stage.astype(object)
     wide = pd.concat([wide, pd.DataFrame([total])], ignore_index=True)
     caption = f"Costs of the plan, {kind} [{written.money}]"
-    return of_frame(f"costs-{kind}", caption, _whole(wide, ("stage",)))
+    return cut(f"costs-{kind}", caption, _whole(wide, ("stage",)))
 
 
 def switching_values(written: Written) -> Table:
@@ -159,7 +162,7 @@ def _numbered_traffic(written: Written) -> Iterable[Table]:
         if words.numbered:
             rows = [{"traffic": words.full[name], **states[name].values} for name in states]
             caption = f"Traffic of {area}" if len(written.areas) > 1 else "Traffic"
-            yield of_frame(f"traffic-{k}", caption, pd.DataFrame(rows))
+            yield cut(f"traffic-{k}", caption, pd.DataFrame(rows))
 
 
 def _shown(key: str, caption: str, written: Written, frame: pd.DataFrame) -> Table:
@@ -174,7 +177,24 @@ def _shown(key: str, caption: str, written: Written, frame: pd.DataFrame) -> Tab
             frame[name] = [words[area].get(state, state) for area, state in pairs]
     if len(written.areas) == 1 and "area" in frame:
         frame = frame.drop(columns="area")
-    return of_frame(key, caption, frame)
+    return cut(key, caption, frame)
+
+
+def cut(key: str, caption: str, frame: pd.DataFrame) -> Table:
+    """Table of a pandas table; of a wide or long one the first columns and rows, which it says."""
+    columns = min(len(frame.columns), MOST_COLUMNS)
+    rows = min(len(frame), MOST_CELLS // max(columns, 1))
+    lacks = [
+        f"{shown} of {there} {what}"
+        for shown, there, what in (
+            (rows, len(frame), "rows"),
+            (columns, len(frame.columns), "columns"),
+        )
+        if shown < there
+    ]
+    if lacks:
+        caption += f" (the first {' and '.join(lacks)}; the folder of the plan has all)"
+    return of_frame(key, caption, frame.iloc[:rows, :columns])
 
 
 def _whole(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:

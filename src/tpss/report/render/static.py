@@ -75,7 +75,7 @@ def render(drawing: Drawing) -> Figure:
     """Make a matplotlib figure of a drawing; it is neither shown nor saved."""
     labels = [panel.printed or as_text(panel.label) for panel in drawing.panels]
     figure, places = panels(
-        labels, drawing.axis, panel_inch=drawing.panel_inch, width_inch=drawing.width_inch
+        labels, as_text(drawing.axis), panel_inch=drawing.panel_inch, width_inch=drawing.width_inch
     )
     for panel, axes in zip(drawing.panels, places, strict=True):
         if drawing.span:
