@@ -22,7 +22,7 @@ SCENARIO = ROOT / "examples" / "thesis_3_7_2.toml"
 PLAN = ROOT / "examples" / "plan_320km.toml"
 MINUTE = 64
 SIZE = {"width": 1100, "height": 1440}
-PLAN_SIZE = {"width": 960, "height": 650}
+PLAN_SIZE = {"width": 960, "height": 880}
 
 
 def main() -> None:

@@ -69,8 +69,9 @@ def write_plan_report(folder: Path, file: Path | None = None, *, force: bool = F
     written = read_written(folder)
     place = file or folder / REPORT
     check_target(place, force)
+    page = plan_report(written).encode()
     with explained(place):
-        write_file(place, plan_report(written).encode())
+        write_file(place, page)
     return place
 
 
