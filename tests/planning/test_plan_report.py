@@ -6,8 +6,6 @@ import re
 import pytest
 
 import tpss
-from planning.made_up_plans import HEADWAY, many, solved
-from planning.plans import PLAN
 from tpss.errors import PlanError
 from tpss.planning.figures.catalogue import FIGURES
 from tpss.planning.report import pictures_of, plan_report, write_plan_report
@@ -15,6 +13,8 @@ from tpss.planning.written import read_written
 from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
 from pages import Page
+from small_plans import PLAN
+from solved_plans import HEADWAY, many, solved
 
 TIGHT = {"require/lowest_voltage_kv": 12.0}
 

@@ -4,8 +4,9 @@ import shutil
 
 import pytest
 
-from planning.made_up_plans import many, solved
 from tpss.planning.report import write_plan_report
+
+from solved_plans import many, solved
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 

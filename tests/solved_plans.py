@@ -4,13 +4,14 @@ import itertools
 from pathlib import Path
 from typing import Any
 
-from planning.made_up_outcomes import outcomes
-from planning.plans import PLAN, plan
 from tpss.planning.answer import answer_of
 from tpss.planning.cases import CaseList
 from tpss.planning.solve import model_of
 from tpss.planning.turning import all_turns
 from tpss.planning.write import write_answer
+
+from plan_outcomes import outcomes
+from small_plans import PLAN, plan
 
 HEADWAY = "traffic.eastbound.headway_min"
 
