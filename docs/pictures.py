@@ -13,7 +13,6 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import tpss
-from tpss.planning.report import write_plan_report
 from tpss.report.figures import draw
 
 ROOT = Path(__file__).parents[1]
@@ -34,7 +33,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         keep(photograph(tpss.write_report(result, Path(folder) / "report.html")), "report.png")
         tpss.run_plan(tpss.load_plan(PLAN), Path(folder) / "plan")
-        report = write_plan_report(Path(folder) / "plan")
+        report = tpss.write_plan_report(Path(folder) / "plan")
         keep(photograph(report, PLAN_SIZE, "decision-tree-0-title"), "plan.png")
 
 

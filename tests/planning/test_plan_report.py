@@ -8,7 +8,7 @@ import pytest
 import tpss
 from tpss.errors import PlanError
 from tpss.planning.figures.catalogue import FIGURES
-from tpss.planning.report import pictures_of, plan_report, write_plan_report
+from tpss.planning.report import pictures_of, plan_report
 from tpss.planning.written import read_written
 from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
@@ -253,12 +253,12 @@ def test_a_report_needs_only_the_folder_of_the_answer(tmp_path):
     folder = solved(tmp_path, TIGHT)
     (tmp_path / "plan.toml").unlink()
     (tmp_path / "line.toml").unlink()
-    file = write_plan_report(folder)
+    file = tpss.write_plan_report(folder)
     assert file == folder / "report.html"
     assert REPORT_MARK in file.read_text(encoding="utf-8")[:HEAD_BYTES]
     with pytest.raises(tpss.ResultError, match="--force"):
-        write_plan_report(folder)
-    write_plan_report(folder, force=True)
+        tpss.write_plan_report(folder)
+    tpss.write_plan_report(folder, force=True)
 
 
 def test_a_folder_without_its_tables_is_refused_with_the_remedy(tmp_path):

@@ -42,7 +42,9 @@ class Pictures:
     figures: list[Picture]
 
 
-def write_plan_report(folder: Path, file: Path | None = None, *, force: bool = False) -> Path:
+def write_plan_report(
+    folder: str | Path, file: str | Path | None = None, *, force: bool = False
+) -> Path:
     """Write a report of a plan that was solved into one HTML file.
 
     Parameters
@@ -66,8 +68,8 @@ def write_plan_report(folder: Path, file: Path | None = None, *, force: bool = F
     ResultError
         The file exists, or cannot be written.
     """
-    written = read_written(folder)
-    place = file or folder / REPORT
+    written = read_written(Path(folder))
+    place = Path(file or Path(folder) / REPORT)
     check_target(place, force)
     page = plan_report(written).encode()
     with explained(place):
