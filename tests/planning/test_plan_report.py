@@ -96,6 +96,13 @@ def test_a_supply_that_collapses_has_its_own_colour(tmp_path):
     assert {"collapsed", "does not come through"} <= set(picture(page, "carried-0"))
 
 
+def test_what_is_not_kept_with_an_outage_only_has_a_star(tmp_path):
+    """Three trains an hour: 12.2 kV, and 11.9 kV with the outage."""
+    page = plan_report(read_written(solved(tmp_path, {**TIGHT, "require/also_with": ["one out"]})))
+    assert "11.90 kV *" in picture(page, "carried-0")
+    assert "lowest voltage 11.90 kV with one out" in Page(page).text
+
+
 def test_bars_have_their_costs_and_what_they_cost_more(page, folder):
     firsts = read_written(folder).tables["first_decisions"]
     texts = picture(page, "first-costs-0")
