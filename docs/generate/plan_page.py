@@ -99,6 +99,7 @@ TABLES = """`tpss plan run` writes `plan.json` and these files of CSV into the f
 |---|---|
 | `decisions` | what is ordered and in service when, if which scenarios may still come |
 | `first_decisions` | every first decision with the expected cost of the best plan that contains it |
+| `first_costs` | these costs by component, of the best first decisions |
 | `best_plans` | the best plans in the order of their costs; empty with a budget |
 | `costs` | cost of the plan by component, stage and scenario, plain and discounted |
 | `regret` | what each plan costs more in a scenario than the best one of that scenario |

@@ -30,6 +30,7 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.outages.run import compare_outages as compare_outages
     from tpss.planning.load import Plan as Plan
     from tpss.planning.load import load_plan as load_plan
+    from tpss.planning.report import write_plan_report as write_plan_report
     from tpss.planning.run import run_plan as run_plan
     from tpss.report.html import write_report as write_report
     from tpss.results.key_figures import KeyFigures as KeyFigures
@@ -76,6 +77,7 @@ _HOME = {
     "simulate": "tpss.api",
     "simulate_many": "tpss.many",
     "train_approximator": "tpss.approximator.train",
+    "write_plan_report": "tpss.planning.report",
     "write_report": "tpss.report.html",
 }
 

@@ -61,8 +61,8 @@ def test_run_answers_in_a_sentence_and_in_tables(tpss_command, tmp_path):
     assert document["gap"] <= 1e-9
     tables = {file.stem for file in (tmp_path / "out" / "tables").glob("*.csv")}
     assert tables == {
-        "decisions", "first_decisions", "best_plans", "costs", "regret", "values", "configurations",
-        "switching_values",
+        "decisions", "first_decisions", "first_costs", "best_plans", "costs", "regret", "values",
+        "configurations", "switching_values",
     }  # fmt: skip
     decisions = pd.read_csv(tmp_path / "out" / "tables" / "decisions.csv")
     assert decisions.in_service.tolist() == [2030, 2040, 2040]
@@ -144,3 +144,17 @@ def test_a_folder_without_a_plan_is_refused(tpss_command, tmp_path):
     said = tpss_command("plan", "price", tmp_path)
     assert said.code == 2
     assert "name one that tpss plan run has written" in said.err
+
+
+def test_report_is_written_once_and_replaced_by_force(tpss_command, tmp_path):
+    run(tpss_command, tmp_path)
+    said = tpss_command("plan", "report", tmp_path / "out")
+    assert said.code == 0
+    assert said.out.strip() == f"Wrote {tmp_path / 'out' / 'report.html'}"
+    again = tpss_command("plan", "report", tmp_path / "out")
+    assert again.code == 2
+    assert "--force" in again.err
+    elsewhere = tpss_command("plan", "report", tmp_path / "out", "--out", tmp_path / "b.html")
+    assert elsewhere.code == 0
+    assert (tmp_path / "b.html").exists()
+    assert tpss_command("plan", "report", tmp_path).code == 2

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Quiet, argument, option
+from tpss.cli.arguments import Force, Quiet, argument, option
 
 app = typer.Typer(
     help="Plan investments in the power supply: what to build, where and when, under uncertain traffic.",
@@ -147,3 +147,26 @@ def why(
     from tpss.cli.plan_questions import why_not
 
     raise typer.Exit(why_not(folder, question, set_ or []))
+
+
+@app.command(epilog="Example:  tpss plan report ore-line")
+def report(
+    folder: PlanFolder,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="HTML file to write; by default report.html in the folder.", metavar="FILE"
+        ),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write a report of a plan that was solved into one HTML file, as of its results.
+
+    It opens with the answer in one sentence, what may be claimed of it, and what is not counted;
+    then come figures and tables. Nothing is simulated or solved, and the plan's own files are not read.
+
+    Exit codes: 0 done, 2 no folder of a solved plan, or the file exists.
+    """
+    from tpss.cli.plan_report import report_plan
+
+    report_plan(folder, out, force)

@@ -15,6 +15,7 @@ from tpss.planning import tables
 from tpss.planning.answer import Answer
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
+from tpss.planning.first_costs import first_costs
 from tpss.planning.load import plan_of
 from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
@@ -41,6 +42,7 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
         "decisions": tables.decisions(answer),
         "first_decisions": tables.first_decisions(answer),
         "best_plans": tables.best_plans(answer),
+        "first_costs": first_costs(answer),
         "costs": tables.costs(answer),
         "regret": tables.regret(answer),
         "values": tables.values(answer),

@@ -7,7 +7,7 @@ it looks up; labels end with their units in brackets; only what is printed may h
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tpss.report.palette import GREY
+from tpss.report.palette import GREY, STRONG_GREY
 from tpss.report.sampling import Floats
 
 TIME, POSITION = "time [min]", "position [km]"
@@ -86,7 +86,7 @@ class Map:
 
 @dataclass(frozen=True)
 class Bar:
-    """A part of the bar in a row, counted from 0 and from above."""
+    """A part of the bar in a row, counted from 0 and from above; of height 1 it fills its row."""
 
     row: int
     start: float
@@ -94,6 +94,7 @@ class Bar:
     name: str
     words: str
     colour: str
+    height: float = 0.62
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,23 @@ class Places:
     hollow: bool = False
 
 
-Item = Curve | Band | Mark | Map | Bar | Places
+LEFT, RIGHT, ABOVE, BELOW = range(4)
+"""Sides of a place on which its words stand; above and below they begin at it."""
+
+
+@dataclass(frozen=True)
+class Words:
+    """Words beside a place, level."""
+
+    x: float
+    y: float
+    text: str
+    side: int = RIGHT
+    colour: str = STRONG_GREY
+    bold: bool = False
+
+
+Item = Curve | Band | Mark | Map | Bar | Places | Words
 
 
 @dataclass(frozen=True)
@@ -134,13 +151,19 @@ class Panel:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Panels above each other with one horizontal axis; the legend is that of the first panel."""
+    """Panels above each other with one horizontal axis; the legend is that of the first panel.
+
+    Where its axis counts columns, from 0, it carries their names, above.
+    """
 
     axis: str
     panels: Sequence[Panel]
     span: tuple[float, float] | None = None
     panel_inch: float = 1.25
     """Height of a panel in print."""
+    columns: Sequence[str] = ()
+    width_inch: float = 7.0
+    """Width in print."""
 
 
 def unit_of(label: str) -> str:

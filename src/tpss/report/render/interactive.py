@@ -24,6 +24,14 @@ OF_PLACES = ("circle", "circle", "square", "triangle-down", "diamond", "x", "cir
 SIZES = (6, 11, 13, 10, 10, 11, 6)
 """Symbols of places by their numbers, and their sizes. [px]"""
 
+BESIDE: tuple[dict[str, Any], ...] = (
+    {"xanchor": "right", "yanchor": "middle", "xshift": -5},
+    {"xanchor": "left", "yanchor": "middle", "xshift": 5},
+    {"xanchor": "left", "yanchor": "bottom", "yshift": 2},
+    {"xanchor": "left", "yanchor": "top", "yshift": -2},
+)
+"""Where words stand, by the side of their place."""
+
 LAYOUT = {
     "template": None,
     "margin": {"l": 58, "r": 16, "t": 40, "b": 48},
@@ -64,6 +72,9 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
             if isinstance(item, parts.Mark):
                 _add_mark(figure, row, item)
                 continue
+            if isinstance(item, parts.Words):
+                _write(figure, row, item)
+                continue
             said = _hover(item, *units, alone, panel.bare)
             trace = _trace(item, len(curves)).update(hovertemplate=said)
             if panel.bare and said is None:
@@ -72,6 +83,9 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
             figure.add_trace(trace, row=row, col=1)
             if isinstance(item, parts.Places):
                 _add_labels(figure, row, item)
+    if drawing.columns:
+        named_x = {"tickvals": [*range(len(drawing.columns))], "ticktext": drawing.columns}
+        figure.update_xaxes(named_x, side="top", showgrid=False, row=1, col=1)
     named = sum(trace.showlegend for trace in figure.data)
     return figure.update_layout(showlegend=named > 1 or count > 1)
 
@@ -93,11 +107,10 @@ def _trace(
             x, y, z = _single(item.x), _single(item.y), _single(item.colours.values)
             return go.Heatmap(x=x, y=y, z=z, **_scaled(item.colours, AREA_SCALE, "z"))
         case parts.Bar():
-            look: Any = {"color": item.colour, "line": {"color": "#FFFFFF", "width": 1}}
+            marker = {"color": item.colour, "line": {"color": "#FFFFFF", "width": 1}}
+            look: Any = {"marker": marker, "width": item.height}
             part = {"base": [item.start], "x": [item.length], "y": [item.row], "orientation": "h"}
-            return go.Bar(
-                part, name=item.name, text=item.words, textangle=0, width=0.62, marker=look
-            )
+            return go.Bar(part, name=item.name, text=item.words, textangle=0, **look)
         case parts.Places():
             fill = "#FFFFFF" if item.hollow else item.colour
             look = {"symbol": OF_PLACES[item.symbol], "size": SIZES[item.symbol], "color": fill}
@@ -181,6 +194,13 @@ def _add_labels(figure: go.Figure, row: int, places: parts.Places) -> None:
             text = words.replace("\n", "<br>")
             beside |= {"text": text, "showarrow": False, "font": {"size": 11}}
             figure.add_annotation(x=x, y=y, row=row, col=1, **beside)
+
+
+def _write(figure: go.Figure, row: int, words: parts.Words) -> None:
+    text = f"<b>{words.text}</b>" if words.bold else words.text
+    beside: Any = BESIDE[words.side] | {"font": {"size": 11, "color": words.colour}}
+    beside |= {"text": text.replace("\n", "<br>"), "showarrow": False}
+    figure.add_annotation(x=words.x, y=words.y, row=row, col=1, **beside)
 
 
 def _scaled(colours: parts.Colours, stops: Stops, letter: str) -> Any:

@@ -25,6 +25,7 @@ from tpss.report.drawings.parts import (
     Mark,
     Panel,
     Places,
+    Words,
 )
 from tpss.report.palette import AREA_SCALE, LINE_SCALE, STRONG_GREY, Stops
 from tpss.report.palette import colour as colour
@@ -37,6 +38,9 @@ SYMBOLS = ("o", "o", "s", "v", "D", "X", "")
 
 SIZES = (3.5, 7.0, 8.0, 6.0, 5.0, 6.0, 0.0)
 """Sizes of these. [pt]"""
+
+LETTER_INCH = 0.08
+"""Width of a letter, rather too much than too little."""
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -70,13 +74,18 @@ def static(describe: Callable[Asked, Drawing]) -> Callable[Asked, Figure]:
 def render(drawing: Drawing) -> Figure:
     """Make a matplotlib figure of a drawing; it is neither shown nor saved."""
     labels = [panel.printed or as_text(panel.label) for panel in drawing.panels]
-    figure, places = panels(labels, drawing.axis, panel_inch=drawing.panel_inch)
+    figure, places = panels(
+        labels, as_text(drawing.axis), panel_inch=drawing.panel_inch, width_inch=drawing.width_inch
+    )
     for panel, axes in zip(drawing.panels, places, strict=True):
         if drawing.span:
             axes.set_xlim(drawing.span)
         for item in panel.items:
             _draw(item, axes)
         _set_vertical_axis(panel, axes)
+    if drawing.columns:
+        room_inch = drawing.width_inch / len(drawing.columns)
+        _name_columns(drawing.columns, room_inch, places[0])
     legend(figure, places[0])
     return figure
 
@@ -89,13 +98,28 @@ def _set_vertical_axis(panel: Panel, axes: Axes) -> None:
     if panel.tick:
         axes.yaxis.set_major_locator(MultipleLocator(panel.tick))
     if panel.rows:
-        axes.set_yticks(range(len(panel.rows)), panel.rows)
+        axes.set_yticks(range(len(panel.rows)), [as_text(name) for name in panel.rows])
         axes.set_ylim(len(panel.rows) - 0.5, -0.5)
         axes.tick_params(axis="y", length=0)
         axes.grid(visible=False, axis="y")
     if panel.bare:
         axes.set_yticks([])
         axes.spines["left"].set_visible(False)
+
+
+def _name_columns(names: Sequence[str], room_inch: float, axes: Axes) -> None:
+    """Names above columns, upright if they are longer than there is room for each."""
+    axes.set_xticks(range(len(names)), [as_text(name) for name in names])
+    longest = max(len(each) for name in names for each in name.splitlines() or [""])
+    turned = 90.0 if LETTER_INCH * longest > room_inch else 0.0
+    axes.tick_params(
+        axis="x", length=0, top=False, labeltop=True, labelbottom=False, labelrotation=turned
+    )
+    axes.xaxis.set_label_position("top")
+    axes.set_xlabel(axes.get_xlabel(), loc="left")  # seen first where it is wider than a page
+    axes.grid(visible=False, axis="x")
+    for side in ("bottom", "left"):
+        axes.spines[side].set_visible(False)
 
 
 def _draw(item: Item, axes: Axes) -> None:
@@ -120,6 +144,8 @@ def _draw(item: Item, axes: Axes) -> None:
             _draw_bar(item, axes)
         case Places():
             _draw_places(item, axes)
+        case Words():
+            _write(item, axes)
 
 
 def _draw_coloured(item: Curve, colours: Colours, axes: Axes) -> None:
@@ -157,11 +183,12 @@ def _draw_mark(item: Mark, axes: Axes) -> None:
 
 
 def _draw_bar(item: Bar, axes: Axes) -> None:
-    look: Any = {"color": item.colour, "edgecolor": "white", "lw": 0.8, "height": 0.62}
+    look: Any = {"color": item.colour, "edgecolor": "white", "lw": 0.8}
+    look["height"] = item.height
     axes.barh(item.row, item.length, left=item.start, label=as_text(item.name), **look)
     light = float(np.dot((0.3, 0.59, 0.11), to_rgb(item.colour)))
     look = {"color": "black" if light > 0.5 else "white", "ha": "center", "va": "center"}
-    axes.text(item.start + item.length / 2.0, item.row, item.words, **look)
+    axes.text(item.start + item.length / 2.0, item.row, as_text(item.words), **look)
 
 
 def _draw_places(item: Places, axes: Axes) -> None:
@@ -175,6 +202,21 @@ def _draw_places(item: Places, axes: Axes) -> None:
     beside |= {"textcoords": "offset points", "fontsize": "small", "annotation_clip": False}
     for x, y, words in zip(item.x, item.y, item.labels, strict=False):
         axes.annotate(as_text(words), (x, y), **beside)
+
+
+BESIDE: tuple[Any, ...] = (
+    {"xytext": (-5, 0), "ha": "right", "va": "center"},
+    {"xytext": (5, 0), "ha": "left", "va": "center"},
+    {"xytext": (0, 3), "ha": "left", "va": "bottom"},
+    {"xytext": (0, -3), "ha": "left", "va": "top"},
+)
+"""Where words stand, by the side of their place."""
+
+
+def _write(item: Words, axes: Axes) -> None:
+    look: Any = {"color": item.colour, "fontweight": "bold" if item.bold else "normal"}
+    look |= {"textcoords": "offset points", "annotation_clip": False}
+    axes.annotate(as_text(item.text), (item.x, item.y), **look, **BESIDE[item.side])
 
 
 def _scaled(colours: Colours, stops: Stops) -> Any:
@@ -199,10 +241,10 @@ def line(k: int) -> str:
 
 
 def panels(
-    labels: Sequence[str], axis: str, *, panel_inch: float = 1.25
+    labels: Sequence[str], axis: str, *, panel_inch: float = 1.25, width_inch: float = 7.0
 ) -> tuple[Figure, list[Axes]]:
-    """Figure with panels above each other, so many [inch] high, by what their axes carry."""
-    figure = Figure(figsize=(7.0, 0.8 + panel_inch * len(labels)))
+    """Figure with panels above each other, so many [inch] high and wide, by what their axes carry."""
+    figure = Figure(figsize=(width_inch, 0.8 + panel_inch * len(labels)))
     axes = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0].tolist()
     for panel, text in zip(axes, labels, strict=True):
         panel.set_ylabel(text)

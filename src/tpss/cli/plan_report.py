@@ -1,0 +1,18 @@
+"""The command ``tpss plan report``."""
+
+from pathlib import Path
+
+
+def report_plan(folder: Path, out: Path | None, force: bool) -> None:
+    """Write a report of a plan that was solved, and print where it is.
+
+    Raises
+    ------
+    PlanError
+        It is no folder of a plan that was solved, or something in it is missing or damaged.
+    ResultError
+        The file exists, or cannot be written.
+    """
+    from tpss.planning.report import write_plan_report
+
+    print(f"Wrote {write_plan_report(folder, out, force=force)}")
