@@ -46,6 +46,10 @@ def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
         values = model.points.value[curve.first : curve.first + curve.points]
         low[i], high[i] = values.min(), values.max()
     for_motors = before["active_power"] * h - kind.auxiliary_power_w * present_s
+    if outcome.recording.regeneration.size:
+        for_motors = for_motors + outcome.recording.regeneration["regenerated_power"][:-1] * h
+    if outcome.recording.without_power_s.size:
+        for_motors = for_motors + kind.auxiliary_power_w * outcome.recording.without_power_s[:-1]
     recorded = before["motor_power"] * h
     work = np.clip(recorded, low * for_motors, high * for_motors) / kind.slip_factor
     opposing = before["resistance_power"] + before["gradient_power"] + before["braking_power"]

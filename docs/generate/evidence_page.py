@@ -32,8 +32,8 @@ the supply's system in the [library](library.md#voltage-limits), which says wher
   longer than the run has no mean, NaN, and `notes` says so.
 - A train pulls while its tractive force at the wheel rim is positive. One that is present for less than
   {LEAST_PRESENCE_S:g} s is not a dimensioning train, and is not judged.
-- Energy is billed in blocks of {BLOCK_MIN:g} min from the start of the run. Trains do not brake
-  electrically yet, so nothing is regenerated."""
+- Energy is billed in blocks of {BLOCK_MIN:g} min from the start of the run, each direction
+  by itself."""
 
 TRAIN = {"train": "name"}
 ENERGIES = {

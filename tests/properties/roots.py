@@ -80,7 +80,7 @@ def solve_step_slowly(count: int, model: Model, state: State) -> float:
     if state.clock[0].unfed > 0:
         prepare_unfed(count, model, state)
     while True:
-        decide(count, state.flow.standing, state.trains, driving_data(model))
+        decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
         share = raise_loads(model, state)
         if share != 1.0:
             return share

@@ -11,6 +11,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
@@ -300,6 +301,8 @@ def sound_scenarios(draw: Draw) -> Document:
         document["simulation"]["outage"] = "random"
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
         with_neutral_section(draw, document)
+    if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
+        with_electric_brakes(draw, document)
     return document
 
 

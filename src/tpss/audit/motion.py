@@ -1,6 +1,7 @@
 """The audit of the trains: work, forces and motion."""
 
 from tpss.audit.balances import Balances, worst
+from tpss.audit.feed_back import audit_feed_back
 from tpss.driving.data import Braking, Driver, MotionModel
 from tpss.kernel import at, inlined
 from tpss.numerics.curve import curve_at, extremes
@@ -53,6 +54,9 @@ def _audit_continuous(
     fed = before.pantograph_real != 0.0 or before.pantograph_imag != 0.0
     auxiliary_w = kind.auxiliary_power_w if fed else 0.0
     for_motors_j = before.active_power * h - auxiliary_w * present_s
+    if recording.regeneration.shape[0] > 0:
+        for_motors_j += recording.regeneration[step, i].regenerated_power * h
+        audit_feed_back(step, i, kind, model.points, recording, figures)
     motor_j = min(max(before.motor_power * h, low * for_motors_j), high * for_motors_j)
     traction_j = before.traction_power * h
     spent_j = (before.resistance_power + before.gradient_power + before.braking_power) * h

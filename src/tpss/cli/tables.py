@@ -14,6 +14,7 @@ from rich.table import Table
 from tpss import units
 from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.notes import notes
+from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
 from tpss.results.stops import punctuality
@@ -180,6 +181,8 @@ def key_figures(result: Result) -> list[str]:
     lines.append(
         f"Energy over {duration:.2f} min: {total:.3f} MWh, of which losses {losses:.3f} MWh{share}"
     )
+    if (totals := fed_back(result.dataset, result.scenario)) is not None:
+        lines.append(in_words(totals))
     lowest = summary["lowest_voltage"]
     if lowest is not None:
         place = f"{lowest['position_km']:.2f} km"

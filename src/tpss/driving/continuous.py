@@ -31,6 +31,7 @@ from tpss.vehicle.demand import (
     update_speed_terms,
     within_free_band,
 )
+from tpss.vehicle.feed_back import offer, regenerates
 from tpss.vehicle.train import Course, Phase, Train, copy_motion
 from tpss.vehicle.train_type import TrainType
 
@@ -164,7 +165,7 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
 
 
 @inlined
-def aim(train: Train, data: DrivingData) -> None:
+def aim(train: Train, data: DrivingData, points: Points) -> None:
     """Set the target of a train whose step is one phase, and the force that its driver wants."""
     if train.decision.course == Course.PASSAGE:
         return
@@ -174,6 +175,8 @@ def aim(train: Train, data: DrivingData) -> None:
         target = min(train.decision.cruise_m_s, v + kind.highest_acceleration_m_s2 * h)
         wanted = force_to_target(train, kind, target, h)
     set_target(train, wanted, min(wanted, train.demand.adhesion_n), target)
+    if regenerates(kind):
+        offer(-wanted, (v + target) / 2.0, kind, train.demand, points)
     certify_free_band(kind, train.demand)
     update_cap_terms(kind, train.demand)
 

@@ -84,10 +84,10 @@ def aim_at_speed(train: Train, kind: TrainType, data: DrivingData) -> None:
 
 
 @inlined
-def aim(train: Train, data: DrivingData) -> None:
+def aim(train: Train, data: DrivingData, points: Points) -> None:
     """Set the target of a train, and the force that adhesion and driver allow at most."""
     if data.options.motion == MotionModel.CONTINUOUS:
-        continuous.aim(train, data)
+        continuous.aim(train, data, points)
     else:
         _aim_stepped(train, data)
 

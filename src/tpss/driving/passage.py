@@ -21,6 +21,7 @@ slopes over it are found by a second passage at a voltage close by; else those o
 import math
 
 from tpss.driving.data import DrivingData, Floats
+from tpss.driving.electric_brakes import brake_electrically
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.neutral import follow_power, has_neutral, room_to_change, time_without_power
 from tpss.driving.pull import Aim, End, Pull, find_pull, when_a_phase_ends
@@ -29,6 +30,7 @@ from tpss.numerics.curve import Points
 from tpss.numerics.staircase import index_at, index_from
 from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.braking import band_above, band_below, braking_square
+from tpss.vehicle.feed_back import regenerates
 from tpss.vehicle.phase import demand_of_phase, demand_standing, voltage_decides
 from tpss.vehicle.train import MOST_CALLS, Motion, Passage, Phase, Train, copy_motion
 from tpss.vehicle.train_type import TrainType
@@ -280,6 +282,8 @@ def _drive(
     # 2. What the machine gives.
     pull, end = _choose_pull(voltage_v, until_s, aim, passage, train, kind, data, points, scratch)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
+    if regenerates(kind) and pull.braking_n > 0.0 and voltage_v > 0.0:
+        brake_electrically(pull, passage, kind, data, points)
     a = pull.acceleration_m_s2
     if voltage_v > 0.0 and (end == End.STANDSTILL or (v == 0.0 and a <= 0.0)):
         passage.stalled = True
@@ -331,6 +335,7 @@ def _begin(passage: Passage, train: Train, kind: TrainType, step_s: float) -> No
     passage.running_ns, passage.running_j = 0.0, 0.0
     passage.gradient_ns, passage.gradient_j = 0.0, 0.0
     passage.motor_j, passage.current_as = 0.0, 0.0
+    passage.electric_j, passage.offered_j = 0.0, 0.0
     passage.active_j, passage.reactive_vars = 0.0, 0.0
     passage.reactive_slope_vars = 0.0
 
@@ -384,6 +389,8 @@ def demand_of_passage(
     points: Points, scratch: Floats,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Mean active and reactive power of a train on its passage, and their slopes: P, Q, P', Q'.
+
+    What its electric brakes offer the line is not part of them.
 
     [W], [var], [W/V], [var/V]
 

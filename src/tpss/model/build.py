@@ -8,6 +8,7 @@ import numpy as np
 
 from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
+from tpss.model.feed_back import demand_room_to_feed_back
 from tpss.model.gates import build_gates, no_gates
 from tpss.model.halts import build_halts
 from tpss.model.legs import build_legs
@@ -20,6 +21,7 @@ from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
 from tpss.record import Records
 from tpss.scenario.scenario import Scenario
+from tpss.scenario.standards import limits_of_system
 from tpss.step.model import Model, RunControl
 from tpss.step.separation import Separation, Signalling
 from tpss.step.turns import Gates
@@ -49,11 +51,12 @@ class Layout:
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
+    demand_room_to_feed_back(scenario)
     lines = scenario.lines_by_name
     plan = layout_of(scenario, scenario.outage).plan
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
-    types, points = build_train_types(running)
+    types, points = build_train_types(running, limits_of_system(scenario.supply.system))
     gradients, limits = build_profiles(lines, rows_seen(running))
     model = Model(
         options=_options(scenario),

@@ -20,12 +20,15 @@ from tpss.physics.running_resistance import DavisCoefficients
 from tpss.record import Records
 from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationBands
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.standards import VoltageLimits, limits_of_system
+from tpss.scenario.supply.system import DEFAULT_SYSTEM
 from tpss.units import si, si_list
 from tpss.vehicle.braking import lay_out_bands
 from tpss.vehicle.effort.kinds import EffortKind, TractiveEffort
 from tpss.vehicle.effort.limits import EffortLimits as Limits
 from tpss.vehicle.effort.table import MOST_VOLTAGES
 from tpss.vehicle.effort.table import EffortTable as Table
+from tpss.vehicle.regeneration import Regeneration
 from tpss.vehicle.train_type import LineCurrentLimit, Networks, TrainType
 
 KM_H = 1.0 / 3.6
@@ -55,14 +58,25 @@ def _no_networks() -> Any:
     return (FeedForwardNetwork.blank(1)[0].tolist(),) * len(_NETWORK_INPUTS)  # type: ignore[attr-defined]
 
 
-def build_train_types(running: list[Running]) -> tuple[Records[TrainType], Points]:
-    """The types in the order of the trains, and the points of their curves."""
+def build_train_types(
+    running: list[Running], limits: VoltageLimits | None = None
+) -> tuple[Records[TrainType], Points]:
+    """The types in the order of the trains, and the points of their curves.
+
+    Parameters
+    ----------
+    running : list of Running
+    limits : VoltageLimits
+        Of the system, between whose highest voltages the line stops taking what trains feed back, unless
+        they say otherwise; by default those of the default system, where no train feeds back.
+    """
+    limits = limits or limits_of_system(DEFAULT_SYSTEM)
     book, seen = CurveBook(), rows_seen(running)
-    rows = [_train_type(each.train, seen.index(row_seen(each)), book) for each in running]
+    rows = [_train_type(each.train, seen.index(row_seen(each)), book, limits) for each in running]
     return TrainType.array(rows), book.points()
 
 
-def _train_type(train: Train, profile: int, book: CurveBook) -> Any:
+def _train_type(train: Train, profile: int, book: CurveBook, limits: VoltageLimits) -> Any:
     mass, adhesive = si(train, "mass_t"), si(train, "adhesive_mass_t")
     return TrainType.row(
         mass_kg=mass,
@@ -84,6 +98,7 @@ def _train_type(train: Train, profile: int, book: CurveBook) -> Any:
         efficiency=_over_speed(train.efficiency, book),
         effort=_effort(train, book),
         line_current=_line_current(train),
+        regeneration=_regeneration(train, book, limits),
         pulls_at_any_voltage=_pulls_at_any_voltage(train),
         **_electric(train, book),
     )
@@ -154,6 +169,23 @@ def _effort_table(train: Train, effort: EffortTable, book: CurveBook) -> Any:
         first_row=places[0],
         rows=len(voltages),
         voltage_v=voltages + [math.inf] * (MOST_VOLTAGES - len(voltages)),
+    )
+
+
+def _regeneration(train: Train, book: CurveBook, limits: VoltageLimits) -> Any:
+    """A row of `Regeneration`."""
+    own = train.regeneration
+    if own is None:
+        return Regeneration.row()
+    return Regeneration.row(
+        highest_force_n=si(own, "max_force_kn"),
+        highest_power_w=si(own, "max_power_kw"),
+        none_up_to_m_s=si(own, "fade_to_kmh"),
+        whole_from_m_s=si(own, "fade_from_kmh"),
+        reactive_ratio=plain(reactive_ratio)(own.power_factor),
+        whole_up_to_v=_si_or(own, "full_until_kv", si(limits, "umax1_kv")),
+        none_from_v=_si_or(own, "zero_from_kv", si(limits, "umax2_kv")),
+        efficiency=_over_speed(own.efficiency or train.efficiency, book),
     )
 
 

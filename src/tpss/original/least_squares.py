@@ -71,7 +71,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     """Solve a step until every driver's decision stands; see `step.coupling.solve_step`."""
     evaluations = 0
     while True:
-        decide(count, state.flow.standing, state.trains, driving_data(model))
+        decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
         share, more = solve_network(count, warm, model, state)
         evaluations += more
         if share < 1.0 or apply_solutions(count, model, state):

@@ -25,8 +25,10 @@ from enum import IntEnum
 from tpss.driving.passage import demand_of_passage
 from tpss.kernel import at, fused, inlined, kernel, switch
 from tpss.numerics.pairs import scaled, squared
+from tpss.powerflow.load import demand_with_brakes
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.vehicle.demand import electrical_demand
+from tpss.vehicle.feed_back import regenerates
 from tpss.vehicle.train import Course, Train
 
 
@@ -73,6 +75,8 @@ def train_current(
     square = squared(voltage)
     magnitude = math.sqrt(square)
     train = loads.trains[at(i)]
+    if regenerates(loads.types[at(train.train_type)]):
+        return _current_with_brakes(voltage, scale, start, train, loads)
     if train.decision.course == Course.PASSAGE:
         return _current_of_passage(voltage, scale, start, train, loads)
     p, q, p_slope, q_slope = electrical_demand(
@@ -87,6 +91,24 @@ def train_current(
     y1 = complex(half * p_slope, -half * q_slope)
     y2 = (y1 * voltage - current) * reciprocal
     return current, y1, y2
+
+
+@kernel
+def _current_with_brakes(
+    voltage: complex, scale: float, start: Pass, train: Train, loads: Loads
+) -> tuple[complex, complex, complex]:
+    """`train_current` of a train with electric brakes."""
+    square = squared(voltage)
+    magnitude = math.sqrt(square)
+    with_slopes = start != CHECK and start != FLAT
+    p, q, p_slope, q_slope = demand_with_brakes(magnitude, with_slopes, train, loads)
+    reciprocal = scaled(voltage, 1.0 / square)
+    current = complex(scale * p, -scale * q) * reciprocal
+    if start == FLAT:
+        return current, 0j, 0j
+    half = 0.5 * scale / magnitude
+    y1 = complex(half * p_slope, -half * q_slope)
+    return current, y1, (y1 * voltage - current) * reciprocal
 
 
 @kernel

@@ -29,6 +29,7 @@ TABLE_PLACES = {
     "stops": "stops",
     "waits": "waits",
     "stations": "stations",
+    "regeneration": "regeneration",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "trains": "train_steps",
 }

@@ -16,7 +16,7 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import RECORDED, Recorded
+from tpss.step.recorded import RECORDED, REGENERATED, Recorded
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -42,6 +42,12 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         words = {"units": "1", "long_name": "index of the train that it waits for; -1: none"}
         waits_for = outcome.recording.waits_for
         variables[WAITS_FOR] = xr.Variable(("time", "train"), waits_for, words)
+    if outcome.recording.regeneration.size:
+        rows = np.asarray(outcome.recording.regeneration)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
+            for each in REGENERATED
+        }
     if (off_s := outcome.recording.without_power_s).size:
         words = {"units": "s", "long_name": "time with the power off, because of neutral sections"}
         variables[WITHOUT_POWER] = xr.Variable(("time", "train"), off_s, words)

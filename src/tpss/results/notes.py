@@ -90,6 +90,7 @@ def _circulation(result: Result) -> Iterator[str]:
     """Power that some stations feed and others receive, while trains take little of it."""
     data, (active_mw, _) = result.dataset, _station_powers_mw(result)
     received_mw = np.maximum(-active_mw, 0.0)
+    received_mw *= _share_from_stations(data, received_mw)[:, None]
     h = step_s(data) * 1e6 / J_PER_MWH
     circulating_mwh, taken_mwh = received_mw.sum() * h, active_mw.sum() * h
     if circulating_mwh <= MOST_CIRCULATING * max(taken_mwh, 0.0) or circulating_mwh <= 0.0:
@@ -101,6 +102,15 @@ def _circulation(result: Result) -> Iterator[str]:
         f"{circulating_mwh:.3f} MWh went from station to station, where trains and losses took "
         f"{taken_mwh:.3f} MWh; look at the stations' no_load_voltage_kv and angles"
     )
+
+
+def _share_from_stations(data: xr.Dataset, received_mw: Floats) -> Floats:
+    """Share of what stations receive in each step that trains do not feed back. [1]"""
+    drawn_mw = np.nan_to_num(step_values(data, "active_power")) / 1e6
+    fed_back_mw, total_mw = np.maximum(-drawn_mw, 0.0).sum(axis=1), received_mw.sum(axis=1)
+    left_mw = np.maximum(total_mw - fed_back_mw, 0.0)
+    share = np.divide(left_mw, total_mw, out=np.ones_like(total_mw), where=total_mw > 0.0)
+    return np.asarray(share)
 
 
 def _closeness(result: Result) -> Iterator[str]:

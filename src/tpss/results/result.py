@@ -10,6 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results import store, tables
+from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
 from tpss.results.waits import waits
@@ -75,6 +76,11 @@ class Result:
     def stations(self) -> pd.DataFrame:
         """One row per feeding station: energy, peaks, loading, converters."""
         return tables.stations(self.dataset)
+
+    @cached_property
+    def regeneration(self) -> pd.DataFrame:
+        """One row per train: what it brakes and where that goes; empty without electric brakes."""
+        return regeneration(self.dataset)
 
     @cached_property
     def train_steps(self) -> pd.DataFrame:

@@ -104,9 +104,9 @@ def step_calls(model: Model) -> list[Call]:
     train, kind, step = state.trains[0], model.types[0], switch(0)
     on_line = (state.flow.standing, state.trains)
     of_trains = (recording.trains, recording.train_state, recording.calls, recording.counters)
-    off_s = recording.without_power_s
+    besides = recording.without_power_s, recording.regeneration
     return [
-        (decide, (step, *on_line, data)),
+        (decide, (step, *on_line, data, model.points)),
         (update_speed_terms, (1.0, kind, train.demand, model.points, state.scratch)),
         (shortest_stop, (1.0, 1.0, 1.0)),
         (replan, (train, kind, data)),
@@ -116,7 +116,7 @@ def step_calls(model: Model) -> list[Call]:
         (prepare_trains, (step, *on_line, data, model.points, state.scratch)),
         (
             record_trains,
-            (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains, off_s),
+            (step, step, 1.0, 1.0, model.types, model.points, *on_line, *of_trains, *besides),
         ),
         (record_instant, (step, state.trains, recording)),
     ]

@@ -290,6 +290,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         counters=kept.counters,
         calls=kept.calls[:count],
         waits_for=kept.waits_for[:rows, :count],
+        regeneration=kept.regeneration[:rows, :count],
         without_power_s=kept.without_power_s[:rows, :count],
     )
     return Outcome(

@@ -28,7 +28,11 @@ class Absence(NamedTuple):
 _ENDS = r"(to|end|until|upto)(_km|_m)?$|length_k?m$"
 
 ABSENCES = (
-    Absence(r"regen|recuperat|feed_?back", "regeneration: trains do not feed power back"),
+    Absence(
+        r"regen|recuperat|feed_?back",
+        "regeneration at this place",
+        "write [trains.NAME.regeneration] with max_force_kn and max_power_kw",
+    ),
     Absence(
         r"neutral|phase_(break|separation)|separation_section|dead_section|gaps?$",
         "neutral sections and gaps of the contact line at this place",

@@ -33,6 +33,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
     findings += [*_separation(document, simulation), *_planned_order(document, simulation)]
     findings += _neutral_sections(supply, simulation)
+    findings += _feeding_back(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
     return [Finding(file, *finding) for finding in findings]
@@ -63,6 +64,16 @@ def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> I
     if choices and wanted != "none":
         problem = f"does not go with {choices[0]}"
         yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"
+
+
+def _feeding_back(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
+    """Trains that feed back, with stepped motion, which knows no brakes for a part of a step."""
+    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
+    choices += made_of_stepped_motion(simulation.get)
+    for name, train in table(document, "trains").items():
+        if choices and isinstance(train, Mapping) and table(train, "regeneration"):
+            problem = f"does not go with {choices[0]}"
+            yield f"trains.{name}.regeneration", "", problem, f"leave {choices[0]} out"
 
 
 def _neutral_sections(supply: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:

@@ -15,6 +15,7 @@ from tpss.scenario.machine import (
     RetardationOverSpeed,
     TractiveEffort,
 )
+from tpss.scenario.regeneration import Regeneration
 
 LARGEST_SHARE = 0.5
 """Largest share of rotating parts in the mass of a train; 1 plus it is the largest factor."""
@@ -165,6 +166,11 @@ class Train(Part):
     current_limitation: CurrentLimitation | None = Field(
         default=None,
         description="Current limitation at low voltage, as in EN 50388; leave it out: no such limit.",
+    )
+
+    regeneration: Regeneration | None = Field(
+        default=None,
+        description="Electric brakes that feed back, with continuous motion; leave it out: none.",
     )
 
     @field_validator("rotating_mass_factor", "rotating_mass_share", mode="before")

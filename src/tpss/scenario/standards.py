@@ -13,6 +13,11 @@ USEFUL = ("mean_useful_kv", "mean_useful_fast_kv")
 """Keys of the least mean useful voltage."""
 
 
+def limits_of_system(system: str) -> "VoltageLimits":
+    """Voltage limits of a system, those of the library."""
+    return VoltageLimits.model_validate({"system": system})
+
+
 class VoltageLimits(Part):
     """Limits of the voltage at the pantograph: those of a system in the library, or one's own."""
 

@@ -162,7 +162,7 @@ def end_step(
     record_trains(
         step, count, state.clock[0].begin_s, model.options.step_s, model.types, model.points,
         state.flow.standing, state.trains, recording.trains, recording.train_state, recording.calls,
-        recording.counters, recording.without_power_s,
+        recording.counters, recording.without_power_s, recording.regeneration,
     )  # fmt: skip
     if model.control.fixed_voltage_v <= 0.0:
         record_network(step, model.network, state.flow, recording)

@@ -10,6 +10,7 @@ from tpss.driving.data import DrivingData, MotionModel
 from tpss.driving.driver import aim
 from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
+from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
 from tpss.powerflow.network import Loads, Standing
@@ -45,7 +46,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     if state.clock[0].unfed > 0:
         prepare_unfed(count, model, state)
     while True:
-        decide(count, state.flow.standing, state.trains, driving_data(model))
+        decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
         share, more = solve_network(count, warm, model, state)
         passes += more
         if share == 1.0 and state.clock[0].unfed > 0:
@@ -82,13 +83,17 @@ def pass_unfed(count: int, model: Model, state: State) -> None:
 
 @kernel
 def decide(
-    count: int, standing: Records[Standing], trains: Records[Train], data: DrivingData
+    count: int,
+    standing: Records[Standing],
+    trains: Records[Train],
+    data: DrivingData,
+    points: Points,
 ) -> None:
     """Let those drivers decide who have not done so in this step, of the first `count` trains."""
     for k in range(count):
         train = trains[at(standing[at(k)].train)]
         if not train.decision.decided:
-            aim(train, data)
+            aim(train, data, points)
             train.decision.decided = True
 
 

@@ -15,11 +15,12 @@ from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
-from tpss.step.recorded import TrainRow
+from tpss.step.recorded import RegenerationRow, TrainRow
 from tpss.step.recording import Call, Indices, Recording
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
+from tpss.vehicle.terms import Demand
 from tpss.vehicle.train import (
     MOST_CALLS,
     Course,
@@ -82,6 +83,7 @@ def record_trains(
     calls: Records[Call],
     counters: Indices,
     without_power_s: Floats,
+    regeneration: Records[RegenerationRow],
 ) -> None:
     """Forces, voltages and powers of the first `count` trains along the line.
 
@@ -91,7 +93,7 @@ def record_trains(
         When the step begins, and how long it lasts. [s]
     kinds : records of TrainType
     points : records of CurvePoint
-    rows, states, calls, counters, without_power_s
+    rows, states, calls, counters, without_power_s, regeneration
         Of the recording, which as a whole would cost more to hand over.
     """
     for k in range(count):
@@ -103,6 +105,8 @@ def record_trains(
         if without_power_s.shape[0] > 0:
             passes = train.decision.course == Course.PASSAGE
             without_power_s[at(step), at(i)] = train.passage.without_power_s if passes else 0.0
+        if regeneration.shape[0] > 0:
+            record_regeneration(train.demand, regeneration[at(step), at(i)])
         if train.decision.course == Course.PASSAGE:
             record_passage(begin_s, step_s, i, train, kind, row, calls)
             count_breaches(train.passage.breaches, counters)
@@ -127,6 +131,14 @@ def record_train(voltage: complex, step_s: float, train: Train, row: TrainRow) -
 
 
 @inlined
+def record_regeneration(demand: Demand, row: RegenerationRow) -> None:
+    """What electric brakes have done."""
+    row.electric_braking_power = demand.electric_power_w
+    row.regenerated_power = demand.regenerated_power_w
+    row.refused_power = demand.offered_power_w - demand.regenerated_power_w
+
+
+@inlined
 def record_step(
     step_s: float, train: Train, kind: TrainType, points: Points, row: TrainRow, counters: Indices
 ) -> None:
@@ -137,6 +149,8 @@ def record_step(
         current /= line_voltage_factor(demand.voltage_v, kind.voltage_model)
     row.motor_current = motor_current(current, kind.current_model)
     row.motor_power = (demand.active_power_w - kind.auxiliary_power_w) / demand.per_efficiency
+    if demand.offered_power_w > 0.0:  # in such a step the motors do nothing else
+        row.motor_power = 0.0
     traction_w, braking_w, running_w, gradient_w = mean_powers(train, step_s)
     row.traction_power = traction_w
     row.braking_power = braking_w

@@ -4,6 +4,7 @@ To record one more quantity of a train, node or station takes a line here, and t
 `tpss.step.record` that writes the field of this name.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -130,16 +131,26 @@ RECORDED = (
 """Everything that is recorded, in the order of the dataset."""
 
 
-def _fields_of(what: str) -> list[str]:
-    own = (field for each in RECORDED if each.of == what for field in each.fields)
+REGENERATED = (
+    Recorded("electric_braking_power", "train", "W", "power of the electric brakes at the wheel rim",
+             r"F_e v"),
+    Recorded("regenerated_power", "train", "W", "power that its electric brakes give it and the line",
+             remark="auxiliaries, which are fed first, included"),
+    Recorded("refused_power", "train", "W", "power that its electric brakes offer and the line refuses"),
+)  # fmt: skip
+"""What is recorded besides where trains have electric brakes."""
+
+
+def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
+    own = (field for each in table if each.of == what for field in each.fields)
     return list(dict.fromkeys(own))
 
 
 class Row(Record):
     """What is recorded of a train, node or station at an instant and over the interval that follows."""
 
-    def __init_subclass__(cls, of: str) -> None:
-        fields = np.dtype([(field, float) for field in _fields_of(of)], align=True)
+    def __init_subclass__(cls, of: str, table: Sequence[Recorded] = RECORDED) -> None:
+        fields = np.dtype([(field, float) for field in _fields_of(of, table)], align=True)
         cls.dtype = np.dtype((np.record, fields))
 
     if TYPE_CHECKING:
@@ -150,6 +161,10 @@ class Row(Record):
 
 class TrainRow(Row, of="train"):
     """Row of a train."""
+
+
+class RegenerationRow(Row, of="train", table=REGENERATED):
+    """What the electric brakes of a train do."""
 
 
 class NodeRow(Row, of="node"):

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tpss.kernel import at, inlined
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import NodeRow, StationRow, TrainRow
+from tpss.step.recorded import NodeRow, RegenerationRow, StationRow, TrainRow
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -50,6 +50,8 @@ class Recording(NamedTuple):
     waits_for: npt.NDArray[np.int32]
     """Shape (instants, trains): train for which each one waits; -1: none.  Empty unless trains are kept
     apart."""
+    regeneration: Records[RegenerationRow]
+    """Shape (instants, trains).  Empty unless trains have electric brakes."""
     without_power_s: Floats
     """Shape (instants, trains): time that each one has its power off.  Empty without neutral
     sections. [s]"""
@@ -75,7 +77,12 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += network.sources.size * StationRow.dtype.itemsize
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
+    row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
     return (steps + 1) * row
+
+
+def _regenerates(model: Model) -> bool:
+    return bool((model.types["regeneration"]["highest_force_n"] > 0.0).any())
 
 
 def _has_neutral(model: Model) -> bool:
@@ -107,7 +114,7 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         values.fill(np.nan)
         return values
 
-    def blank(columns: int, kind: type[Record]) -> Any:
+    def blank(columns: int, kind: type[Record], rows: int = rows) -> Any:
         size = rows * columns * len(kind.dtype.names or ())
         return unknown(size).view(kind.dtype).reshape(rows, columns).view(np.recarray)
 
@@ -124,5 +131,6 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         counters=np.zeros(len(Counter), dtype=np.int64),
         calls=_no_calls(trains, model.stops.shape[1]),
         waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
+        regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
     )

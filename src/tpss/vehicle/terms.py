@@ -58,3 +58,9 @@ class Demand(Record):
     """The bridge network over the locomotive's voltage. [1], [V]"""
     effort: EffortTerms
     """Tractive effort over the line voltage. [N], [V]"""
+    electric_power_w: float
+    """Power of the electric brakes at the wheel rim, mean over the step. [W]"""
+    offered_power_w: float
+    """What they offer the line, auxiliaries included. [W]"""
+    regenerated_power_w: float
+    """What of that the line takes, at the voltage last tried. [W]"""

@@ -206,6 +206,10 @@ class Passage(Record):
     """Slope of the reactive energy over the line voltage, as long as no force changes. [var s/V]"""
     current_as: float
     """Charge of the motors' current. [A s]"""
+    electric_j: float
+    """Work of the electric brakes at the wheel rim. [J]"""
+    offered_j: float
+    """Energy that they offer the line, auxiliaries included. [J]"""
 
 
 class Train(Record):

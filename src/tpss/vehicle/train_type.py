@@ -10,6 +10,7 @@ from tpss.physics.running_resistance import DavisCoefficients
 from tpss.record import Record
 from tpss.vehicle.braking import BrakingBands
 from tpss.vehicle.effort.kinds import TractiveEffort
+from tpss.vehicle.regeneration import Regeneration
 
 
 class LineCurrentLimit(Record):
@@ -95,5 +96,7 @@ class TrainType(Record):
     """Power factor over speed, where it is not the network's. [1]"""
     effort: TractiveEffort
     """What the motors give at most."""
+    regeneration: Regeneration
+    """Its electric brakes."""
     networks: Networks
     """Networks of the machine; zero where nothing asks for them."""

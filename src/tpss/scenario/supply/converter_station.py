@@ -17,6 +17,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.supply.feedback import Feedback, feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 
 
@@ -53,6 +54,7 @@ class ConverterStation(Part):
         default="all-on",
         description="Whether all converters run, or as many as the loading needs.",
     )
+    feedback: Feedback = feedback()
     grid_reactance_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Reactance of the 50 Hz grid, on the railway's side."
     )

@@ -14,6 +14,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.supply.feedback import Feedback, feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 
 
@@ -57,6 +58,7 @@ class TransformerStation(Part):
     at: Name | None = station_at()
     position_km: Position = Field(description="Position on its line.")
     feeds: Feeds | None = feeds()
+    feedback: Feedback = feedback()
     no_load_voltage_kv: Real = Field(
         ge=0.1, le=100, description="Voltage without load, on the railway's side."
     )

@@ -1,0 +1,76 @@
+r"""The work of electric brakes in a phase of constant retardation, however long it is.
+
+Their force follows the speed, v = v₀ + a t: it has corners where they begin to fade, where they give
+nothing, and where their power passes its limit.  Between two corners :math:`F_e v` is a polynomial of
+the time, of the second degree at most, but for what follows a curve over speed; so the rule of Gauss
+with two points is exact, at
+
+.. math:: t_m \pm \frac{\delta}{2 \sqrt{3}} .
+"""
+
+import math
+
+from tpss.driving.data import DrivingData
+from tpss.driving.pull import Pull
+from tpss.kernel import inlined, kernel
+from tpss.numerics.curve import Points, curve_at
+from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.regeneration import electric_force
+from tpss.vehicle.train import Passage
+from tpss.vehicle.train_type import TrainType
+
+MOST_PIECES = 4
+"""Pieces between three corners."""
+
+GAUSS = 1.0 / math.sqrt(3.0)
+"""Places of the two points in half the length of a piece. [1]"""
+
+
+@inlined
+def _time_to(speed_m_s: float, begin_m_s: float, acceleration_m_s2: float) -> float:
+    """When a train has a speed; infinite: never. [s]"""
+    if acceleration_m_s2 == 0.0:
+        return math.inf
+    return (speed_m_s - begin_m_s) / acceleration_m_s2
+
+
+@inlined
+def _next_corner(
+    after_s: float, end_s: float, begin_m_s: float, acceleration_m_s2: float, kind: TrainType
+) -> float:
+    """When the force has its next corner after a time, or when the phase ends. [s]"""
+    own, found = kind.regeneration, end_s
+    corners = (own.none_up_to_m_s, own.whole_from_m_s, own.highest_power_w / own.highest_force_n)
+    for speed_m_s in corners:
+        time = _time_to(speed_m_s, begin_m_s, acceleration_m_s2)
+        if time > after_s and time < found:
+            found = time
+    return found
+
+
+@kernel
+def brake_electrically(
+    pull: Pull, passage: Passage, kind: TrainType, data: DrivingData, points: Points
+) -> None:
+    """Add the electric brakes' part in a phase, of a train with power.
+
+    References
+    ----------
+    [EN50388]_, as `vehicle.regeneration.electric_force`.
+    """
+    options, own, a = data.options, kind.regeneration, pull.acceleration_m_s2
+    begin_m_s = pull.mean_speed_m_s - a * pull.duration_s / 2.0
+    time = 0.0
+    for _ in range(MOST_PIECES):
+        until = _next_corner(time, pull.duration_s, begin_m_s, a, kind)
+        half = (until - time) / 2.0
+        for side in (-GAUSS, GAUSS):
+            speed = max(0.0, begin_m_s + a * (time + half * (1.0 + side)))
+            rails_n = adhesion_of(kind, speed, options.rail, options.adhesion_in_km_h, points)
+            work_j = electric_force(pull.braking_n, speed, rails_n, own) * speed * half
+            passage.electric_j += work_j
+            curve = own.efficiency
+            passage.offered_j += work_j * curve_at(speed, curve.first, curve.points, points)
+        time = until
+        if time >= pull.duration_s:
+            return
