@@ -1,5 +1,6 @@
 """What campaigns of random scenarios have found, cut down to a small case that shows it."""
 
+import copy
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 import tpss
 
 from properties.judge import judge_result
-from scenarios import short_line
+from properties.kilometres import moved
+from properties.rules import Journey
+from scenarios import SHORT_LINE, short_line
 
 
 def standing(*kms: float) -> dict[str, Any]:
@@ -93,3 +96,26 @@ def test_a_train_just_above_the_voltage_without_traction_gives_the_force_that_it
     result = tpss.simulate(short_line(changes))
     assert float(result.dataset.pantograph_voltage.min()) == pytest.approx(11_000.05, abs=0.01)
     assert result.audit["traction_balance"] < 1e-13
+
+
+def hardest_braking_m_s2(begin_km: float) -> float:
+    """Highest retardation of a train that brakes to a stop within steps of 0.06 s, once it is judged."""
+    document = copy.deepcopy(SHORT_LINE)
+    document["simulation"] = {
+        "time_step_min": 0.001, "duration_min": 3.0, "motion": "stepped", "braking": "within-step",
+    }  # fmt: skip
+    document["line"]["stations"][1]["position_km"] = 1.0
+    document["traffic"][0]["stops"] = [{"station": "Middle", "dwell_min": 0.5}]
+    result = tpss.simulate(tpss.Scenario.from_document(moved(document, begin_km), "far"))
+    judge_result(result)
+    way = Journey(result, "eastbound 1")
+    return float(-way.a[way.braking > 0.0].min())
+
+
+def test_far_from_kilometre_0_the_rounding_of_a_place_is_braked_for():
+    """A step of 0.06 s that ends at the stop begins 0.85 m/s² (0.06 s)²/2 = 1.53 mm before it, the
+    steps before it 2², 3², ... times as far.  At 1400 km positions are rounded by up to 1.16e-10 m:
+    7.6e-8 of that distance, and with all steps before, 1 + 1/4 + 1/9 + ... = 1.64 times as much."""
+    assert hardest_braking_m_s2(0.0) == pytest.approx(0.85, rel=1e-10)
+    far = hardest_braking_m_s2(1400.0) / 0.85 - 1.0
+    assert 1e-8 < far < 1.64 * 7.6e-8
