@@ -18,8 +18,11 @@ from tpss.errors import TooLargeError
 from tpss.model import build_model
 from tpss.model.build import steps_of
 from tpss.model.traffic import build_services
+from tpss.run.lone import EmptyLine
 from tpss.run.run import Progress
+from tpss.run.services import Service
 from tpss.run.start import foreseen_steps
+from tpss.step.model import Model
 
 from .roots import Replay
 from .rules import keep_the_rules
@@ -123,7 +126,17 @@ def is_long(scenario: Scenario) -> bool:
         if service.already_running
     )
     departing = sum(service.departures_before(steps * h) for service in services)
-    return steps > MOST_STEPS or on_line + departing > MOST_TRAINS
+    if steps > MOST_STEPS or on_line + departing > MOST_TRAINS:
+        return True
+    return any(is_long_under_way(service, model) for service in services if service.already_running)
+
+
+def is_long_under_way(service: Service, model: Model) -> bool:
+    """Whether a train alone on the line takes as many steps, as its machine is all but powerless."""
+    line = EmptyLine(model)
+    lone = line.train_of(service)
+    line.advance(lone, MOST_STEPS)
+    return lone.is_under_way(MOST_STEPS)
 
 
 def ending_long_ones(scenario: Scenario) -> Callable[[Progress], None]:

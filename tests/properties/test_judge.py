@@ -27,3 +27,15 @@ def test_a_run_that_takes_more_steps_than_was_foreseen_is_given_up():
     document["traffic"][0] |= {"headway_min": 1e5}
     assert MOST_STEPS < 7200.0 / 0.5
     assert judge(document) == "begun, too long to end"
+
+
+def test_a_service_that_runs_already_and_does_not_arrive_is_not_run():
+    """A machine that gives nothing at 0.1 km/h takes its train 1 km in 10 h or more: in 7200 steps of
+    5 s and more."""
+    document = copy.deepcopy(SMALLEST)
+    document["simulation"] = {"time_step_min": 1.0 / 12.0, "duration_min": 1.0}
+    document["traffic"][0]["already_running"] = True
+    assert judge(document) == "finished"
+    slow = {"speed_kmh": [0.0, 0.1], "force_kn": [200.0, 0.0]}
+    document["trains"]["freight"] |= {"tractive_effort": slow, "power_factor": 0.9}
+    assert judge(document) == "checked, too long to run"
