@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
+from tpss.driving.data import SLOPE_CHANGE, Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.gates import build_gates, no_gates
 from tpss.model.halts import build_halts
@@ -106,6 +106,7 @@ def _options(scenario: Scenario) -> Options:
         driver=switch(Driver[_member(simulation.driver)]),
         braking=switch(Braking[_member(simulation.braking)]),
         motion=switch(MotionModel[_member(simulation.how_trains_move)]),
+        slope_change=SLOPE_CHANGE,
     )
 
 
