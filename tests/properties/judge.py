@@ -5,7 +5,8 @@ import os
 import re
 import sys
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -17,7 +18,11 @@ from tpss.errors import TooLargeError
 from tpss.model import build_model
 from tpss.model.build import steps_of
 from tpss.model.traffic import build_services
+from tpss.run.lone import EmptyLine
+from tpss.run.run import Progress
+from tpss.run.services import Service
 from tpss.run.start import foreseen_steps
+from tpss.step.model import Model
 
 from .roots import Replay
 from .rules import keep_the_rules
@@ -25,10 +30,21 @@ from .rules import keep_the_rules
 Document = dict[str, Any]
 
 PATIENCE_S = 300.0
-"""A case that takes longer hangs: it should take some hundredths of one."""
+"""A case that takes longer of the processor hangs: it should take some hundredths of a second."""
+
+LONGEST_S = 3600.0
+"""So does one that takes longer by the clock, however little the processor has done. [s]"""
 
 MOST_STEPS, MOST_TRAINS = 5_000, 200
-"""Larger runs, which a spoilt scenario may ask for, are checked but not run."""
+"""Larger runs, which a spoilt scenario may ask for, are checked but not run.  Nor are runs that become
+so large taken to their end: the first train may not arrive for a week, and others fill the line."""
+
+STEP_OF_CHOICE_MIN = 1.0
+"""In place of the step of runs that choose their own."""
+
+
+class BecomesTooLongError(Exception):
+    """A run has become larger than was foreseen."""
 
 
 SMALLEST: Document = {
@@ -56,18 +72,21 @@ SMALLEST: Document = {
 @contextmanager
 def patience(document: Document) -> Iterator[None]:
     """End the process, the scenario printed, if a case hangs; a kernel cannot be interrupted."""
+    ended = threading.Event()
 
-    def give_up() -> None:
-        print(f"hangs: {document!r}", file=sys.stderr, flush=True)
-        os._exit(1)
+    def watch() -> None:
+        spent_s, begun_s = time.process_time(), time.monotonic()
+        while not ended.wait(1.0):
+            hangs = time.process_time() - spent_s > PATIENCE_S
+            if hangs or time.monotonic() - begun_s > LONGEST_S:
+                print(f"hangs: {document!r}", file=sys.stderr, flush=True)
+                os._exit(1)
 
-    watch = threading.Timer(PATIENCE_S, give_up)
-    watch.daemon = True
-    watch.start()
+    threading.Thread(target=watch, daemon=True).start()
     try:
         yield
     finally:
-        watch.cancel()
+        ended.set()
 
 
 def warm_up() -> None:
@@ -82,11 +101,13 @@ def judge(document: Document) -> str:
             scenario = Scenario.from_document(document, "random")
             if scenario.simulation.time_step_min is not None and is_long(scenario):
                 return "checked, too long to run"
-            result = simulate(scenario)
+            result = simulate(scenario, ending_long_ones(scenario))
         except ScenarioError as error:
             return judge_findings(error)
         except TooLargeError:
             return "refused: too large"
+        except BecomesTooLongError:
+            return "begun, too long to end"
         judge_result(result)
         return result.status
 
@@ -105,7 +126,28 @@ def is_long(scenario: Scenario) -> bool:
         if service.already_running
     )
     departing = sum(service.departures_before(steps * h) for service in services)
-    return steps > MOST_STEPS or on_line + departing > MOST_TRAINS
+    if steps > MOST_STEPS or on_line + departing > MOST_TRAINS:
+        return True
+    return any(is_long_under_way(service, model) for service in services if service.already_running)
+
+
+def is_long_under_way(service: Service, model: Model) -> bool:
+    """Whether a train alone on the line takes as many steps, as its machine is all but powerless."""
+    line = EmptyLine(model)
+    lone = line.train_of(service)
+    line.advance(lone, MOST_STEPS)
+    return lone.is_under_way(MOST_STEPS)
+
+
+def ending_long_ones(scenario: Scenario) -> Callable[[Progress], None]:
+    """What looks at the progress of a run, and ends it if it becomes too large."""
+    step_min = scenario.simulation.time_step_min or STEP_OF_CHOICE_MIN
+
+    def look(progress: Progress) -> None:
+        if progress.time_s > 60.0 * step_min * MOST_STEPS or progress.trains > MOST_TRAINS:
+            raise BecomesTooLongError
+
+    return look
 
 
 def judge_findings(error: ScenarioError) -> str:

@@ -15,6 +15,7 @@ from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
 
+from .roundings import excess_of_braking
 from .single_tracks import judge_single_tracks
 from .ways import along_way
 
@@ -268,6 +269,7 @@ class Journey:
         self.driver = result.scenario.simulation.driver
         self.kept_apart = result.scenario.signalling.separation != "none"
         self.continuous = result.scenario.simulation.how_trains_move == "continuous"
+        self.brakes_within_steps = result.scenario.simulation.braking == "within-step"
         calls = data.isel(train=i)
         self.arrived_s = calls.call_arrival_time.to_numpy()
         self.went_on_s = calls.call_departure_time.to_numpy()
@@ -358,13 +360,16 @@ class Journey:
     def brakes_no_harder_than_it_may(self) -> None:
         """Where its brakes act; a gradient may be steeper than they are strong."""
         from_m_s, retardation = self.retardation
-        for k in np.flatnonzero(self.braking > 0.0):
+        brakes, excess = self.braking[:-1] > 0.0, np.zeros(self.x.size)
+        if self.brakes_within_steps and not self.continuous:
+            excess = excess_of_braking(self.x, np.array([*self.stops_m, self.end_m]), brakes)
+        for k in np.flatnonzero(brakes):
             hardest = -self.a[k]
             slower = min(
                 self.v[k], self.v[k + 1]
             )  # within a long step it may be faster than at its ends
             highest = retardation[np.append(from_m_s[1:], np.inf) >= slower].max()
-            assert hardest <= highest * (1.0 + 1e-9) + 1e-12, (
+            assert hardest <= highest * (1.0 + 1e-9 + excess[k]) + 1e-12, (
                 f"{self.name} brakes by {hardest} m/s²"
             )
 

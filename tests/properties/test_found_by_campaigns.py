@@ -1,5 +1,6 @@
 """What campaigns of random scenarios have found, cut down to a small case that shows it."""
 
+import copy
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 import tpss
 
 from properties.judge import judge_result
-from scenarios import short_line
+from properties.kilometres import moved
+from properties.rules import Journey
+from scenarios import SHORT_LINE, short_line
 
 
 def standing(*kms: float) -> dict[str, Any]:
@@ -93,3 +96,74 @@ def test_a_train_just_above_the_voltage_without_traction_gives_the_force_that_it
     result = tpss.simulate(short_line(changes))
     assert float(result.dataset.pantograph_voltage.min()) == pytest.approx(11_000.05, abs=0.01)
     assert result.audit["traction_balance"] < 1e-13
+
+
+def hardest_braking_m_s2(begin_km: float) -> float:
+    """Highest retardation of a train that brakes to a stop within steps of 0.06 s, once it is judged."""
+    document = copy.deepcopy(SHORT_LINE)
+    document["simulation"] = {
+        "time_step_min": 0.001, "duration_min": 3.0, "motion": "stepped", "braking": "within-step",
+    }  # fmt: skip
+    document["line"]["stations"][1]["position_km"] = 1.0
+    document["traffic"][0]["stops"] = [{"station": "Middle", "dwell_min": 0.5}]
+    result = tpss.simulate(tpss.Scenario.from_document(moved(document, begin_km), "far"))
+    judge_result(result)
+    way = Journey(result, "eastbound 1")
+    return float(-way.a[way.braking > 0.0].min())
+
+
+def test_far_from_kilometre_0_the_rounding_of_a_place_is_braked_for():
+    """A step of 0.06 s that ends at the stop begins 0.85 m/s² (0.06 s)²/2 = 1.53 mm before it, the
+    steps before it 2², 3², ... times as far.  At 1400 km positions are rounded by up to 1.16e-10 m:
+    7.6e-8 of that distance, and with all steps before, 1 + 1/4 + 1/9 + ... = 1.64 times as much."""
+    assert hardest_braking_m_s2(0.0) == pytest.approx(0.85, rel=1e-10)
+    far = hardest_braking_m_s2(1400.0) / 0.85 - 1.0
+    assert 1e-8 < far < 1.64 * 7.6e-8
+
+
+def starting_trains(full_voltage_kv: float) -> tpss.Scenario:
+    """Three trains that start at one place, in a step of a minute, with a force that falls from a
+    voltage on to nothing 100 V below."""
+    return short_line(
+        {
+            "simulation": {"time_step_min": 1.0, "duration_min": 1.0},
+            "line.length_km": 60.0,
+            "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 100.0}],
+            "line.stations": [
+                {"name": "West", "position_km": 0.0},
+                {"name": "East", "position_km": 60.0},
+            ],
+            "supply.catenary": {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.2},
+            "supply.converter_stations": [
+                {"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 4}
+            ],
+            "trains.freight": {
+                "tractive_effort": {
+                    "max_force_kn": 150.0, "max_power_kw": 3000.0,
+                    "full_voltage_kv": full_voltage_kv, "zero_voltage_kv": full_voltage_kv - 0.1,
+                },
+                "mass_t": 400.0, "adhesive_mass_t": 80.0, "resistance_a_n": 4000.0,
+                "resistance_b_n_s_per_m": 0.0, "resistance_c_n_s2_per_m2": 5.0,
+                "max_speed_kmh": 120.0, "max_retardation_m_s2": 0.5, "efficiency": 0.85,
+                "auxiliary_power_kw": 50.0, "auxiliary_power_factor": 1.0, "power_factor": 0.9,
+            },
+            "traffic.0.first_departure_min": 9000.0,
+            "traffic.0.initial_trains": [{"position_km": 15.0, "speed_kmh": 0.0}] * 3,
+        }
+    )  # fmt: skip
+
+
+def test_a_solution_within_millivolts_of_a_knee_is_found():
+    """With all their force the trains have 14 770.36 V.  Where it falls from 1 to 3 V above that on,
+    they have the voltage of that knee but for a tenth of a volt, the less the higher it is: a volt less
+    takes 1 % of the force.  Slopes over 1e-5 of the voltage, 0.15 V, belong to neither side there."""
+    knees_kv = [14.7714, 14.7724, 14.7734]
+    above_v = []
+    for knee_kv in knees_kv:
+        result = tpss.simulate(starting_trains(knee_kv))
+        judge_result(result)
+        assert result.status == "finished"
+        highest_v = float(result.dataset.pantograph_voltage[0].max())
+        above_v.append(highest_v - 1e3 * knee_kv)
+    assert np.abs(above_v).max() < 0.1
+    assert (np.diff(above_v) < 0.0).all()

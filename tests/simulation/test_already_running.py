@@ -97,3 +97,24 @@ def test_a_service_whose_trains_would_take_minutes_to_find_is_refused(monkeypatc
     assert "headway_min = 2.3 is no multiple of time_step_min = 0.2" in said
     assert "take a headway_min that is a multiple" in said
     simulate(short_line({**crowded, "traffic.0.headway_min": 2.4}))
+
+
+@pytest.mark.parametrize("headway_min", [60.0, 60.5])
+def test_a_service_whose_trains_are_on_their_way_for_too_long_is_refused(headway_min, monkeypatch):
+    """20 km at 1 km/h are 20 h of steps of a minute, with 20 phases of 3 s each: 12 000 within 10 h."""
+    slow = {
+        **CONTINUOUS,
+        "simulation.time_step_min": 1.0,
+        "simulation.duration_min": 1.0,
+        "line.speed_limits.0.speed_kmh": 1.0,
+        "traffic.0.already_running": True,
+        "traffic.0.headway_min": headway_min,
+    }
+    monkeypatch.setattr(already_running, "MOST_PHASES_ALONE", 12_000)
+    with pytest.raises(TpssError) as refused:
+        simulate(short_line(slow))
+    said = str(refused.value)
+    assert "traffic 'eastbound', already_running: a train alone on the line" in said
+    assert "has not arrived after 1" in said
+    monkeypatch.setattr(already_running, "MOST_PHASES_ALONE", 30_000)
+    simulate(short_line(slow))

@@ -65,6 +65,23 @@ def test_trains_whose_timetable_lets_them_cross_do_not_wait(rule):
 
 
 @pytest.mark.parametrize("rule", ["timetable-order", "first-come"])
+def test_a_train_comes_to_its_stop_at_a_crossing_place_however_near_that_is(rule):
+    """Ten metres from its origin, at 1 m/s² at most, it is after 2 √(10 m / 1 m/s²) = 6.3 s and more;
+    after its dwell of 4 min it asks for the track beyond, and goes on."""
+    document = single([service("up", "A", "M", stops=[{"station": "L", "dwell_min": 4.0}])], rule)
+    near = {"name": "L", "position_km": 0.01, "tracks": 2}
+    document["lines"]["main"]["stations"].insert(1, near)
+    result = run(document)
+    assert waits_of(result) == []
+    arrived_min, left_min = (
+        float(result.dataset[f"call_{what}_time"][0, 0]) / 60.0 for what in ("arrival", "departure")
+    )
+    assert 0.1 < arrived_min < 1.0
+    assert left_min - arrived_min == pytest.approx(4.0)
+    assert result.trips.arrival_min.notna().all()
+
+
+@pytest.mark.parametrize("rule", ["timetable-order", "first-come"])
 def test_a_dense_traffic_both_ways_comes_through(rule):
     """Three trains each way, two of them close behind each other: all arrive, none passes through."""
     traffic = [

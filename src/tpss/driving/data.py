@@ -71,6 +71,10 @@ class Profiles(NamedTuple):
     """Shape (lengths, n)."""
 
 
+SLOPE_CHANGE = 1e-5
+"""Relative change of the voltage that usually gives the slopes of a demand. [1]"""
+
+
 class Options(NamedTuple):
     """Choices of the simulation."""
 
@@ -86,6 +90,9 @@ class Options(NamedTuple):
     driver: Driver
     braking: Braking
     motion: MotionModel
+    slope_change: float
+    """Relative change of a voltage by which slopes of a train's demand are found, where it is on its
+    passage: below the voltage if it is negative. [1]"""
 
 
 WITH_POWER = -1.0

@@ -51,9 +51,6 @@ numbers are dense, rounding may leave the place of the change just ahead of it, 
 MOST_PHASES = 100_000
 """Phases of a step after which a train is taken to stand; its limits and stops would not fill them."""
 
-VOLTAGE_CHANGE = 1e-5
-"""Relative change of the voltage that gives the slopes."""
-
 
 @inlined
 def _while_gradient_stays(passage: Passage, kind: TrainType, data: DrivingData) -> float:
@@ -407,7 +404,7 @@ def demand_of_passage(
         passage.stays = passage.at_any_voltage and voltage_v > 0.0
     active_slope, reactive_slope = 0.0, passage.reactive_slope_vars
     if with_slopes and passage.by_voltage:
-        trial, change_v = train.trial, VOLTAGE_CHANGE * voltage_v
+        trial, change_v = train.trial, data.options.slope_change * voltage_v
         pass_through(voltage_v + change_v, trial, train, kind, data, points, scratch)
         active_slope = (trial.active_j - passage.active_j) / change_v
         reactive_slope = (trial.reactive_vars - passage.reactive_vars) / change_v

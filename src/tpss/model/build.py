@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tpss.driving.data import Braking, Driver, MotionModel, Options, Stop
+from tpss.driving.data import SLOPE_CHANGE, Braking, Driver, MotionModel, Options, Stop
 from tpss.kernel import switch
 from tpss.model.feed_back import demand_room_to_feed_back
 from tpss.model.gates import build_gates, no_gates
@@ -109,6 +109,7 @@ def _options(scenario: Scenario) -> Options:
         driver=switch(Driver[_member(simulation.driver)]),
         braking=switch(Braking[_member(simulation.braking)]),
         motion=switch(MotionModel[_member(simulation.how_trains_move)]),
+        slope_change=SLOPE_CHANGE,
     )
 
 

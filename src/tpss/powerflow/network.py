@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.data import (
+    SLOPE_CHANGE,
     WITH_POWER,
     Braking,
     Driver,
@@ -288,6 +289,7 @@ def loads_alone(trains: Records[Train], types: Records[TrainType]) -> Loads:
         driver=switch(Driver.REGULATED),
         braking=switch(Braking.WITHIN_STEP),
         motion=switch(MotionModel.CONTINUOUS),
+        slope_change=SLOPE_CHANGE,
     )
     profiles, neutral = Profiles(nowhere, value), Profiles(nowhere, np.array([[WITH_POWER]]))
     driving = DrivingData(options, profiles, profiles, neutral, Stop.blank(1, 1), types)

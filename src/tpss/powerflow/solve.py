@@ -11,6 +11,9 @@
    that are implausible; and once more, with the loads raised first and the sources brought apart then.
    Where no path leads to the whole load, the share at which that of the loads ends is the result, and
    `Flow.search` says how it ended.
+6. 3 to 5 again with slopes from the other side, where the path was lost: trains on their passage have
+   slopes by differences, over a voltage a little above.  Just below the knee of a demand these belong
+   to neither side, and Newton's method goes past the solution again and again.
 
 What 1 to 4 find has the sign of the determinant that belongs to the stable branch, but another branch
 may have it as well: stations out of phase can feed each other.  So where the stations' powers have
@@ -24,6 +27,7 @@ has done by a kernel that is compiled when it is needed.
 from tpss.kernel import at, compile_quickly, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.chain import FLAT, WARM
+from tpss.powerflow.keeping import bring_back, keep_all
 from tpss.powerflow.linked import newton_linked
 from tpss.powerflow.network import Ending, Flow, Loads, Network, Request
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
@@ -375,6 +379,22 @@ def answer_in_turn(network: Network, flow: Flow, loads: Loads) -> None:
     arguments = (network, flow, loads)
     compile_quickly(answer, arguments)
     answer(*arguments)
+    asked = flow.search[0]
+    if asked.share < 1.0 and asked.ending == Ending.LOST:
+        answer_from_other_side(network, flow, loads)
+
+
+def answer_from_other_side(network: Network, flow: Flow, loads: Loads) -> None:
+    """`answer` with slopes over voltages on the other side; what was found stays if it finds no more."""
+    driving, asked, kept = loads.driving, flow.search[0], keep_all(flow, loads)
+    change = -driving.options.slope_change
+    turned = driving._replace(options=driving.options._replace(slope_change=change))
+    passes, asked.request = asked.passes, Request.SOLUTION
+    answer(network, flow, loads._replace(driving=turned))
+    if asked.share < 1.0:
+        bring_back(kept, flow, loads)
+    else:
+        asked.passes += passes
 
 
 def solve(warm: bool, network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:

@@ -19,6 +19,9 @@ from tpss.step.model import Model
 MOST_PHASES = 3e8
 """Phases of motion of all lone trains after which a start is refused: some minutes of computing."""
 
+MOST_PHASES_ALONE = 3e8
+"""Phases of motion after which one lone train is taken not to come to its destination."""
+
 
 def trains_on_line(model: Model, services: list[Service]) -> list[ScheduledTrain]:
     """Trains that stand along the line at the start.
@@ -50,10 +53,11 @@ def trains_already_running(model: Model, service: Service) -> list[ScheduledTrai
     Raises
     ------
     TooLargeError
-        So many of them run so far that it would take minutes.
+        So many of them run so far that it would take minutes, or one does not come to its end.
     """
     line = EmptyLine(model)
     demand_few_phases(line, service)
+    most_steps = MOST_PHASES_ALONE / phases_of_step(model.options)
     lone_trains: dict[float, LoneTrain] = {}
     found: list[ScheduledTrain] = []
     for number in count(1):
@@ -61,12 +65,28 @@ def trains_already_running(model: Model, service: Service) -> list[ScheduledTrai
         if wait_s not in lone_trains:
             lone_trains[wait_s] = line.train_of(service, wait_s)
         lone = lone_trains[wait_s]
+        if step > most_steps:
+            raise never_there(service, step * model.options.step_s)
         line.advance(lone, step)
         if not lone.is_under_way(step):
             break
         if step >= 1:
             found.append(train_at(lone.records[0], lone.train, len(found) + 1))
     return found
+
+
+def phases_of_step(options: Options) -> float:
+    """Phases of motion that a step has at most, but for stops and changes of limits."""
+    return max(1.0, options.step_s / LONGEST_PHASE_S)
+
+
+def never_there(service: Service, under_way_s: float) -> TooLargeError:
+    """What is said of a service whose trains do not come to their destination in a time. [s]"""
+    return TooLargeError(
+        f"traffic {service.name!r}, already_running: a train alone on the line has not arrived after "
+        f"{under_way_s / 3600.0:.0f} h, and to look further takes minutes before the simulation begins; "
+        "take a train that gets on faster, a longer time_step_min, or already_running = false"
+    )
 
 
 def _instant(number: int, service: Service, options: Options) -> tuple[int, float]:
@@ -92,7 +112,7 @@ def demand_few_phases(line: EmptyLine, service: Service) -> None:
         return  # of a headway in whole steps all trains are one lone train
     first = line.train_of(service)
     line.advance_to_end(first)
-    phases_of_step = max(1.0, options.step_s / LONGEST_PHASE_S)
+    most_steps = MOST_PHASES / phases_of_step(options)
     steps, furthest = 0, dict[float, int]()
     for number in count(1):
         step, wait_s = _instant(number, service, options)
@@ -100,7 +120,7 @@ def demand_few_phases(line: EmptyLine, service: Service) -> None:
             return
         steps += step - furthest.get(wait_s, 0)
         furthest[wait_s] = step
-        if steps * phases_of_step > MOST_PHASES:
+        if steps > most_steps:
             break
     way_s = first.step * options.step_s
     raise TooLargeError(

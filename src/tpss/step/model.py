@@ -62,6 +62,7 @@ def with_step(model: Model, step_s: float) -> Model:
             options.driver,
             options.braking,
             options.motion,
+            options.slope_change,
         ),
         model.control,
         model.gradients,

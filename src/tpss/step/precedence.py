@@ -110,15 +110,20 @@ def note_use(
 
 
 @inlined
-def asks(train: Train, gate: Gate, reach_m: float, step_s: float, stops: Records[Stop]) -> bool:
+def calls_before(train: Train, gate: Gate, step_s: float, stops: Records[Stop]) -> bool:
+    """Whether a train stops before its next gate, or for a step and more at it."""
+    stop = stops[at(train.route), at(train.motion.next_stop)]
+    if stop.position_m > gate.from_m + AT_GATE_M:
+        return False
+    return stop.position_m < gate.from_m - AT_GATE_M or stop.dwell_s >= step_s
+
+
+@inlined
+def asks(train: Train, gate: Gate, reach_m: float, calls: bool, step_s: float) -> bool:
     """Whether a train wants to pass its next gate, which lies within its reach or not."""
     motion, room_m = train.motion, gate.from_m - train.motion.position_m
-    if room_m > reach_m or (motion.phase == Phase.DWELLING and motion.wait_s >= step_s):
-        return False
-    stop = stops[at(train.route), at(motion.next_stop)]
-    if stop.position_m > gate.from_m + AT_GATE_M:
-        return True
-    return stop.position_m >= gate.from_m - AT_GATE_M and stop.dwell_s < step_s
+    leaves = motion.phase != Phase.DWELLING or motion.wait_s < step_s
+    return room_m <= reach_m and leaves and not calls
 
 
 @inlined
@@ -177,7 +182,8 @@ def _ask(
     within = gate.from_m - train.motion.position_m <= reach_m
     held.end_m = gate.from_m if within else math.inf
     held.tried, held.obstacle = False, Obstacle.NONE
-    wants = held.ahead_m >= gate.from_m and asks(train, gate, reach_m, step_s, stops)
+    held.calls = calls_before(train, gate, step_s, stops)
+    wants = held.ahead_m >= gate.from_m and asks(train, gate, reach_m, held.calls, step_s)
     held.asked = min(held.asked, now_s) if wants else math.inf
 
 

@@ -42,7 +42,7 @@ MOST_TRACKS = 8
 """Of a line."""
 
 RESTART_M = 20.0
-"""A train that stands starts again once it may go so far. [m]"""
+"""A train that stands starts again once it may go so far, or to its stop. [m]"""
 
 ROUNDING_M = 0.001
 """A train that brakes for the end of its authority is as near to it as it may be, but for this. [m]"""
@@ -211,13 +211,13 @@ def end_of_authority(
 
 
 @inlined
-def _brake_for(end_m: float, motion: Motion, kind: TrainType) -> tuple[float, bool]:
+def _brake_for(end_m: float, least_m: float, motion: Motion, kind: TrainType) -> tuple[float, bool]:
     """Let a train go no further than a position, if it can brake for that; return how far it may go
-    now, and whether it is too near. [m]
+    now, and whether it is too near.  One that stands does not start for less than `least_m`. [m]
     """
     room_m, v, b = end_m - motion.position_m, motion.speed_m_s, kind.highest_retardation_m_s2
     if v <= 0.0:
-        at_end = room_m < RESTART_M
+        at_end = room_m < least_m
         motion.authority_m = min(motion.authority_m, motion.position_m if at_end else end_m)
         return room_m, False
     braking_m = braking_distance(v, b, kind.braking)
@@ -232,6 +232,7 @@ def _brake_for(end_m: float, motion: Motion, kind: TrainType) -> tuple[float, bo
 def give_authority(
     end_m: float,
     gate_m: float,
+    least_m: float,
     step_s: float,
     train: Train,
     kind: TrainType,
@@ -245,14 +246,16 @@ def give_authority(
         Position that it may not pass because of the train ahead. [m]
     gate_m : float
         Position of a gate that it may not pass, for which it brakes as for a stop. [m]
+    least_m : float
+        Distance to the gate for which a train that stands starts. [m]
     """
     motion, too_near = train.motion, False
     motion.authority_m, motion.ceiling_m_s = math.inf, math.inf
     if gate_m < math.inf:
-        _, too_near = _brake_for(gate_m, motion, kind)
+        _, too_near = _brake_for(gate_m, least_m, motion, kind)
     if end_m == math.inf:
         return too_near
-    room_m, ahead_too_near = _brake_for(end_m, motion, kind)
+    room_m, ahead_too_near = _brake_for(end_m, RESTART_M, motion, kind)
     if motion.speed_m_s > 0.0:
         b, reach_s = kind.highest_retardation_m_s2, max(signalling.reaction_s, step_s)
         calm = math.sqrt((b * reach_s) ** 2 + 2.0 * b * max(0.0, room_m)) - b * reach_s
@@ -297,7 +300,9 @@ def keep_apart(
         stop_m = held.end_m
         if halts.times_s.size > 0:
             stop_m = min(stop_m, halt_ahead(now_s, train, kind, halts))
-        too_near += give_authority(end_m, stop_m, step_s, train, kind, signalling)
+        # Where it stops before the gate, it comes no further by waiting for more room.
+        least_m = 0.0 if held.calls and stop_m == held.end_m else RESTART_M
+        too_near += give_authority(end_m, stop_m, least_m, step_s, train, kind, signalling)
         held.waits_for = NOBODY
         if _is_held(train.motion):
             near_m = train.motion.position_m + RESTART_M

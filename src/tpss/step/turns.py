@@ -60,6 +60,8 @@ class Holding(Record):
     """Crossing place to which it will come, see `all_come_through`; -1: to its end."""
     end_m: float
     """Position of the gate that it may not pass; infinite: it may go on. [m]"""
+    calls: bool
+    """Whether it stops before that gate or at it, and so does not ask for it yet."""
     ahead_m: float
     """End of its authority behind a train ahead, in the step before; infinite: there was none. [m]"""
 

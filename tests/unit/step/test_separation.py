@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tpss.step.separation import (
+    RESTART_M,
     Occupancy,
     Separation,
     Signalling,
@@ -106,7 +107,7 @@ def test_of_trains_at_one_place_the_one_that_departed_first_is_ahead(as_run):
 def test_a_train_is_as_fast_as_lets_it_stop_after_its_reaction(as_run):
     """v t + v²/2b = d: at 20 m/s, 5 s and 0.5 m/s², d = 100 + 400 m."""
     train = train_at(0.0, 10.0)
-    assert not as_run(give_authority)(500.0, NOWHERE, 1.0, train, kind(), MOVING)
+    assert not as_run(give_authority)(500.0, NOWHERE, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == 500.0
     assert train.motion.ceiling_m_s == pytest.approx(20.0)
 
@@ -114,34 +115,40 @@ def test_a_train_is_as_fast_as_lets_it_stop_after_its_reaction(as_run):
 def test_a_step_longer_than_the_reaction_takes_its_place(as_run):
     """With steps of 20 s: 20 m/s take 400 + 400 m."""
     train = train_at(0.0, 10.0)
-    as_run(give_authority)(800.0, NOWHERE, 20.0, train, kind(), MOVING)
+    as_run(give_authority)(800.0, NOWHERE, RESTART_M, 20.0, train, kind(), MOVING)
     assert train.motion.ceiling_m_s == pytest.approx(20.0)
 
 
 def test_a_train_that_stands_waits_until_it_has_room(as_run):
     train = train_at(100.0)
-    as_run(give_authority)(110.0, NOWHERE, 1.0, train, kind(), MOVING)
+    as_run(give_authority)(110.0, NOWHERE, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == 100.0
-    as_run(give_authority)(125.0, NOWHERE, 1.0, train, kind(), MOVING)
+    as_run(give_authority)(125.0, NOWHERE, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == 125.0
+
+
+def test_to_its_stop_at_a_gate_a_train_starts_however_near_it_is(as_run):
+    train = train_at(100.0)
+    as_run(give_authority)(math.inf, 110.0, 0.0, 1.0, train, kind(), MOVING)
+    assert train.motion.authority_m == 110.0
 
 
 def test_a_train_that_is_too_near_brakes_as_hard_as_it_may(as_run):
     """From 20 m/s it needs 400 m, and has 300."""
     train = train_at(0.0, 20.0)
-    assert as_run(give_authority)(300.0, NOWHERE, 1.0, train, kind(), MOVING)
+    assert as_run(give_authority)(300.0, NOWHERE, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == pytest.approx(400.0)
 
 
 def test_nobody_ahead_leaves_a_train_alone(as_run):
     train = train_at(0.0, 20.0)
-    assert not as_run(give_authority)(math.inf, NOWHERE, 1.0, train, kind(), MOVING)
+    assert not as_run(give_authority)(math.inf, NOWHERE, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == train.motion.ceiling_m_s == math.inf
 
 
 def test_for_a_gate_a_train_brakes_as_for_a_stop_and_is_no_slower_before(as_run):
     train = train_at(0.0, 20.0)
-    assert not as_run(give_authority)(math.inf, 500.0, 1.0, train, kind(), MOVING)
+    assert not as_run(give_authority)(math.inf, 500.0, RESTART_M, 1.0, train, kind(), MOVING)
     assert train.motion.authority_m == 500.0
     assert train.motion.ceiling_m_s == math.inf
 
@@ -149,7 +156,7 @@ def test_for_a_gate_a_train_brakes_as_for_a_stop_and_is_no_slower_before(as_run)
 def test_of_a_gate_and_a_train_ahead_the_nearer_counts(as_run):
     for end_m, gate_m in ((700.0, 900.0), (900.0, 700.0)):
         train = train_at(0.0, 20.0)
-        as_run(give_authority)(end_m, gate_m, 1.0, train, kind(), MOVING)
+        as_run(give_authority)(end_m, gate_m, RESTART_M, 1.0, train, kind(), MOVING)
         assert train.motion.authority_m == 700.0
 
 
