@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 
 from tpss.scenario.routes import NoWayError, find_way, hops_of
 
+from .given_tracks import give_tracks
+
 Document = dict[str, Any]
 
 FREIGHT = {"model": "Rc4-freight-1470t", "mass_t": 600.0, "length_m": 500.0}
@@ -26,7 +28,7 @@ def crowd(draw: Random) -> Document:
     blocks = draw.choice([{"separation": "moving-block"}] * 2 + [
         {"separation": "fixed-block", "block_m": 1500.0}
     ])  # fmt: skip
-    return {
+    document = {
         "format": 1,
         "name": "crowded",
         "simulation": {
@@ -38,6 +40,8 @@ def crowd(draw: Random) -> Document:
         "traffic": _traffic(draw, lines),
         "signalling": {**blocks, "single_track": draw.choice(["timetable-order", "first-come"])},
     }  # fmt: skip
+    give_tracks(draw, document)
+    return document
 
 
 def _line(draw: Random, letter: str, count: int) -> Document:
@@ -53,10 +57,10 @@ def _line(draw: Random, letter: str, count: int) -> Document:
         "speed_limits": [{"from_km": 0.0, "speed_kmh": draw.choice([80.0, 110.0])}],
         "stations": stations,
     }
-    if draw.random() < 0.25:
+    if draw.random() < 0.5:
         ends_km = round(draw.uniform(2.0, length_km - 2.0), 3)
         some = [{"from_km": 0.0, "count": 2}, {"from_km": ends_km, "count": 1}]
-        line["tracks"] = draw.choice([2, some])
+        line["tracks"] = draw.choice([2, 2, some, some, 3])
     return line
 
 

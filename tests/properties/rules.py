@@ -9,12 +9,15 @@ import pytest
 
 from tpss import Result, library
 from tpss.model.build import steps_of
+from tpss.results.passing import stand_before
+from tpss.results.places import train_tracks
 from tpss.run.delays import Delays
 from tpss.scenario.machine import RetardationBands
 from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.traffic import Traffic
 from tpss.step.state import TrainState
 
+from .given_tracks import judge_given_tracks
 from .roundings import excess_of_braking
 from .single_tracks import judge_single_tracks
 from .ways import along_way
@@ -32,6 +35,7 @@ def keep_the_rules(result: Result) -> None:
     judge_converters(result)
     judge_separation(result)
     judge_single_tracks(result)
+    judge_given_tracks(result)
     judge_outage(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
@@ -58,7 +62,8 @@ def judge_values(result: Result) -> None:
 
 
 def judge_separation(result: Result) -> None:
-    """On a line alone, nobody comes nearer than the margin behind the rear of a train of his direction.
+    """On a line alone, nobody comes nearer than the margin behind the rear of a train of his direction,
+    on his track.
 
     Those that were placed nearer come no nearer; where they cannot brake in time, nothing is said.
     """
@@ -70,7 +75,8 @@ def judge_separation(result: Result) -> None:
     trains, services = result.scenario.trains_by_service(), data.service.to_numpy()
     length_m = np.array([trains[str(service)].length_m for service in services])
     place_m, along_m = data.position.to_numpy(), data.route_position.to_numpy()
-    moving = data.speed.to_numpy() > 0.0
+    moving, tracks = data.speed.to_numpy() > 0.0, train_tracks(data)
+    beside = stand_before(result)
     (line,) = result.scenario.lines_by_name.values()
     stations_m = np.array([1e3 * s.position_km for s in line.stations])
     several = np.array([s.tracks > 1 for s in line.stations])
@@ -88,7 +94,10 @@ def judge_separation(result: Result) -> None:
         for step in range(len(along_m)):
             here = np.flatnonzero(own[step])
             order = here[np.argsort(along_m[step, here], kind="stable")]
+            order = order[np.argsort(tracks[step, order], kind="stable")]
             for behind, ahead in zip(order, order[1:], strict=False):
+                if tracks[step, behind] != tracks[step, ahead] or beside[step, ahead]:
+                    continue
                 room_m = along_m[step, ahead] - length_m[ahead] - along_m[step, behind]
                 if step and moving[step, behind] and own[step - 1, [behind, ahead]].all():
                     before_m = (

@@ -7,12 +7,14 @@ hundred steps with a dozen trains.
 
 import copy
 import math
+from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
 
 from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
+from .given_tracks import give_tracks
 from .kilometres import moved
 from .machines import EMUS, ODD_TRAINS, TRAINS
 from .networks import into_network
@@ -293,6 +295,7 @@ def sound_scenarios(draw: Draw) -> Document:
     document = document if begin_km is None else moved(document, begin_km)
     if draw(st.integers(0, 3)) == 3:
         document = into_network(draw, document, lines())
+        give_tracks(Random(draw(st.integers(0, 999))), document)
     if "signalling" in document and draw(st.booleans()):
         with_single_tracks(draw, document)
     if draw(st.integers(0, 3)) == 3:

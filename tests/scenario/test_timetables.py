@@ -93,6 +93,44 @@ def test_stops_without_a_least_dwell_have_that_of_their_timetable(tmp_path):
     assert train.stops[0].dwell_min == 0.75
 
 
+def test_a_track_is_that_on_which_a_train_goes_on_from_its_station(tmp_path):
+    """At the origin, a stop and a pass; a spreadsheet may write 2 as 2.0."""
+    text = (
+        "name,station,departure,kind,track\na,West,05:40,,2.0\na,Middle,05:50,stop,1\na,East,,,\n"
+    )
+    text += "b,East,05:40,,\nb,Middle,,pass,2\nb,West,,,\n"
+    tracks = {"line.tracks": 2, "supply.tracks_tied": "no"}
+    first, second = scenario(tmp_path, text, changes=tracks).traffic
+    assert (first.track, first.stops[0].track) == (2, 1)
+    assert (second.track, second.passes[0].track) == (None, 2)
+
+
+@pytest.mark.parametrize(
+    ("tracks", "place", "problem", "remedy"),
+    [
+        (("x", "", ""), "line 2, track", "not the number of a track", "a whole number, counted from 1"),
+        (("1.5", "", ""), "line 2, track", "not the number of a track", "a whole number"),
+        (("0", "", ""), "line 2, track", "not the number of a track", "counted from 1"),
+        (("9", "", ""), "line 2, track", "out of range", "less than or equal to 8"),
+        (("3", "", ""), "line 2, track", "2 tracks at most", "a track that is there"),
+        (("1", "2", ""), "line 3, track", "from Middle to East the line has a single", "leave it out"),
+        (("1", "1", ""), "line 3, track", "from Middle to East the line has a single", "leave it out"),
+        (("1", "", "1"), "line 4, track", "the last row of a train has none", "leave it empty"),
+    ],
+)  # fmt: skip
+def test_a_track_that_is_none(tmp_path, tracks, place, problem, remedy):
+    """The line has two tracks up to Middle, at 10 km, and one behind it."""
+    header = "name,station,departure,kind,track"
+    calls = ("a,West,05:40,,", "a,Middle,05:50,stop,", "a,East,,,")
+    text = "\n".join([header, *(call + track for call, track in zip(calls, tracks, strict=True))])
+    counts = [{"from_km": 0.0, "count": 2}, {"from_km": 10.0, "count": 1}]
+    changes = {"line.tracks": counts, "supply.tracks_tied": "no"}
+    (finding,) = faults(tmp_path, text, changes=changes)
+    assert (Path(finding.file).name, finding.key) == ("times0.csv", place)
+    assert problem in finding.problem
+    assert remedy in finding.remedy
+
+
 def test_trains_of_timetables_come_behind_the_other_traffic_and_of_its_files_in_their_order(
     tmp_path,
 ):
@@ -186,7 +224,6 @@ def test_a_name_may_be_that_of_one_train_only(tmp_path):
 @pytest.mark.parametrize(
     ("header", "value", "remedy"),
     [
-        ("name,station,departure,track", "track", "leave the column out"),
         ("name,station,departure,arival", "arival", "did you mean arrival?"),
         ("name,station,departure,name", "name", "leave one out"),
         ("train,station,departure", "", "add it"),

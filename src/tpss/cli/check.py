@@ -198,6 +198,8 @@ def _service(entry: Traffic, start_s: float | None) -> str:
     texts = [f"{entry.name}: {entry.train} from {entry.origin} to {entry.destination}"]
     if entry.via:
         texts.append(f"over {_listed(list(entry.via))}")
+    if tracks := _tracks(entry):
+        texts.append(_listed(tracks))
     if (listed := entry.listed_departures_min) is not None:
         texts.append(f"at {_listed([_moment(minute, start_s) for minute in listed])}")
     else:
@@ -221,6 +223,14 @@ def _service(entry: Traffic, start_s: float | None) -> str:
     if entry.passes and not entry.via:
         texts.append(f"passes {_listed([each.station for each in entry.passes])}")
     return ", ".join(texts)
+
+
+def _tracks(entry: Traffic) -> list[str]:
+    """Tracks that a service gives, and from where on its trains run there."""
+    calls = [(entry.origin, entry.track)]
+    calls += [(stop.station, stop.track) for stop in entry.stops]
+    calls += [(each.station, each.track) for each in entry.passes]
+    return [f"on track {track} from {station}" for station, track in calls if track is not None]
 
 
 def _stop(stop: Stop) -> str:

@@ -1,31 +1,23 @@
-"""Gates of the routes: before single tracks between crossing places, and where routes come together.
+"""Gates of the routes: before two-way tracks, and where routes come together.
 
-A single track ends at a station of several tracks, where there are several tracks along the line, or
-where the line ends.  Where a route comes to tracks of its direction on which others are already, from
-another line, from its origin or from a turn, all of them have gates.
+Where a route comes to a track of one direction on which others are already, from another line, from its
+origin, from a turn or from a track beside it, all of them have gates.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tpss.model.routes import Course, Route
+from tpss.model.tracks import Piece, pieces_of
+from tpss.model.two_way_tracks import TwoWayTrack, two_way_tracks
 from tpss.record import Records
 from tpss.scenario.line import CLOSEST_KM, Line, Station
-from tpss.scenario.routes import Hop
 from tpss.step.turns import Gates
 from tpss.track.gate import Gate
-
-
-class SingleTrack(NamedTuple):
-    """A single track between places where trains may cross."""
-
-    line: str
-    begin_km: float
-    end_km: float
 
 
 class _Gate(NamedTuple):
@@ -36,27 +28,11 @@ class _Gate(NamedTuple):
     clears_whole: bool
     stretch: object
     direction: int
+    end_km: float
+    """Where a two-way track ends for it."""
     station: Station | None
-    """At the end of a single track."""
+    """At that end."""
     aside: bool
-
-
-def single_tracks(name: str, line: Line) -> list[SingleTrack]:
-    """Single tracks of a line, in ascending order."""
-    found: list[SingleTrack] = []
-    for begin_km, end_km, count in line.tracks_by_stretch:
-        if count > 1:
-            continue
-        inside = [
-            s.position_km for s in line.stations if s.tracks > 1 and _lies(s, begin_km, end_km)
-        ]
-        ends = [km for km in (begin_km, end_km) if all(abs(km - s) > CLOSEST_KM for s in inside)]
-        found += [SingleTrack(name, *pair) for pair in pairwise(sorted([*inside, *ends]))]
-    return found
-
-
-def _lies(station: Station, begin_km: float, end_km: float) -> bool:
-    return begin_km - CLOSEST_KM < station.position_km < end_km + CLOSEST_KM
 
 
 def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: float) -> Gates:
@@ -70,32 +46,38 @@ def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: fl
     margin_m : float
         Distance that is kept from a train ahead. [m]
     """
-    singles = {name: single_tracks(name, line) for name, line in lines.items()}
-    entries = _entries(routes, singles)
+    two_way = two_way_tracks(routes, lines)
+    entries = _entries(routes, two_way, lines)
     rows = []
     for route in routes:
         own = [
-            *_before_singles(route, singles, lines),
+            *_before_two_way(route, two_way, lines),
             *_at_entries(route, entries, margin_m, lines),
         ]
         rows.append(sorted(own, key=lambda gate: gate.from_m))
+    behind = [[_place_behind(gate, row[k + 1 :]) for k, gate in enumerate(row)] for row in rows]
     stretches = _numbered(gate.stretch for row in rows for gate in row)
-    places: dict[str, int] = {}
+    places = _numbered(place for names in behind for place in names if place is not None)
     gates: Any = _blank(len(routes), max(map(len, rows), default=0) + 1)
-    for i, row in enumerate(rows):
-        for k, gate in enumerate(row):
-            place = -1
-            if _meets_there(gate, row[k + 1 :]):
-                assert gate.station is not None
-                place = places.setdefault(gate.station.name, len(places))
+    for i, (row, names) in enumerate(zip(rows, behind, strict=True)):
+        for k, (gate, name) in enumerate(zip(row, names, strict=True)):
+            place = -1 if name is None else places[name]
             gates[i, k] = (*gate[:3], stretches[gate.stretch], gate.direction, place, gate.aside)
-    tracks = [_most_tracks(name, lines) for name in places]
+    tracks = [_tracks_at(name, lines) for name in places]
     return Gates(gates, np.array(tracks, dtype=np.int64))
 
 
-def _most_tracks(station: str, lines: Mapping[str, Line]) -> int:
-    """Number of tracks of a station, that of the line which says most."""
-    return max(s.tracks for line in lines.values() for s in line.stations if s.name == station)
+def _place_behind(gate: _Gate, following: Sequence[_Gate]) -> object | None:
+    """Name of the crossing place behind a two-way track: a station, or line and kilometre."""
+    if not (_meets_another(gate, following) and isinstance(gate.stretch, TwoWayTrack)):
+        return None
+    return (gate.stretch.line, gate.end_km) if gate.station is None else gate.station.name
+
+
+def _tracks_at(place: object, lines: Mapping[str, Line]) -> int:
+    """Number of tracks of a crossing place: at a station, of the line which says most; elsewhere one."""
+    stations = (station for line in lines.values() for station in line.stations)
+    return max((s.tracks for s in stations if s.name == place), default=1)
 
 
 def no_gates(routes: int) -> Gates:
@@ -111,14 +93,17 @@ def _blank(routes: int, gates: int) -> Records[Gate]:
     return blank
 
 
-def crossing_places(route: Route, lines: Mapping[str, Line]) -> list[Station]:
-    """Stations at which trains of a route may have to wait between two single tracks."""
-    singles = {name: single_tracks(name, line) for name, line in lines.items()}
-    row = sorted(_before_singles(route, singles, lines), key=lambda gate: gate.from_m)
+def crossing_places(
+    route: Route, two_way: Mapping[str, Sequence[TwoWayTrack]], lines: Mapping[str, Line]
+) -> list[Station]:
+    """Stations at which trains of a route may have to wait between two two-way tracks."""
+    row = sorted(_before_two_way(route, two_way, lines), key=lambda gate: gate.from_m)
     return [
         gate.station
         for k, gate in enumerate(row)
-        if gate.station is not None and gate.station.tracks > 1 and _meets_there(gate, row[k + 1 :])
+        if gate.station is not None
+        and gate.station.tracks > 1
+        and _meets_another(gate, row[k + 1 :])
     ]
 
 
@@ -129,28 +114,31 @@ def _numbered(names: Iterator[object]) -> dict[object, int]:
     return numbers
 
 
-def _meets_there(gate: _Gate, following: Sequence[_Gate]) -> bool:
-    """Whether trains that come from a stretch may have to wait at the station at its end."""
-    if gate.station is None or not following:
+def _meets_another(gate: _Gate, following: Sequence[_Gate]) -> bool:
+    """Whether trains come from one two-way track to the next at once, and may have to wait between."""
+    if not isinstance(gate.stretch, TwoWayTrack) or not following:
         return False
     after = following[0]
     there = abs(after.from_m - gate.until_m) <= 1e3 * CLOSEST_KM
-    return there and isinstance(after.stretch, SingleTrack)
+    return there and isinstance(after.stretch, TwoWayTrack)
 
 
-def _courses(route: Route) -> Iterator[tuple[Course, Hop]]:
-    yield from zip(route.courses, route.way.stretches, strict=True)
+def _pieces(route: Route, lines: Mapping[str, Line]) -> Iterator[tuple[Course, Piece]]:
+    """Pieces of track that a route uses, in the order of travel."""
+    for course, pieces in zip(route.courses, pieces_of(route, lines), strict=True):
+        for piece in pieces:
+            yield course, piece
 
 
-def _before_singles(
-    route: Route, singles: Mapping[str, Sequence[SingleTrack]], lines: Mapping[str, Line]
+def _before_two_way(
+    route: Route, two_way: Mapping[str, Sequence[TwoWayTrack]], lines: Mapping[str, Line]
 ) -> Iterator[_Gate]:
-    """Gates before the single tracks of a route."""
-    for course, hop in _courses(route):
-        low_km, high_km = sorted((hop.begin_km, hop.end_km))
-        for single in singles[course.line]:
-            begin_km, end_km = max(low_km, single.begin_km), min(high_km, single.end_km)
-            if end_km - begin_km <= CLOSEST_KM:
+    """Gates before the two-way tracks of a route."""
+    for course, piece in _pieces(route, lines):
+        for track in two_way[course.line]:
+            begin_km = max(piece.begin_km, track.begin_km)
+            end_km = min(piece.end_km, track.end_km)
+            if piece.track != track.track or end_km - begin_km <= CLOSEST_KM:
                 continue
             up = course.sign > 0.0
             first_km, last_km = (begin_km, end_km) if up else (end_km, begin_km)
@@ -160,7 +148,8 @@ def _before_singles(
             crosses = station is not None and station.tracks > 1
             whole = not crosses and until_m not in _turns_m(route)
             aside = from_m == route.start_m or _has_tracks(lines[course.line], first_km)
-            yield _Gate(from_m, until_m, whole, single, 0 if up else 1, station, aside)
+            direction = 0 if up else 1
+            yield _Gate(from_m, until_m, whole, track, direction, last_km, station, aside)
 
 
 def _turns_m(route: Route) -> list[float]:
@@ -179,58 +168,70 @@ def _has_tracks(line: Line, place_km: float) -> bool:
 
 
 class _Entry(NamedTuple):
-    """A place where routes come to the tracks of a line in one direction."""
+    """A place where routes come to a track of a line in one direction."""
 
     line: str
     sign: float
     place_km: float
+    track: int
 
 
-def _entries(routes: Sequence[Route], singles: Mapping[str, Sequence[SingleTrack]]) -> list[_Entry]:
-    """Places where routes come together on several tracks, each on that of its direction."""
-    comes_from: dict[_Entry, set[str]] = {}
-    for route in routes:
-        before = ""
-        for course, hop in _courses(route):
-            entry = _Entry(course.line, course.sign, hop.begin_km)
-            comes_from.setdefault(entry, set()).add(before)
-            before = course.line
-    for route in routes:
-        for course, hop in _courses(route):
-            for entry, ways in comes_from.items():
-                if _runs_through(entry, course, hop):
-                    ways.add("through")
+def _entries(
+    routes: Iterable[Route], two_way: Mapping[str, Sequence[TwoWayTrack]], lines: Mapping[str, Line]
+) -> list[_Entry]:
+    """Places where routes come together on a track that only one direction uses."""
+    comes_from: dict[_Entry, set[str | int]] = {}
+    ways = [list(_pieces(route, lines)) for route in dict.fromkeys(routes)]
+    for way in ways:
+        came: tuple[Course, Piece] | None = None
+        for course, piece in way:
+            entry = _Entry(course.line, course.sign, piece.entered_km(course.sign), piece.track)
+            comes_from.setdefault(entry, set()).add(_origin(came, course))
+            came = course, piece
+    for course, piece in (each for way in ways for each in way):
+        for entry, origins in comes_from.items():
+            if _runs_through(entry, course, piece):
+                origins.add(entry.track)
     return [
         entry
-        for entry, ways in comes_from.items()
-        if len(ways) > 1 and not _is_single(entry, singles[entry.line])
+        for entry, origins in comes_from.items()
+        if len(origins) > 1 and not _is_two_way(entry, two_way[entry.line])
     ]
 
 
-def _runs_through(entry: _Entry, course: Course, hop: Hop) -> bool:
-    """Whether a route runs over a place in its direction, neither from there nor to there."""
-    if (course.line, course.sign) != (entry.line, entry.sign):
+def _origin(came: tuple[Course, Piece] | None, course: Course) -> str | int:
+    """Where trains come from to a piece of track: their origin (empty), a line, or a track beside it."""
+    if came is None:
+        return ""
+    before, piece = came
+    return piece.track if before == course else before.line
+
+
+def _runs_through(entry: _Entry, course: Course, piece: Piece) -> bool:
+    """Whether a route runs over a place on its track and in its direction, neither from nor to there."""
+    if (course.line, course.sign, piece.track) != (entry.line, entry.sign, entry.track):
         return False
-    begin, here, end = (course.sign * km for km in (hop.begin_km, entry.place_km, hop.end_km))
-    return begin + CLOSEST_KM < here < end - CLOSEST_KM
+    return piece.begin_km + CLOSEST_KM < entry.place_km < piece.end_km - CLOSEST_KM
 
 
-def _is_single(entry: _Entry, singles: Sequence[SingleTrack]) -> bool:
-    """Whether there is a single track behind a place."""
+def _is_two_way(entry: _Entry, tracks: Sequence[TwoWayTrack]) -> bool:
+    """Whether the track behind a place is used in both directions."""
     ahead_km = entry.place_km + entry.sign * CLOSEST_KM
-    return any(single.begin_km <= ahead_km <= single.end_km for single in singles)
+    return any(
+        each.track == entry.track and each.begin_km <= ahead_km <= each.end_km for each in tracks
+    )
 
 
 def _at_entries(
     route: Route, entries: Sequence[_Entry], margin_m: float, lines: Mapping[str, Line]
 ) -> Iterator[_Gate]:
     """Gates of a route where routes come together."""
-    for course, hop in _courses(route):
+    for course, piece in _pieces(route, lines):
         for entry in entries:
-            starts = (course.line, course.sign) == (entry.line, entry.sign) and abs(
-                hop.begin_km - entry.place_km
-            ) <= CLOSEST_KM
-            if starts or _runs_through(entry, course, hop):
+            same = (course.line, course.sign, piece.track) == (entry.line, entry.sign, entry.track)
+            starts = same and abs(piece.entered_km(course.sign) - entry.place_km) <= CLOSEST_KM
+            if starts or _runs_through(entry, course, piece):
                 from_m = course.position_m(1e3 * entry.place_km)
                 aside = from_m == route.start_m or _has_tracks(lines[course.line], entry.place_km)
-                yield _Gate(from_m, from_m + margin_m, True, entry, 0, None, aside)
+                end_km = entry.place_km
+                yield _Gate(from_m, from_m + margin_m, True, entry, 0, end_km, None, aside)

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from tpss.model.contact_line import Run
 from tpss.model.routes import Course, Route
+from tpss.model.tracks import Piece, pieces_of
 from tpss.record import Records
 from tpss.scenario.line import Line
-from tpss.scenario.routes import Hop
 from tpss.track.leg import Leg
 
 
@@ -39,9 +39,9 @@ def build_legs(
         if route not in known:
             known[route] = [
                 (part.from_m, course.sign, course.offset_m, number, part.track, *part.sections)
-                for course, hop in zip(route.courses, route.way.stretches, strict=True)
+                for course, pieces in zip(route.courses, pieces_of(route, lines), strict=True)
                 for number in [names.index(course.line)]
-                for part in _parts(course, hop, lines[course.line], runs[number])
+                for part in _parts(course, pieces, runs[number])
             ]
     rows: Any = Leg.blank(len(routes), max(map(len, known.values())))
     rows["from_m"] = math.inf
@@ -52,25 +52,22 @@ def build_legs(
     return legs
 
 
-def _parts(course: Course, hop: Hop, line: Line, runs: Sequence[Run]) -> Iterator[_Part]:
+def _parts(course: Course, pieces: Sequence[Piece], runs: Sequence[Run]) -> Iterator[_Part]:
     """Parts of a course in the order of travel, of which neighbours differ."""
-    low, high = sorted((hop.begin_km, hop.end_km))
-    counts = line.tracks_by_stretch
-    borders = {km for piece in (*counts, *runs) for km in piece[:2] if low < km < high}
-    pieces = list(pairwise(sorted({low, high, *borders})))
     before: _Part | None = None
-    for begin_km, end_km in pieces if course.sign > 0.0 else pieces[::-1]:
-        count = next(int(n) for begin, end, n in counts if begin <= begin_km < end)
-        track = track_of(course.sign, count, line.left_hand_running)
-        run = next(each for each in runs if each.begin_km <= begin_km < each.end_km)
-        entered_km = begin_km if course.sign > 0.0 else end_km
-        from_m = course.from_m if before is None else course.position_m(1e3 * entered_km)
-        part = _Part(from_m, track, run.above(track))
+    for piece in (part for whole in pieces for part in _below_runs(whole, course.sign, runs)):
+        run = next(each for each in runs if each.begin_km <= piece.begin_km < each.end_km)
+        entered_m = course.position_m(1e3 * piece.entered_km(course.sign))
+        from_m = course.from_m if before is None else entered_m
+        part = _Part(from_m, piece.track, run.above(piece.track))
         if before is None or part[1:] != before[1:]:
             yield part
         before = part
 
 
-def track_of(sign: float, count: int, left_hand: bool) -> int:
-    """Track that trains take in a direction; tracks count from the left, seen in rising kilometres."""
-    return 1 if (sign > 0.0) == left_hand else count
+def _below_runs(piece: Piece, sign: float, runs: Sequence[Run]) -> list[Piece]:
+    """Parts of a piece of track, each below one range of the contact line, in the order of travel."""
+    begin_km, end_km, track = piece
+    borders = {km for run in runs for km in run[:2] if begin_km < km < end_km}
+    parts = [Piece(*ends, track) for ends in pairwise(sorted({begin_km, end_km, *borders}))]
+    return parts if sign > 0.0 else parts[::-1]

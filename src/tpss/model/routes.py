@@ -19,7 +19,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tpss.scenario.rolling_stock import Train
-from tpss.scenario.routes import Hop, Way, find_way, hops_of
+from tpss.scenario.routes import Hop, Way, calls_on, find_way, hops_of
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.units import kilometres
@@ -50,6 +50,8 @@ class Route(NamedTuple):
     stops_m: tuple[float, ...]
     """Positions of its stops, the destination last. [m]"""
     way: Way
+    tracks: tuple[int | None, ...] = ()
+    """Track that is given for each hop of the way; None: trains take that of their direction."""
 
     def position_m(self, line: str, place_km: float) -> float:
         """Position of a place on the way, the first one if the way leads there twice. [m]"""
@@ -85,10 +87,11 @@ def routes_of(scenario: Scenario) -> list[Route]:
     hops, known = hops_of(stations), dict[tuple[object, ...], Route]()
     routes = []
     for entry in scenario.traffic:
-        calls = _calls(entry)
-        if calls not in known:
-            known[calls] = _route(find_way(hops, *calls))
-        routes.append(known[calls])
+        key = _calls(entry), _given_tracks(entry)
+        if key not in known:
+            way = find_way(hops, *_calls(entry))
+            known[key] = _route(way, _tracks_on(way, entry))
+        routes.append(known[key])
     return routes
 
 
@@ -96,7 +99,24 @@ def _calls(entry: Traffic) -> tuple[str, tuple[str, ...], str, tuple[str, ...]]:
     return entry.origin, tuple(stop.station for stop in entry.stops), entry.destination, entry.via
 
 
-def _route(way: Way) -> Route:
+def _given_tracks(entry: Traffic) -> tuple[object, ...]:
+    """Tracks that a service gives, and where."""
+    stops = tuple(stop.track for stop in entry.stops)
+    passes = tuple((each.station, each.track) for each in entry.passes if each.track is not None)
+    return entry.track, stops, passes
+
+
+def _tracks_on(way: Way, entry: Traffic) -> tuple[int | None, ...]:
+    """Track that a service gives for each hop of its way, if it gives one."""
+    passed = calls_on(way.hops, [each.station for each in entry.passes], "passes")
+    given = {-1: entry.track}
+    given |= {hop: each.track for hop, each in zip(passed, entry.passes, strict=True)}
+    stops = zip(way.stops, entry.stops, strict=True)
+    given |= {hop: stop.track for hop, stop in stops if stop.track is not None}
+    return way.tracks({hop: track for hop, track in given.items() if track is not None})
+
+
+def _route(way: Way, tracks: tuple[int | None, ...]) -> Route:
     courses: list[Course] = []
     reached_m: list[float] = []
     for i, hop in enumerate(way.hops):
@@ -107,7 +127,8 @@ def _route(way: Way) -> Route:
             courses.append(Course(hop.line, hop.sign, place_m - hop.sign * here_m, here_m))
         reached_m.append(courses[-1].position_m(1e3 * hop.end_km))
     start_m = courses[0].position_m(1e3 * way.hops[0].begin_km)
-    return Route(tuple(courses), start_m, tuple(reached_m[i] for i in (*way.stops, -1)), way)
+    stops_m = tuple(reached_m[i] for i in (*way.stops, -1))
+    return Route(tuple(courses), start_m, stops_m, way, tracks)
 
 
 def _goes_on(before: Hop, after: Hop) -> bool:

@@ -11,6 +11,7 @@ from tpss.kernel import plain
 from tpss.model.gates import crossing_places
 from tpss.model.neutral import is_in_neutral
 from tpss.model.routes import Route, index_of, routes_of, running_trains
+from tpss.model.two_way_tracks import two_way_tracks
 from tpss.numerics.staircase import index_at
 from tpss.run.delays import Delays
 from tpss.run.services import Service
@@ -68,9 +69,11 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
 def _too_long(scenario: Scenario, routes: Sequence[Route]) -> list[Finding]:
     """Trains that are longer than the tracks on which they may have to wait."""
     found: dict[tuple[str, str], Finding] = {}
+    lines = scenario.lines_by_name
+    two_way = two_way_tracks(routes, lines)
     for entry, route in zip(scenario.traffic, routes, strict=True):
         length_m = scenario.trains[entry.train].length_m
-        for station in crossing_places(route, scenario.lines_by_name):
+        for station in crossing_places(route, two_way, lines):
             room_m = station.track_length_m
             if room_m is None or length_m <= room_m:
                 continue

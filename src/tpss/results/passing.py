@@ -1,9 +1,14 @@
-"""Trains that passed through each other: on one track, away from stations where trains may cross."""
+"""Trains that passed through each other: on one track, away from stations where trains may cross.
+
+A train that waits with its head where it comes to a track is not in the way there: it has its length on
+the track before, or stands beside the line at its origin.
+"""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from tpss.results.places import line_names, train_lines, train_tracks
 from tpss.results.result import Result
@@ -12,6 +17,9 @@ from tpss.units import on_line
 
 STATION_M = 500.0
 """Trains that meet no further than this from a station of several tracks cross there. [m]"""
+
+STANDS_M = 0.01
+"""A train that goes no further than this from where it came to a track stands there. [m]"""
 
 
 class Passing(NamedTuple):
@@ -34,12 +42,13 @@ def passings(result: Result) -> list[Passing]:
     """All pairs of trains that passed through each other, by time."""
     data, names = result.dataset, line_names(result.dataset)
     lines, tracks = train_lines(data), train_tracks(data)
+    position_m = np.where(stand_before(result), np.nan, data.position.to_numpy())
     found = []
     for number, line in enumerate(result.scenario.lines_by_name.values()):
         crossing_m = np.array([1e3 * s.position_km for s in line.stations if s.tracks > 1])
         for track in range(1, line.most_tracks + 1):
             here = (lines == number) & (tracks == track)
-            place_m = np.where(here, data.position.to_numpy(), np.nan)
+            place_m = np.where(here, position_m, np.nan)
             for step, one, other in _of_track(place_m):
                 meeting_m = _meeting_m(place_m[step : step + 2, [one, other]])
                 if (np.abs(crossing_m - meeting_m) > STATION_M).all():
@@ -48,6 +57,24 @@ def passings(result: Result) -> list[Passing]:
                     place = names[number], meeting_m / 1e3, time_min
                     found.append(Passing(first, second, *place))
     return sorted(found, key=lambda each: each.time_min)
+
+
+def stand_before(result: Result) -> npt.NDArray[np.bool_]:
+    """Trains that stand for a step where they came to a track, shape (time, train).
+
+    Those that were placed on the line at the start stand on it.
+    """
+    data = result.dataset
+    place_m, placed = data.position.to_numpy(), np.isnan(data.departure_time.to_numpy())
+    there, lines, tracks = np.isfinite(place_m), train_lines(data), train_tracks(data)
+    came = there.copy()
+    came[1:] &= ~there[:-1] | (np.diff(lines, axis=0) != 0) | (np.diff(tracks, axis=0) != 0)
+    since = np.maximum.accumulate(np.where(came, np.arange(len(came))[:, None], 0), axis=0)
+    with np.errstate(invalid="ignore"):
+        stands = np.abs(place_m - np.take_along_axis(place_m, since, axis=0)) <= STANDS_M
+    stands &= ~(placed & (since == 0))
+    stands[:-1] &= stands[1:]
+    return np.asarray(stands)
 
 
 def _of_track(place_m: Floats) -> Iterator[tuple[int, int, int]]:

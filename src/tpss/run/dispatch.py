@@ -299,7 +299,7 @@ class Dispatcher:
             for entry in sorted(self.waiting):
                 i = entry[1]
                 here = self.trains[i].passages[self.trains[i].next]
-                if not here.aside and self.coming[here.stretch, here.direction][0] != i:
+                if not here.aside and self._is_behind_another(i, here):
                     continue
                 if self._is_against_others(i, here):
                     kept.add(here.stretch)
@@ -309,6 +309,13 @@ class Dispatcher:
                     self._plan_next(i)
                     passed = True
                     break
+
+    def _is_behind_another(self, i: int, here: Passage) -> bool:
+        """Whether another train comes to a gate before this one, and does not wait for its track."""
+        first = self.coming[here.stretch, here.direction][0]
+        wanted = self.trains[first].passages[self.trains[first].next].place
+        holds = wanted >= 0 and self.taken.get(wanted, set()) == {i}
+        return first != i and not (holds and self.tracks[wanted] == 1)
 
     def _is_against_others(self, i: int, here: Passage) -> bool:
         """Whether others run on a stretch in the other direction."""

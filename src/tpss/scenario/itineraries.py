@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tpss.errors import no_such
-from tpss.scenario.raw import Ends, Fault, items, lines_of, number, places_of, table
+from tpss.scenario.given_tracks import check_tracks, gives_tracks
+from tpss.scenario.raw import CALLS, Ends, Fault, items, lines_of, number, places_of, table
 from tpss.scenario.routes import (
     Hop,
     NoWayError,
@@ -18,29 +19,33 @@ from tpss.scenario.routes import (
 )
 from tpss.units import kilometres
 
-CALLS = ("stops", "passes")
-"""Lists of a service's stations on its way."""
-
 
 def check_traffic(document: Mapping[str, Any]) -> Iterator[Fault]:
     """Faults of services: of names, and of routes that cannot be run."""
     trains = list(table(document, "trains"))
-    stations = {name: places_of(line) for name, (_, line) in lines_of(document).items()}
+    lines = {name: line for name, (_, line) in lines_of(document).items()}
+    stations = {name: places_of(line) for name, line in lines.items()}
     yield from _service_names(document)
     network = hops_of(stations)
     names = list(network)
     if not names:
         return  # lines without stations have faults of their own
     ways: list[Fault] = []
+    tracks: list[Fault] = []
     for i, entry in items(document, "traffic"):
         key = f"traffic.{i}"
         yield from _names(key, entry, trains, names)
+        known = all(isinstance(name, str) and name in network for name in _calls(entry))
         if len(stations) == 1 and not _turns_or_chooses(entry):
             (places,) = stations.values()
-            yield from _along_line(key, entry, places)
-        elif all(isinstance(name, str) and name in network for name in _calls(entry)):
-            ways += _over_network(key, entry, network, list(stations))
-    yield from _each_once(ways)
+            faults = list(_along_line(key, entry, places))
+            yield from faults
+        else:
+            faults = list(_over_network(key, entry, network, list(stations))) if known else []
+            ways += faults
+        if known and not faults and gives_tracks(entry):
+            tracks += _tracks(key, entry, network, lines)
+    yield from _each_once([*ways, *tracks])
 
 
 def _each_once(faults: Iterable[Fault]) -> Iterator[Fault]:
@@ -117,15 +122,26 @@ def _turns_or_chooses(entry: Mapping[str, Any]) -> bool:
     return bool(_via(entry)) or any("turn_min" in stop for _, stop in items(entry, "stops"))
 
 
+def _way_of(entry: Mapping[str, Any], network: Mapping[str, list[Hop]]) -> Way:
+    """Way of the trains of a service.
+
+    Raises
+    ------
+    NoWayError
+        There is none, or two of the same length.
+    """
+    (begin, end), via = _ends_of(entry), [str(name) for name in _via(entry)]
+    stops = [str(stop["station"]) for _, stop in items(entry, "stops")]
+    return find_way(network, str(begin), stops, str(end), via)
+
+
 def _over_network(
     key: str, entry: Mapping[str, Any], network: Mapping[str, list[Hop]], lines: list[str]
 ) -> Iterator[Fault]:
     """Faults of the way of a service over the lines, of its turns and of its trains on the way."""
-    (begin, end), via = _ends_of(entry), [str(name) for name in _via(entry)]
     stops = [stop for _, stop in items(entry, "stops")]
-    names = [str(stop["station"]) for stop in stops]
     try:
-        way = find_way(network, str(begin), names, str(end), via)
+        way = _way_of(entry, network)
         calls_on(way.hops, [str(each["station"]) for _, each in items(entry, "passes")], "passes")
     except NoWayError as error:
         yield f"{key}.{error.key}", repr(error.name), str(error), error.remedy
@@ -138,6 +154,20 @@ def _over_network(
             problem = f"on {line}, but not on the way of its trains"
             place = f"{key}.initial_trains.{i}.position_km"
             yield place, kilometres(position), problem, "place it on the way of its trains"
+
+
+def _tracks(
+    key: str,
+    entry: Mapping[str, Any],
+    network: Mapping[str, list[Hop]],
+    lines: Mapping[str, Mapping[str, Any]],
+) -> Iterator[Fault]:
+    """Faults of the tracks that a service gives."""
+    try:
+        way = _way_of(entry, network)
+    except NoWayError:  # of stations at one place, which is a fault of its own
+        return
+    yield from check_tracks(key, entry, way, lines)
 
 
 def _turns(key: str, stops: list[Mapping[str, Any]], way: Way) -> Iterator[Fault]:

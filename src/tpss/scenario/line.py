@@ -34,6 +34,9 @@ CLOSEST_KM = 0.001 - 1e-9
 DECIMALS = 9
 """Of the position of a line's end: a micrometre."""
 
+MOST_TRACKS = 8
+"""Of a line."""
+
 Piece = tuple[float, float, float]
 """Beginning and end of a piece of constant value [km], and that value."""
 
@@ -71,7 +74,7 @@ class TrackCount(Part):
         le=FARTHEST_VALUE_KM,
         description="Position from which the number applies.",
     )
-    count: Whole = Field(ge=1, le=8, description="Number of tracks.")
+    count: Whole = Field(ge=1, le=MOST_TRACKS, description="Number of tracks.")
 
 
 class TrackCurve(Part):
@@ -113,8 +116,11 @@ def _one_after_another(curves: Sequence[TrackCurve]) -> Sequence[TrackCurve]:
     return curves
 
 
+TrackNumber = Annotated[Whole, Field(ge=1, le=MOST_TRACKS)]
+"""Number of a track of a line, counted from the left as seen in rising kilometres."""
+
 Tracks = Annotated[
-    Annotated[Whole, Field(ge=1, le=8), Tag("number")]
+    Annotated[Whole, Field(ge=1, le=MOST_TRACKS), Tag("number")]
     | Annotated[tuple[TrackCount, ...], Field(min_length=1), ascending("from_km"), Tag("list")],
     Discriminator(lambda value: "list" if isinstance(value, list | tuple) else "number"),
 ]

@@ -18,6 +18,7 @@ from tpss.scenario.fields import (
     name_of_line,
     unique,
 )
+from tpss.scenario.line import TrackNumber
 from tpss.scenario.supply import Station, Supply
 from tpss.units import kilometres, on_line
 
@@ -32,7 +33,7 @@ class OutSection(Part):
     """A section of the contact line that is out: parted at its ends, and from what feeds or ties it."""
 
     line: Name | None = name_of_line()
-    track: Annotated[Whole, Field(ge=1, le=8)] | None = Field(
+    track: TrackNumber | None = Field(
         default=None,
         description="Number of its track, counted from the left as seen in rising kilometres; leave it "
         "out: all tracks.",

@@ -13,6 +13,9 @@ Fault = tuple[str, str, str, str]
 Ends = tuple[float, float]
 """Beginning and end of a line. [km]"""
 
+CALLS = ("stops", "passes")
+"""Lists of a service's stations on its way."""
+
 LARGEST = 1e300
 """Larger numbers count as this one: an integer in a file has any number of digits."""
 
@@ -70,6 +73,24 @@ def ends_of(line: Mapping[str, Any]) -> Ends | None:
     if begin is None or length is None or length <= 0.0:
         return None
     return begin, end_of_line(begin, length)
+
+
+def tracks_by_stretch(line: Mapping[str, Any], ends: Ends) -> list[tuple[float, float, int]]:
+    """Stretches of a line with the same number of tracks: their ends [km], and that number."""
+    given = line.get("tracks", 1)
+    if isinstance(given, int):
+        return [(*ends, given)]
+    rows = [
+        (km, int(count))
+        for _, each in items(line, "tracks")
+        if (km := number(each, "from_km")) is not None
+        and (count := number(each, "count")) is not None
+    ]
+    begins = [ends[0], *(km for km, _ in rows[1:])]
+    return [
+        (begin, end, count)
+        for begin, end, (_, count) in zip(begins, [*begins[1:], ends[1]], rows, strict=False)
+    ]
 
 
 def column(line: Mapping[str, Any], profile: str) -> list[float]:

@@ -75,6 +75,22 @@ class Way(NamedTuple):
             if before.line == after.line and before.sign != after.sign
         ]
 
+    def tracks(self, given: Mapping[int, int]) -> tuple[int | None, ...]:
+        """Track that is given for each of its hops; None: trains take that of their direction.
+
+        A track holds until another one is given, or the way leads on to another line.
+
+        Parameters
+        ----------
+        given : mapping of int to int
+            Tracks by the numbers of the hops at whose ends they are given; -1: at the origin.
+        """
+        found: list[int | None] = []
+        for i, hop in enumerate(self.hops):
+            goes_on = i > 0 and self.hops[i - 1].line == hop.line
+            found.append(given.get(i - 1, found[-1] if goes_on else None))
+        return tuple(found)
+
     def place(self, line: str, position_km: float) -> int | None:
         """Number of the hop on which a position of a line lies, its destination left out."""
         for i, hop in enumerate(self.hops):

@@ -17,9 +17,10 @@ class Signalling(Part):
     )
     single_track: Literal["free", "timetable-order", "first-come"] = Field(
         default="free",
-        description="Who goes first where trains meet on a single track, between stations of several "
-        "tracks, and where routes come together: those that are due first, or those that come first; or "
-        "trains that meet do not see each other.",
+        description="Who goes first where trains meet on a single track, or on one of several that "
+        "services give to both directions, between stations of several tracks, and where routes come "
+        "together: those that are due first, or those that come first; or trains that meet do not see "
+        "each other.",
     )
     reaction_s: Real = Field(
         default=5.0,

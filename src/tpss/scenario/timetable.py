@@ -28,7 +28,7 @@ class Timetable(Part):
     file: str = Field(
         min_length=1,
         description="CSV file next to the scenario with the columns name, train, station, arrival, "
-        "departure, min_dwell_s, turn_s and kind.",
+        "departure, min_dwell_s, turn_s, track and kind.",
     )
     train: Name | None = Field(
         default=None,
@@ -64,6 +64,7 @@ PLACE_OF_KEY = {
     "arrive_after_min": "arrival",
     "after_min": "arrival",
     "depart_after_min": "departure",
+    "track": "track",
 }
 """Columns by the keys that are made from them."""
 
@@ -188,6 +189,11 @@ def _faults(rows: list[Row], start_s: float | None, train: str | None) -> Iterat
     if not given and train is None:
         remedy = "write it in the column train, or add train to [[timetables]] for all without one"
         yield first.finding("train", "it is not said which of the scenario's trains runs", remedy)
+    for row in rows:
+        number = _number(row["track"])
+        if row["track"] and not (number.is_integer() and number >= 1.0):
+            remedy = "write a whole number, counted from 1 at the left as seen in rising kilometres"
+            yield row.finding("track", "not the number of a track", remedy)
     yield from _faults_of_times(rows, start_s)
 
 
@@ -248,7 +254,7 @@ def _entry(rows: list[Row], start_s: float | None, defaults: Defaults) -> dict[s
     for row in between:
         if row.kind == "pass":
             time = after(row["arrival"], row["departure"])
-            passes.append(_given(station=row["station"], after_min=time))
+            passes.append(_given(station=row["station"], track=_track(row), after_min=time))
             continue
         dwell_s = _number(row["min_dwell_s"]) if row["min_dwell_s"] else defaults.min_dwell_s
         times = {
@@ -257,14 +263,14 @@ def _entry(rows: list[Row], start_s: float | None, defaults: Defaults) -> dict[s
         }
         turn_min = _number(row["turn_s"]) / 60.0 if row["turn_s"] else None
         dwell_min = dwell_s / 60.0
-        stops.append(
-            _given(station=row["station"], dwell_min=dwell_min, turn_min=turn_min, **times)
-        )
+        durations = {"dwell_min": dwell_min, "turn_min": turn_min}
+        stops.append(_given(station=row["station"], track=_track(row), **durations, **times))
     return {
         "name": origin["name"],
         "train": next((row["train"] for row in rows if row["train"]), defaults.train),
         "from": origin["station"],
         "to": destination["station"],
+        **_given(track=_track(origin)),
         "departure_min": departure_min,
         **_given(arrive_after_min=after(destination["arrival"])),
         **defaults.of_all,
@@ -273,6 +279,11 @@ def _entry(rows: list[Row], start_s: float | None, defaults: Defaults) -> dict[s
         # Rows stand in the order of travel: stations that are passed say which way a train takes.
         "via": [row["station"] for row in between] if passes else [],
     }
+
+
+def _track(row: Row) -> int | None:
+    """Track that a row gives, if it gives one."""
+    return int(_number(row["track"])) if row["track"] else None
 
 
 def _given(**values: Any) -> dict[str, Any]:

@@ -8,7 +8,9 @@ from pathlib import Path
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.scenario.files import read_text
 
-COLUMNS = ("name", "train", "station", "arrival", "departure", "min_dwell_s", "turn_s", "kind")
+COLUMNS = (
+    "name", "train", "station", "arrival", "departure", "min_dwell_s", "turn_s", "track", "kind",
+)  # fmt: skip
 
 DURATIONS = ("min_dwell_s", "turn_s")
 
@@ -82,7 +84,7 @@ class KindOfPlace:
 KIND_OF_PLACE = {
     "first": KindOfPlace("the first row of a train", ("start",), ("arrival", *DURATIONS)),
     "between": KindOfPlace("a row between the first and the last of a train", ("stop", "pass")),
-    "last": KindOfPlace("the last row of a train", ("end",), ("departure", *DURATIONS)),
+    "last": KindOfPlace("the last row of a train", ("end",), ("departure", *DURATIONS, "track")),
 }
 
 
@@ -138,11 +140,7 @@ def _faults_of_header(path: Path, number: int, columns: list[str]) -> Iterator[F
     for column in dict.fromkeys(columns):
         if columns.count(column) > 1:
             yield Finding(str(path), place, column, "the column is there twice", "leave one out")
-        if column == "track":
-            problem = "trains take the tracks of their direction, whatever a timetable says"
-            remedy = "leave the column out"
-            yield Finding(str(path), place, column, problem, remedy)
-        elif column not in COLUMNS:
+        if column not in COLUMNS:
             yield Finding(str(path), place, column, "no such column", suggest(column, COLUMNS))
     for column in NEEDED:
         if column not in columns:

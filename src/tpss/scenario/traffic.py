@@ -1,7 +1,7 @@
 """The traffic: which trains run from where to where, and when."""
 
 from itertools import pairwise
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -19,6 +19,7 @@ from tpss.scenario.fields import (
     name_of_line,
     one_of,
 )
+from tpss.scenario.line import TrackNumber
 
 Times = Annotated[
     tuple[Moment, ...],
@@ -34,10 +35,20 @@ DEPARTURES = ("headway_min", "departures_min", "departure_min")
 """Keys that say when trains depart, of which a service has one."""
 
 
+def track_from_here() -> Any:
+    """Field with the number of the track on which a train goes on from a station."""
+    return Field(
+        default=None,
+        description="Number of the track of the line on which the train goes on from here; leave it "
+        "out: the one that was given last, see `track` of the service.",
+    )
+
+
 class Stop(Part):
     """An intermediate stop."""
 
     station: Name = Field(description="Station where it is.")
+    track: TrackNumber | None = track_from_here()
     dwell_min: Real = Field(
         ge=0,
         le=100_000,
@@ -77,9 +88,10 @@ class Stop(Part):
 
 
 class Pass(Part):
-    """A station where a train does not stop, for the time at which it passes."""
+    """A station where a train does not stop, for the time at which it passes, or for its track."""
 
     station: Name = Field(description="Station of the line.")
+    track: TrackNumber | None = track_from_here()
     after_min: Real | None = Field(
         default=None,
         ge=0,
@@ -132,6 +144,12 @@ class Traffic(Part):
         default=(),
         description="Stations that they pass, in order; needed where the shortest way is not meant.",
     )
+    track: TrackNumber | None = Field(
+        default=None,
+        description="Number of the track of the line on which the trains run from their origin, counted "
+        "from the left as seen in rising kilometres, until a stop or pass gives another one or the line "
+        "ends for them; leave it out: that of their direction, as where the line has no such track.",
+    )
     headway_min: Real | None = Field(
         default=None, ge=0.01, le=100_000, description="Time between departures."
     )
@@ -167,7 +185,8 @@ class Traffic(Part):
     stops: tuple[Stop, ...] = Field(default=(), description="Intermediate stops, in order.")
     passes: tuple[Pass, ...] = Field(
         default=(),
-        description="Stations on the way without a stop whose times are wanted, in order.",
+        description="Stations on the way without a stop whose times are wanted, or where the trains "
+        "change to another track, in order.",
     )
     arrive_after_min: Real | None = Field(
         default=None,

@@ -8,7 +8,17 @@ from typing import Any, NamedTuple
 
 from tpss.scenario.feeding_points import placed_transformers
 from tpss.scenario.line import CLOSEST_KM
-from tpss.scenario.raw import Ends, Fault, ends_of, items, lines_of, number, places_of, table
+from tpss.scenario.raw import (
+    Ends,
+    Fault,
+    ends_of,
+    items,
+    lines_of,
+    number,
+    places_of,
+    table,
+    tracks_by_stretch,
+)
 from tpss.scenario.supply.supply import STATIONS
 from tpss.units import kilometres
 
@@ -63,7 +73,7 @@ def _stretches(
     name: str, line: Mapping[str, Any], ends: Ends, supply: Mapping[str, Any], alone: bool
 ) -> list[_Stretch]:
     """Stretches of a line, as far as it tells them."""
-    counts = _counts(line, ends)
+    counts = tracks_by_stretch(line, ends)
     others = [
         each for _, each in items(supply, "contact_lines") if alone or each.get("line") == name
     ]
@@ -80,23 +90,6 @@ def _stretches(
                 tied = each.get("tracks_tied", tied)
         found.append(_Stretch(begin, end, tracks, tied))
     return found
-
-
-def _counts(line: Mapping[str, Any], ends: Ends) -> list[tuple[float, float, int]]:
-    given = line.get("tracks", 1)
-    if isinstance(given, int):
-        return [(*ends, given)]
-    rows = [
-        (km, int(count))
-        for _, each in items(line, "tracks")
-        if (km := number(each, "from_km")) is not None
-        and (count := number(each, "count")) is not None
-    ]
-    begins = [ends[0], *(km for km, _ in rows[1:])]
-    return [
-        (begin, end, count)
-        for begin, end, (_, count) in zip(begins, [*begins[1:], ends[1]], rows, strict=False)
-    ]
 
 
 def _early_tracks(key: str, line: Mapping[str, Any]) -> Iterator[Fault]:

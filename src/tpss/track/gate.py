@@ -1,8 +1,9 @@
 """Gates: places on a route that a train passes when it is its turn only.
 
-Behind a gate lies a **stretch**, of which trains of both directions use one track: between two places
-where they may cross, that is a single track.  Trains run on a stretch in one direction at a time.  Where
-routes come together on one track there is a stretch without length, which trains enter one by one.
+Behind a gate lies a **stretch**, of which trains of both directions use one track, a single one or one
+of several, between two places where they may cross.  Trains run on a stretch in one direction at a
+time.  Where routes come together on one track there is a stretch without length, which trains enter one
+by one.
 
 A train that may not pass waits with its head at the gate; at a station of several tracks it is in
 nobody's way there.  Between two single tracks lies a **crossing place**, such a station: a train whose

@@ -102,3 +102,17 @@ def test_two_full_crossing_places_that_want_each_others_tracks_have_no_order():
     with pytest.raises(NoOrderError):
         Dispatcher([ups, ups, downs, downs], [2, 2]).run()
     assert Dispatcher([ups, ups, downs, downs], [3, 2]).run()
+
+
+def test_who_stands_on_the_only_track_between_goes_before_one_that_waits_for_that_track():
+    """One turns from track 0 to track 2 by way of place 0, of one track; the other one the other way.
+
+    The other one, which comes to track 2 first, wants the place that this one has: it lets it go on.
+    """
+    one = [Passage(0, UP, 0, 0.0, 10.0, True, 0.0), Passage(2, UP, NONE, 12.0, 20.0, False, 1.0)]
+    other = [
+        Passage(2, UP, 0, 11.0, 30.0, False, 5.0),
+        Passage(0, DOWN, NONE, 30.0, 40.0, True, 1.0),
+    ]
+    found = Dispatcher([one, other], [1]).run()
+    assert found.stretch == [[0, 0], [1, 1]]
