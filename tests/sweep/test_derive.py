@@ -11,7 +11,7 @@ from tpss.scenario.paths import places_of
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
 from tpss.sweep.inputs import inputs_of
-from tpss.sweep.settings import PLACES
+from tpss.sweep.lengths import PLACES
 
 from properties.kilometres import moved
 from scenarios import SHORT_LINE, short_line
