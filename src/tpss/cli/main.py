@@ -322,11 +322,11 @@ def sweep(
         str | None,
         option(
             metavar="ADDRESS",
-            help="Dask scheduler, such as tcp://10.0.0.1:8786; by default a local cluster.",
+            help="Dask scheduler, such as tcp://10.0.0.1:8786; by default processes here.",
         ),
     ] = None,
     workers: Annotated[
-        int | None, option(min=1, help="Processes of the local cluster; by default one per core.")
+        int | None, option(min=1, help="Processes on this computer; by default one per core.")
     ] = None,
     dry_run: Annotated[
         bool,

@@ -24,14 +24,15 @@ MOST_PROBLEMS = 5
 """Different problems of cases that are printed."""
 
 
-def demand_packages() -> None:
-    """Demand the packages that studies need.
+def demand_packages(scheduler: str | None = None) -> None:
+    """Demand the packages that studies need, those of Dask with a scheduler only.
 
     Raises
     ------
     StudyError
     """
-    absent = [name for name in ("distributed", "pyarrow", "scipy") if find_spec(name) is None]
+    needed = ("pyarrow", "scipy", *(("distributed",) if scheduler else ()))
+    absent = [name for name in needed if find_spec(name) is None]
     if absent:
         raise StudyError(f'studies need {", ".join(absent)}: pip install "tpss[study]"')
 
@@ -46,7 +47,7 @@ def run_study_file(
     step_check: bool,
 ) -> int:
     """Run a study, or only check it; return the exit code."""
-    demand_packages()
+    demand_packages(scheduler)
     from tpss.sweep.campaign import run_study
     from tpss.sweep.study import load_study
 

@@ -29,6 +29,11 @@ from tpss.sweep.inputs import inputs_of
 from tpss.sweep.study import study_of_json
 from tpss.sweep.versions import versions
 
+BATCH_S = 1.0
+"""Approximate time of a batch: a hundred times the overhead of processes and the file system. [s]"""
+
+MOST_IN_BATCH = 5_000
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -65,6 +70,11 @@ def run_batch(plan: Plan, first: int, end: int) -> bytes:
     file = io.BytesIO()
     pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
     return file.getvalue()
+
+
+def batch_size(left: int, case_s: float, workers: int) -> int:
+    """Cases of a batch: it takes about a second, and each worker has several."""
+    return max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-left // (4 * workers))))
 
 
 def warm_up(plan: Plan) -> None:
