@@ -294,3 +294,16 @@ def test_gaps_between_what_is_done_are_cut_into_batches():
     assert list(batches(gaps, 3)) == [(0, 2), (4, 6), (7, 9), (9, 10)]
     assert missing([(0, 10)], 10) == []
     assert missing([], 2) == [(0, 2)]
+
+
+def test_an_estimate_counts_what_comes_before_the_first_case():
+    """10 s of checks and starts, then 300 cases of 0.1 s on two processes: 10 + 15 s."""
+    assert campaign.Estimate(300, 0.1, 2, before_s=10.0).whole_s == 25.0
+
+
+def test_an_estimate_measures_the_processes_that_will_run(tmp_path):
+    one, two = (campaign.estimate(study(tmp_path), workers) for workers in (1, 2))
+    assert (one.cases, one.workers, two.workers) == (6, 1, 2)
+    assert one.before_s > 0.0
+    assert 0.0 < one.case_s < one.whole_s
+    assert not multiprocessing.active_children()

@@ -4,6 +4,7 @@ import datetime as dt
 import gc
 import io
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -70,6 +71,12 @@ def run_batch(plan: Plan, first: int, end: int) -> bytes:
     file = io.BytesIO()
     pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
     return file.getvalue()
+
+
+def run_cases(plan: Plan, cases: Sequence[int]) -> None:
+    """Simulate some cases to see how long that takes."""
+    for case in cases:
+        run_case(_open(plan).design, case)
 
 
 def batch_size(left: int, case_s: float, workers: int) -> int:

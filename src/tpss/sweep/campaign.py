@@ -11,8 +11,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from tpss.sweep.batch import Plan, batch_size, run_batch
-from tpss.sweep.check import check, time_per_case
+from tpss.sweep.batch import Plan, batch_size, run_batch, run_case
+from tpss.sweep.check import TRIAL_CASES, TRIAL_S, check, spread, time_per_case
 from tpss.sweep.design import Design, design_of
 from tpss.sweep.folder import (
     FORMAT,
@@ -23,7 +23,7 @@ from tpss.sweep.folder import (
     batches,
     missing,
 )
-from tpss.sweep.processes import in_processes
+from tpss.sweep.processes import in_processes, trial
 from tpss.sweep.step_sample import sample_steps
 from tpss.sweep.study import Study
 from tpss.sweep.versions import versions
@@ -46,21 +46,31 @@ class Advance:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Expected time of a study."""
+    """Expected time of a study, each part of which has been measured."""
 
     cases: int
     case_s: float
-    """Time of a case in one process, without compilation."""
+    """Time of a case in a process, while as many as are expected run."""
     workers: int
+    before_s: float
+    """Time until the first case is run: checks, a measurement, and the start of processes."""
 
     @property
     def whole_s(self) -> float:
-        """Time of all cases."""
-        return self.cases * self.case_s / self.workers
+        """Time of all."""
+        return self.before_s + self.cases * self.case_s / self.workers
 
 
-def estimate(study: Study, workers: int | None = None) -> Estimate:
-    """Check a study, and measure some of its cases.
+def estimate(study: Study, workers: int | None = None, *, step_check: bool = False) -> Estimate:
+    """Check a study, and measure some of its cases and all that comes before the first.
+
+    Parameters
+    ----------
+    study : Study
+    workers : int, optional
+        Number of processes, as of `run_study`.
+    step_check : bool
+        Whether the study will make some of its cases with half their step.
 
     Raises
     ------
@@ -68,9 +78,21 @@ def estimate(study: Study, workers: int | None = None) -> Estimate:
         It has faults.
     """
     design = design_of(study)
-    check(design)
+    run_case(design, 0)  # which compiles
+    started = time.perf_counter()
+    names = check(design)
+    if step_check:
+        sample_steps(design)
     case_s = time_per_case(design)
-    return Estimate(design.cases, case_s, workers or os.cpu_count() or 1)
+    before_s = time.perf_counter() - started
+    count = processes_for(design.cases, case_s, workers)
+    if count > 1:
+        plan = Plan(study.as_json(), names.stations, names.services)
+        each = max(1, min(TRIAL_CASES, round(TRIAL_S / case_s)))
+        tried = list(spread(design.cases, count * each))
+        start_s, case_s = trial(plan, tried, min(count, len(tried)))
+        before_s += start_s
+    return Estimate(design.cases, case_s, count, before_s)
 
 
 def run_study(

@@ -4,16 +4,20 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
 from tpss.errors import StudyError
-from tpss.sweep.batch import Plan, run_batch, warm_up
+from tpss.sweep.batch import Plan, run_batch, run_cases, warm_up
 
 AHEAD = 2
 """Batches per process that are running or waiting."""
+
+READY_S = 0.05
+"""How long each process sleeps once it has started, so that none takes the place of another. [s]"""
 
 MOST_LOSSES = 3
 """How often processes may be lost without a finished batch in between."""
@@ -61,6 +65,29 @@ def in_processes(
                         "--workers if memory is short, and call run_study of a script of your own "
                         'below if __name__ == "__main__":'
                     ) from error
+
+
+def trial(plan: Plan, cases: Sequence[int], count: int) -> tuple[float, float]:
+    """How long processes take to start, and how long a case takes while all of them are busy. [s]
+
+    Parameters
+    ----------
+    plan : Plan
+    cases : sequence of int
+        Cases that are simulated, at least one a process.
+    count : int
+        Number of processes.
+    """
+    begun = time.perf_counter()
+    with _pool(plan, count) as pool:
+        wait([pool.submit(time.sleep, READY_S) for _ in range(count)])
+        started = time.perf_counter()
+        shares = [pool.submit(run_cases, plan, cases[k::count]) for k in range(count)]
+        wait(shares)
+        done = time.perf_counter()
+        for share in shares:
+            share.result()
+    return started - begun - READY_S, (done - started) * count / len(cases)
 
 
 def _first(lost: list[Batch], batches: Iterator[Batch]) -> Iterator[Batch]:
