@@ -94,6 +94,20 @@ def test_of_very_many_cases_a_part_is_drawn_and_that_is_told(folder, monkeypatch
     assert "One case in 3 is drawn" in study_report(outcome, folder)
 
 
+def test_a_study_of_cases_that_are_all_alike_has_a_page_too(tmp_path):
+    tpss.run_study(study(tmp_path, {"vary": {"traffic.0.headway_min": [5.0]}}), tmp_path / "out")
+    outcome = load_outcome(tmp_path / "out")
+    assert figures.drawable(outcome) == []
+    assert "Too little differs among the cases" in study_report(outcome, tmp_path / "out")
+
+
+def test_a_page_holds_a_part_of_very_many_cases_and_says_so(folder, monkeypatch):
+    monkeypatch.setattr("tpss.sweep.report.MOST_SHOWN", 5)
+    page = study_report(load_outcome(folder), folder)
+    assert "4 cases are left out of the plots" in page
+    assert "Study of 9 cases" in page
+
+
 def test_names_in_a_page_are_text(tmp_path):
     """What a study calls its options is no markup."""
     choices = {"load": {"<b>bold</b>": {}, "other": {"trains.freight.mass_t": 900.0}}}

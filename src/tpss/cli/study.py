@@ -93,7 +93,7 @@ def plot_study(folder: Path, figure: str, out: Path | None, force: bool) -> None
         The folder has no cases, there is no such figure, or a file cannot be written.
     """
     from tpss.report.render.static import render
-    from tpss.sweep.figures import FIGURES
+    from tpss.sweep.figures import FIGURES, drawable
     from tpss.sweep.outcome import demand_cases, load_outcome
 
     if figure != ALL and figure not in FIGURES:
@@ -101,7 +101,9 @@ def plot_study(folder: Path, figure: str, out: Path | None, force: bool) -> None
         raise ResultError(f"{figure!r}: {problem}; {remedy}")
     outcome = load_outcome(folder)
     demand_cases(outcome, folder)
-    names = list(FIGURES) if figure == ALL else [figure]
+    names = [name for name in drawable(outcome) if figure in (name, ALL)]
+    if not names:
+        raise ResultError(f"too little differs among the cases of {folder} to draw {figure}")
     suffix = out.suffix.removeprefix(".").lower() if out is not None else ""
     is_file = suffix in FORMATS
     if is_file and figure == ALL:

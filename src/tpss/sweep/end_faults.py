@@ -5,12 +5,14 @@ first values is met at nearly every end, and belongs to one parameter only.
 """
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError, TooLargeError, TpssError
 from tpss.scenario.open_step import with_step
+from tpss.scenario.paths import NoSuchPlaceError, places_of
 from tpss.sweep.derive import scenario_with
 from tpss.sweep.design import DRAWN, Design, key_of
 
@@ -83,7 +85,7 @@ def _owner(key: str, design: Design, ends: list[End]) -> str | None:
     if len(design.parameters) == 1:
         return next(iter(design.parameters))
     paths = {name: _paths_of(name, design) for name in design.parameters}
-    own = (name for name, each in paths.items() if any(_is_place_of(p, key) for p in each))
+    own = (n for n, each in paths.items() if any(_is_place_of(p, key, design) for p in each))
     cured = (name for name, _, found in ends if all(other.key != key for other in found))
     likeness = {name: max(_common(p, key) for p in each) for name, each in paths.items()}
     alike = max(likeness, key=likeness.__getitem__)
@@ -100,8 +102,11 @@ def _paths_of(name: str, design: Design) -> list[str]:
     return [name]
 
 
-def _is_place_of(path: str, key: str) -> bool:
-    """Whether a key path matches a path with ``*``."""
+def _is_place_of(path: str, key: str, design: Design) -> bool:
+    """Whether a key path, of keys and numbers, is one of those that a path of names and ``*`` means."""
+    with suppress(NoSuchPlaceError):
+        if key in places_of(design.study.base, path):
+            return True
     mine, other = path.split("."), key.split(".")
     return len(mine) == len(other) and _common(path, key) == len(mine)
 
@@ -119,7 +124,7 @@ def _common(path: str, key: str) -> int:
 def _at_parameter(finding: Finding, design: Design, name: str, value: Any) -> Finding:
     """A finding of a scenario, told at the study's value that leads to it."""
     problem, remedy = finding.problem, finding.remedy
-    if finding.key and not _is_place_of(name, finding.key):
+    if finding.key and not _is_place_of(name, finding.key, design):
         shown = f" = {finding.value}" if finding.value else ""
         problem = f"the scenario is not valid: {finding.key}{shown}: {problem}"
     if finding.problem == "not a whole number" and design.parameters[name].low is not None:

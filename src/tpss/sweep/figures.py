@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tpss.errors import ResultError
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.study import parallel, trade_off
 from tpss.report.sampling import Indices
@@ -53,20 +52,19 @@ def _coloured(outcome: Outcome, figures: list[str]) -> dict[str, Indices]:
 
 
 def trade_offs(outcome: Outcome) -> Drawing:
-    """Two key figures of each case against each other.
-
-    Raises
-    ------
-    ResultError
-        There are no two that differ.
-    """
+    """Two key figures of each case against each other."""
     known = outcome.figures
     order = [name for name in (*PAIR, SHADE, *known) if name in known]
     chosen = list(dict.fromkeys(order))[:3]
-    if len(chosen) < 2:
-        raise ResultError("fewer than two key figures differ among the cases; draw parallel")
     across, up, shade = (outcome.axis(name) for name in (chosen * 2)[:3])
     return trade_off(outcome.ran["case"].to_numpy(dtype=float), across, up, shade)
+
+
+def drawable(outcome: Outcome) -> list[str]:
+    """Names of the figures for which enough differs among the cases."""
+    figures = len(outcome.figures)
+    enough = {"parallel": len(outcome.varied) + figures > 1, "trade-offs": figures > 1}
+    return [name for name in FIGURES if enough[name]]
 
 
 FIGURES: dict[str, Callable[[Outcome], Drawing]] = {

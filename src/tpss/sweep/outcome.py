@@ -1,6 +1,6 @@
 """The finished cases of a study's folder, as its report, its figures and its export show them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,10 @@ class Outcome:
     study: Study
     table: pd.DataFrame
     manifest: dict[str, Any]
+
+    def one_in(self, count: int) -> "Outcome":
+        """The study with one in so many of its cases."""
+        return self if count == 1 else replace(self, table=self.table.iloc[::count])
 
     @cached_property
     def design(self) -> Design:

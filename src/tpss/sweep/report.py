@@ -18,7 +18,7 @@ from tpss.report.tables import Table, cell
 from tpss.report.validity import limits_of_validity
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import DEVIATION, MEAN
-from tpss.sweep.figures import FIGURES, PAIR, SHADE, one_in
+from tpss.sweep.figures import FIGURES, PAIR, SHADE, drawable, one_in
 from tpss.sweep.folder import STEP_CHECK
 from tpss.sweep.outcome import (
     KEPT,
@@ -41,6 +41,9 @@ IN_WORDS = {
     OVERLOADED: "carry their load with a station beyond its rating",
     LOST: "do not carry their load: voltages collapse, or a train stalls",
 }
+
+MOST_SHOWN = 20_000
+"""Cases that a page holds; of more, one in so many."""
 
 DIGITS = 7
 """Of numbers in the page; the table holds all."""
@@ -87,11 +90,12 @@ def study_report(outcome: Outcome, folder: Path) -> str:
     summary = summarise(outcome.table, outcome.design.cases)
     sample = outcome.manifest.get(STEP_CHECK)
     first = int(outcome.ran["case"].iloc[0])
+    seen = outcome.one_in(-(-len(outcome.table) // MOST_SHOWN))
     return fill(
         "study.html",
         f"{study.file.name}: study",
-        _figures(outcome),
-        _data(outcome, folder),
+        _figures(seen),
+        _data(seen, folder),
         scripts=("report.js", "study.js"),
         name=study.file.name,
         about=study.file.description,
@@ -107,7 +111,8 @@ def study_report(outcome: Outcome, folder: Path) -> str:
         chosen=_chosen(outcome),
         heading=heading,
         cases=_cases(outcome),
-        one_in=one_in(outcome),
+        one_in=one_in(seen),
+        left_out=len(outcome.table) - len(seen.table),
         folder=str(folder),
         validity=limits_of_validity([scenario_of(outcome.design, first)]),
     )
@@ -115,8 +120,7 @@ def study_report(outcome: Outcome, folder: Path) -> str:
 
 def _figures(outcome: Outcome) -> dict[str, Figure]:
     """The plots, of key figures that differ."""
-    names = list(FIGURES) if len(outcome.figures) > 1 else ["parallel"]
-    return {name: render(FIGURES[name](outcome), HEIGHTS[name]) for name in names}
+    return {name: render(FIGURES[name](outcome), HEIGHTS[name]) for name in drawable(outcome)}
 
 
 def _columns(outcome: Outcome) -> list[str]:

@@ -12,6 +12,9 @@ from tpss.report.sampling import Floats, Indices
 TOP = 1.12
 """Where the highest value of an axis is written, and its name begins; the axis ends at 1."""
 
+LONGEST = 16
+"""Characters of a text that are written beside an axis."""
+
 MARGIN = 0.03
 """What is free at both sides of points, as a share of what is between."""
 
@@ -53,10 +56,14 @@ class Axis:
             )
             span = max(len(self.levels) - 1, 1)
             only = len(self.levels) == 1
-            return [(0.5 if only else k / span, self.levels[k]) for k in chosen.tolist()]
+            return [(0.5 if only else k / span, _short(self.levels[k])) for k in chosen.tolist()]
         if low == high:
             return [(0.5, f"{low:.4g}")]
         return [(0.0, f"{low:.4g}"), (1.0, f"{high:.4g}")]
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
 def parallel(cases: Floats, axes: Sequence[Axis], groups: dict[str, Indices]) -> Drawing:

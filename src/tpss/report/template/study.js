@@ -18,7 +18,7 @@
     element("case-command").textContent = `tpss sweep ${study.folder} --case ${number}`;
     const told = element("case-told");
     if (row < 0) {
-      told.textContent = `Case ${number} did not run, or did not pass its audit; the table of cases says why.`;
+      told.textContent = `Case ${number} has no figures here: it did not run, its audit failed, or it was left out.`;
       return;
     }
     const list = document.createElement("dl");
