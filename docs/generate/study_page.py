@@ -9,7 +9,8 @@ from pydantic.fields import FieldInfo
 
 from tpss.sweep.columns import MADE_BY, OUTPUTS, TIMINGS
 from tpss.sweep.inputs import Inputs
-from tpss.sweep.settings import INSTEAD_OF, PLACES
+from tpss.sweep.lengths import PLACES
+from tpss.sweep.settings import INSTEAD_OF
 from tpss.sweep.study import Gradients, StudyFile
 from tpss.sweep.variation import Variation
 
@@ -26,10 +27,28 @@ PATHS = """## Key paths
 Tables are named by their keys, list items by their names or numbers from 0, or all of them by `*`, as in
 `traffic.0.headway_min` or `supply.converter_stations.*.converters`. In TOML a `*` stands in quotes, of
 the whole path or of itself. The text `"none"` leaves a key out, as in `"supply.high_voltage_line" =
-"none"`.
+"none"`. `+` is one more item of a list, or none: `"supply.posts.+" = ["none", {{ name = "Post 80",
+line = "main", position_km = 80.0 }}]`.
 
-A new `line.length_km` moves what stands along the line in proportion: {places}. The gradients
-keep their places. Other values are set after that, so a position is one on the new line.
+Whatever a scenario says may vary, for example:
+
+| what | path |
+|---|---|
+| a line of a network, and its tracks | `lines.main.length_km`, `lines.main.tracks` |
+| tracks at a station | `lines.branch.stations.Forsa.tracks` |
+| a timetable, and its density | `timetables.0.file`, `timetables.0.density` |
+| one train of a timetable that does not vary itself | `traffic.R101.train` |
+| a feeding station | `supply.converter_stations.Western.converters` |
+| transformers of the high-voltage line | `supply.high_voltage_line.transformers` |
+| the contact line of a stretch | `supply.contact_lines.0.catenary` |
+| an outage, or none | `simulation.outage` = `["none", "Western out"]` |
+
+What no case depends on is refused: names, descriptions and variants, outages where none applies, and
+gradients of a line on which they are drawn.
+
+A new `line.length_km`, or `lines.NAME.length_km`, moves what stands along that line in proportion:
+{places}. The gradients keep their places. Other values are set after that, so a position is one on the
+new line.
 
 Of these keys one replaces the others: {instead}."""
 
@@ -57,11 +76,12 @@ Parameters of the study are columns by their key paths behind `set.`, such as
 `set.traffic.0.headway_min`."""
 
 INPUTS = {
-    "length_km": "length of the line",
+    "length_km": "length of the line, or of all lines",
     "route_km": "distance that the studied train runs",
     "stops": "stops of the studied train",
     "converter_stations": "number of converter stations",
-    "station_distance_km": "mean distance between neighbouring converter stations; null of one",
+    "station_distance_km": "mean distance between neighbouring converter stations of a line; null "
+    "of one",
     "longest_station_distance_km": "the longest of them",
     "converters": "converters installed in all stations",
     "converters_per_station": "their mean number",
@@ -75,11 +95,13 @@ INPUTS = {
     "feeding_distance_km": "mean distance between neighbouring stations and transformers",
     "headway_min": "time between departures of the first service; null if they are listed",
     "trains_per_h": "departures of all services with a headway",
+    "listed_trains": "trains with listed departures, those of timetables among them",
     "speed_limit_kmh": "highest on the studied train's route, of the line and of the train",
     "mean_speed_limit_kmh": "mean over that route",
     "train_mass_t": "mass of the studied train",
     "max_motor_current_a": "its current limit; null if it has none",
-    "gradient_mean_permille": "mean gradient over the line",
+    "gradient_mean_permille": "mean gradient over the line; of a network, here and below, over the "
+    "studied train's route",
     "gradient_std_permille": "standard deviation of the gradient over the line",
     "steepest_permille": "steepest rise",
     "starting_gradient_permille": "mean over the first 2 km of the studied train's route",

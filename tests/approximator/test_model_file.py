@@ -59,7 +59,7 @@ class Bomb:
         (b"{}", "not the file of an approximator"),
         (b"[" * 100_000, "damaged"),
         (b"\xff\xfe\x00", "damaged"),
-        (b'{"format": "tpss-approximator", "version": 3}', "another version of TPSS"),
+        (b'{"format": "tpss-approximator", "version": 4}', "another version of TPSS"),
         (pickle.dumps(Bomb()), "damaged"),
     ],
     ids=["empty", "foreign", "deep", "binary", "newer", "pickle"],

@@ -83,15 +83,21 @@ def test_bad_arguments_are_exit_code_2(tpss_command, tmp_path, arguments, words)
     assert words in said.err
 
 
-def test_a_missing_package_is_told_with_what_to_install(tpss_command, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("package", "options"), [("pyarrow", []), ("distributed", ["--scheduler", "tcp://127.0.0.1:9"])]
+)
+def test_a_missing_package_is_told_with_what_to_install(
+    tpss_command, tmp_path, monkeypatch, package, options
+):
+    """Dask is needed with a scheduler only."""
     write_study(tmp_path)
     find = importlib.util.find_spec
     monkeypatch.setattr(
-        "tpss.cli.sweep.find_spec", lambda name: None if name == "distributed" else find(name)
+        "tpss.cli.sweep.find_spec", lambda name: None if name == package else find(name)
     )
-    said = tpss_command("sweep", "study.toml", "--out", "out")
+    said = tpss_command("sweep", "study.toml", "--out", "out", *options)
     assert said.code == 2
-    assert 'studies need distributed: pip install "tpss[study]"' in said.err
+    assert f'studies need {package}: pip install "tpss[study]"' in said.err
 
 
 def test_cases_that_could_not_be_run_are_told_in_the_end(finished, tpss_command):

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from tpss.scenario.paths import places_of
-from tpss.sweep.settings import PLACES
+from tpss.sweep.lengths import PLACES
 
 Document = dict[str, Any]
 

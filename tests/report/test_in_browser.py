@@ -10,7 +10,9 @@ from typing import Any
 
 import pytest
 
+from sweep.studies import study_with_stalls
 from tpss.report.html import report
+from tpss.sweep.report import write_study_report
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
@@ -299,3 +301,46 @@ def test_a_table_of_outages_is_drawn_sorted_and_downloaded(browser, table_page, 
     tab.close()
     assert opened.faults == []
     assert opened.requests[0] == file.as_uri()
+
+
+@pytest.fixture(scope="module")
+def study_page(browser, tmp_path_factory):
+    folder = study_with_stalls(tmp_path_factory.mktemp("study"))
+    file = write_study_report(folder, folder / "report.html")
+    opened = open_page(browser, file, viewport={"width": 1280, "height": 900})
+    yield opened
+    assert not opened.faults
+    assert all(url.startswith("file:") for url in opened.requests)
+
+
+def test_a_number_chooses_a_case_and_gives_the_command_that_opens_it(study_page):
+    study_page.tab.fill("#case", "4")
+    study_page.tab.press("#case", "Tab")
+    told = study_page.tab.inner_text("#case-told")
+    assert "Case 4: " in told
+    assert "supply.converter_stations.*.converters" in told
+    assert study_page.tab.inner_text("#case-command").endswith("--case 4")
+
+
+def test_a_click_on_a_point_chooses_its_case(study_page):
+    """Whose words begin with its number."""
+    point = "document.getElementById('trade-offs').data[0].text[0]"
+    number = study_page.tab.evaluate(point).partition("<br>")[0].removeprefix("case ")
+    study_page.tab.locator("#trade-offs").scroll_into_view_if_needed()
+    study_page.tab.locator("#trade-offs .point").first.click(force=True)
+    study_page.wait_for(f"document.getElementById('case').value === '{number}'")
+
+
+def test_lists_choose_what_is_drawn(study_page):
+    study_page.tab.select_option("#across", label="supply.converter_stations.*.converters")
+    study_page.wait_for(
+        "document.getElementById('trade-offs').layout.xaxis.title.text.endsWith('converters')"
+    )
+    values = study_page.tab.evaluate("[...document.getElementById('trade-offs').data[0].x]")
+    assert set(values) == {1, 2, 3}
+
+
+def test_a_heading_sorts_the_cases(study_page):
+    study_page.tab.locator("#cases thead button").first.click()
+    study_page.tab.locator("#cases thead button").first.click()
+    assert study_page.column("cases", 1) == [str(number) for number in range(8, -1, -1)]

@@ -10,7 +10,7 @@ import tomli_w
 
 import tpss
 
-from scenarios import SHORT_LINE
+from scenarios import SHORT_LINE, gradients
 
 STUDY: dict[str, Any] = {
     "format": 1,
@@ -37,6 +37,18 @@ def write_study(folder: Path, changes: dict[str, Any] | None = None) -> Path:
 def study(folder: Path, changes: dict[str, Any] | None = None) -> tpss.Study:
     """The small study with some tables or values changed."""
     return tpss.load_study(write_study(folder, changes))
+
+
+def study_with_stalls(place: Path) -> Path:
+    """Folder of a study of nine cases: trains of three masses on a hill, where the heavy ones stall."""
+    loads = {"light": 300.0, "medium": 700.0, "heavy": 4000.0}
+    changes = {
+        "set": {"simulation.time_step_min": 0.1, **gradients((0.0, 0.0), (5.0, 20.0))},
+        "vary": {"supply.converter_stations.*.converters": [1, 2, 3]},
+        "choices": {"load": {k: {"trains.freight.mass_t": t} for k, t in loads.items()}},
+    }
+    tpss.run_study(study(place, changes), place / "out", workers=1)
+    return place / "out"
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from tpss.scenario.paths import places_of
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
 from tpss.sweep.inputs import inputs_of
-from tpss.sweep.settings import PLACES
+from tpss.sweep.lengths import PLACES
 
 from properties.kilometres import moved
 from scenarios import SHORT_LINE, short_line
@@ -203,6 +203,8 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.contact_lines.*.to_km",
         "supply.posts.*.position_km",
         "supply.section_breaks.*.position_km",
+        "supply.neutral_sections.*.from_km",
+        "supply.neutral_sections.*.to_km",
         "outages.*.transformers_km.*",
         "outages.*.sections.*.from_km",
         "outages.*.sections.*.to_km",

@@ -1,6 +1,8 @@
 """A study's table holds every case once, however often the study was killed."""
 
 import json
+import multiprocessing
+import os
 import resource
 import subprocess
 import sys
@@ -15,7 +17,7 @@ import pytest
 
 import tpss
 from sweep.studies import small_cluster, study, write_study
-from tpss.sweep import campaign
+from tpss.sweep import campaign, cluster
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
 from tpss.sweep.folder import Folder, batches, missing
@@ -77,6 +79,36 @@ def test_rows_are_what_simulate_gives(tmp_path, scheduler):
     assert (table["station.West.energy_mwh"] + table["station.East.energy_mwh"]).tolist() == (
         pytest.approx(table.total_energy_mwh.tolist(), rel=1e-12)
     )
+
+
+def test_a_small_study_is_run_here_and_a_large_one_on_all_cores():
+    """Processes take seconds to start: 3 s of computing are not worth it, unless they are asked for."""
+    assert campaign.processes_for(300, 0.01, None) == 1
+    assert campaign.processes_for(100_000, 0.01, None) == os.cpu_count()
+    assert campaign.processes_for(300, 0.01, 4) == 4
+    assert campaign.processes_for(3, 10.0, 8) == 3
+
+
+def test_rows_are_the_same_on_processes_of_their_own(tmp_path):
+    small = study(tmp_path)
+    tpss.run_study(small, tmp_path / "here", workers=1)
+    tpss.run_study(small, tmp_path / "there", workers=2)
+    here, there = (tpss.load_table(tmp_path / name) for name in ("here", "there"))
+    pd.testing.assert_frame_equal(without_timings(here), without_timings(there))
+    assert not multiprocessing.active_children()
+
+
+def test_a_study_that_is_stopped_leaves_no_processes(tmp_path):
+    """As by Ctrl-C: what is done is kept, what runs is ended."""
+
+    def stop(_: campaign.Advance) -> None:
+        raise KeyboardInterrupt
+
+    slow = study(tmp_path, SLOW)
+    with pytest.raises(KeyboardInterrupt):
+        tpss.run_study(slow, tmp_path / "out", workers=2, report=stop)
+    assert not multiprocessing.active_children()
+    assert 0 < len(tpss.load_table(tmp_path / "out")) < SLOW["cases"]
 
 
 def test_a_collapse_and_a_stall_are_rows_as_others_are(tmp_path, scheduler):
@@ -243,7 +275,7 @@ def test_a_damaged_file_is_told_with_the_remedy(tmp_path, scheduler):
 
 
 def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(campaign, "CONNECT_S", 0.5)
+    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
     said = refused(study(tmp_path), tmp_path / "out", "tcp://127.0.0.1:9")
     assert "no scheduler answers at tcp://127.0.0.1:9" in said
     assert "leave --scheduler out" in said
@@ -252,7 +284,7 @@ def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
 def test_workers_of_another_version_are_told():
     theirs = {"tcp://10.0.0.2:1234": {"tpss_version": "9", "kernel_hash": "0"}}
     with pytest.raises(tpss.StudyError, match=r"10\.0\.0\.2:1234 is of another version"):
-        campaign.demand_version(theirs)
+        cluster.demand_version(theirs)
 
 
 def test_gaps_between_what_is_done_are_cut_into_batches():
@@ -262,3 +294,16 @@ def test_gaps_between_what_is_done_are_cut_into_batches():
     assert list(batches(gaps, 3)) == [(0, 2), (4, 6), (7, 9), (9, 10)]
     assert missing([(0, 10)], 10) == []
     assert missing([], 2) == [(0, 2)]
+
+
+def test_an_estimate_counts_what_comes_before_the_first_case():
+    """10 s of checks and starts, then 300 cases of 0.1 s on two processes: 10 + 15 s."""
+    assert campaign.Estimate(300, 0.1, 2, before_s=10.0).whole_s == 25.0
+
+
+def test_an_estimate_measures_the_processes_that_will_run(tmp_path):
+    one, two = (campaign.estimate(study(tmp_path), workers) for workers in (1, 2))
+    assert (one.cases, one.workers, two.workers) == (6, 1, 2)
+    assert one.before_s > 0.0
+    assert 0.0 < one.case_s < one.whole_s
+    assert not multiprocessing.active_children()

@@ -26,15 +26,15 @@ class Form:
     numbers: tuple[str, ...]
     choices: tuple[str, ...]
     outputs: tuple[str, ...]
-    with_stations: bool
-    """Whether the energy of each feeding station is an output too."""
+    of_each_station: tuple[str, ...]
+    """Figures of each feeding station that are outputs too."""
 
     def outputs_of(self, columns: Sequence[str]) -> list[str]:
         """Outputs for a table with these columns."""
         stations = [
             name
             for name in columns
-            if self.with_stations and name.startswith("station.") and name.endswith(".energy_mwh")
+            if name.startswith("station.") and name.rpartition(".")[2] in self.of_each_station
         ]
         return [*self.outputs, *stations]
 
@@ -64,11 +64,16 @@ _AGGREGATED = Form(
         "lowest_voltage_kv",
         "peak_loading",
     ),
-    with_stations=True,
+    of_each_station=("energy_mwh",),
 )
 
+AGGREGATED, VARIED = "aggregated", "varied"
+
 FORMS = {
-    "aggregated": _AGGREGATED,
+    AGGREGATED: _AGGREGATED,
+    VARIED: replace(
+        _AGGREGATED, numbers=(), choices=(), of_each_station=("energy_mwh", "peak_loading")
+    ),
     "profile": replace(_AGGREGATED, numbers=(*_AGGREGATED.numbers, *_PROFILE)),
     "original": Form(
         numbers=(
@@ -81,11 +86,11 @@ FORMS = {
         ),
         choices=("catenary", "high_voltage_line"),
         outputs=("mean_speed_kmh",),
-        with_stations=False,
+        of_each_station=(),
     ),
 }
-"""``profile``: with statistics of where it is steep.  ``original``: what TPSA was first designed for,
-the highest mean speed of a train added to a line.
+"""``varied``: inputs are what a study varies.  ``profile``: with statistics of where it is steep.
+``original``: what TPSA was first designed for, the highest mean speed of a train added to a line.
 """
 
 NAMED_CATENARY, OWN = "catenary", "own"

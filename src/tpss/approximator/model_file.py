@@ -17,7 +17,10 @@ from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import write_file
 from tpss.scenario.fields import Name, Part, Real, Whole, fault
 
-FORMAT, VERSION = "tpss-approximator", 2
+FORMAT, VERSION = "tpss-approximator", 3
+
+READ = (2, VERSION)
+"""Versions of the format that are read: the second does not say what was left out."""
 
 MOST_BYTES = 200_000_000
 """Largest file that is read: a hundred times as large as those that are written. [byte]"""
@@ -118,13 +121,15 @@ class Data(Part):
     tpss_version: Name
     kernel_hash: Name
     """Of the program that made the table."""
+    definition: str = ""
+    """The study as text, from which its cases can be made; empty if that is not known."""
 
 
 class ModelFile(Part):
     """An approximator."""
 
     format: Literal["tpss-approximator"]
-    version: Literal[2]
+    version: Literal[2, 3]
     made_by: dict[Name, Name]
     """Versions of the programs that trained it."""
     form: Name
@@ -132,6 +137,10 @@ class ModelFile(Part):
     inputs: Inputs
     domain: Domain
     outputs: Annotated[tuple[Output, ...], Field(min_length=1)]
+    left_out: tuple[Name, ...] = ()
+    """What the study varies and the inputs do not describe: its effect is in the intervals only."""
+    untold: tuple[Name, ...] = ()
+    """Figures that some cases lack, or that are the same in all: they are not predicted."""
     tried: dict[Name, dict[Name, Real]]
     """Errors for cases not seen, by what the networks predict and by their number of neurons."""
     figures: Weights
@@ -184,10 +193,10 @@ def read_model(path: Path) -> ModelFile:
             f"{path} is not the file of an approximator; name one that tpss approximate train has "
             "written"
         )
-    if document.get("version") != VERSION:
+    if document.get("version") not in READ:
         raise ApproximatorError(
             f"{path} was written by another version of TPSS: its format is {document.get('version')!r}, "
-            f"this version reads {VERSION}; train it again"
+            f"this version reads {' and '.join(map(str, READ))}; train it again"
         )
     try:
         return ModelFile.model_validate(document)

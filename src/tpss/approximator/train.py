@@ -13,10 +13,16 @@ from tpss.approximator import fit as fitting
 from tpss.approximator.approximator import Approximator
 from tpss.approximator.calibrate import deviation, factor_of, log_sizes, usual_spread
 from tpss.approximator.domain import domain_of
-from tpss.approximator.forms import FORMS, with_traffic
+from tpss.approximator.forms import VARIED, Form, with_traffic
 from tpss.approximator.inputs import inputs_of_table
 from tpss.approximator.model_file import VERSION, Data, ModelFile, Output, Weights
 from tpss.approximator.network import Array, Ensemble
+from tpss.approximator.parameters import (
+    fitting_form,
+    form_named,
+    left_out_of,
+    with_parameters,
+)
 from tpss.approximator.scales import output_of, scaled
 from tpss.approximator.scores import Cases, Simple, score_collapse, score_figures
 from tpss.errors import ApproximatorError
@@ -34,7 +40,7 @@ FEWEST_COLLAPSES = 10
 def train_approximator(
     folder: str | Path,
     *,
-    form: str = "aggregated",
+    form: str | None = None,
     seed: int = 0,
     report: Callable[[int, int], None] | None = None,
 ) -> Approximator:
@@ -44,9 +50,11 @@ def train_approximator(
     ----------
     folder : str or Path
         Folder that `tpss.run_study` has written; the study need not be finished.
-    form : str
-        ``aggregated``; ``profile``: with more statistics of the gradients than mean and standard
-        deviation; or ``original``: the highest mean speed of a train added to a line.
+    form : str, optional
+        ``aggregated``; ``varied``: inputs are what the study varies, by its key paths; ``profile``:
+        with more statistics of the gradients than mean and standard deviation; or ``original``: the
+        highest mean speed of a train added to a line.  By default ``aggregated`` if that describes all
+        that the study varies, else ``varied``.
     seed : int
         Seed of the random numbers.
     report : callable, optional
@@ -65,7 +73,10 @@ def train_approximator(
         The table has too few cases, or nothing varies in it.
     """
     table, origin = read_table(Path(folder))
-    return _train(table, origin, form, seed, report or (lambda *_: None))
+    used = usable(table)
+    _demand_enough(used, len(table))
+    chosen = form or fitting_form(used)
+    return _train(table, used, origin, chosen, seed, report or (lambda *_: None))
 
 
 @dataclass(frozen=True)
@@ -76,6 +87,8 @@ class Origin:
     study_hash: str
     tpss_version: str
     kernel_hash: str
+    definition: str
+    """The study as text, from which its cases can be made; empty if that is not known."""
 
 
 def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
@@ -102,8 +115,9 @@ def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
             name: str(manifest.get(name) or "unknown")
             for name in ("study_hash", "tpss_version", "kernel_hash")
         },
+        definition=str(manifest.get("study") or ""),
     )
-    return with_traffic(table), origin
+    return with_parameters(with_traffic(table)), origin
 
 
 def demand_packages() -> None:
@@ -128,12 +142,20 @@ def usable(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _train(
-    table: pd.DataFrame, origin: Origin, form: str, seed: int, report: Callable[[int, int], None]
+    table: pd.DataFrame,
+    used: pd.DataFrame,
+    origin: Origin,
+    form: str,
+    seed: int,
+    report: Callable[[int, int], None],
 ) -> Approximator:
-    used = usable(table)
-    _demand_enough(used, len(table))
-    inputs = inputs_of_table(used, FORMS[form])
-    names = FORMS[form].outputs_of(list(used.columns))
+    own = form_named(form, used)
+    inputs = inputs_of_table(used, own)
+    names, untold = (
+        _outputs(own, used)
+        if form == VARIED
+        else (own.outputs_of([str(name) for name in used]), [])
+    )
     given = inputs.read({each.name: used[each.name] for each in inputs.varying}, "the table")
     cases = cases_of(used, inputs.encode(given.inputs), names)
     held_out = _held_out(len(used), seed)
@@ -167,6 +189,8 @@ def _train(
             _calibrated(output, errors[:, k], noise.unseen[:, k], figures.spread[:, k])
             for k, output in enumerate(outputs)
         ),
+        left_out=tuple(left_out_of(used, own)),
+        untold=tuple(untold),
         tried={
             kind: {str(neurons): error for neurons, error in each.errors.items()}
             for kind, each in fitted.items()
@@ -178,6 +202,25 @@ def _train(
         collapse_score=None,
     )
     return _scored(file, trained, tested)
+
+
+def _outputs(form: Form, used: pd.DataFrame) -> tuple[list[str], list[str]]:
+    """Outputs that there are in every case that finished, and that differ; and the others.
+
+    Raises
+    ------
+    ApproximatorError
+        There are none.
+    """
+    finished = used[used["status"] == "finished"]
+    names = form.outputs_of([str(name) for name in used])
+    told = [n for n in names if finished[n].notna().all() and finished[n].nunique() > 1]
+    if not told:
+        raise ApproximatorError(
+            f"none of {', '.join(names)} is there in every case and differs; vary more in the study, or "
+            "simulate longer"
+        )
+    return told, [name for name in names if name not in told]
 
 
 def _calibrated(output: Output, errors: Array, log_noise: Array, spread: Array) -> Output:

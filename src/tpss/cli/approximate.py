@@ -25,7 +25,9 @@ LINES_SHOWN = 20
 """Rows of a table whose figures are printed."""
 
 
-def train_model(folder: Path, out: Path, form: str, seed: int, force: bool, quiet: bool) -> int:
+def train_model(
+    folder: Path, out: Path, form: str | None, seed: int, force: bool, quiet: bool
+) -> int:
     """Train an approximator and write its file; return the exit code."""
     from tpss.approximator.model_file import check_target
     from tpss.approximator.train import train_approximator
@@ -128,10 +130,13 @@ def _assignment(text: str) -> tuple[str, Any]:
 
 
 def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
-    from tpss.approximator.forms import with_traffic
+    from tpss.approximator.forms import VARIED, with_traffic
+    from tpss.approximator.from_scenario import inputs_from_scenario
     from tpss.scenario import load_scenario
     from tpss.sweep.inputs import inputs_of
 
+    if model.file.form == VARIED:
+        return inputs_from_scenario(model.file, load_scenario(file))
     described = pd.DataFrame([inputs_of(load_scenario(file))._asdict()])
     known = with_traffic(described).iloc[0].dropna()
     return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
@@ -240,6 +245,7 @@ def _print_model(model: "Approximator", console: Console) -> None:
         + ".",
         f"{model.neurons} in each of {model.members} networks.",
     ]
+    description += _not_known(model)
     for line in description:
         console.print(line, highlight=False, markup=False)
     table = _table("input", "trained at", "unit", "may be given as")
@@ -252,6 +258,20 @@ def _print_model(model: "Approximator", console: Console) -> None:
         )
     console.print(table)
     _print_scores(model.file.scores, model.file.collapse_score, console)
+
+
+def _not_known(model: "Approximator") -> list[str]:
+    """What the study varies and the inputs leave out, and figures that are not predicted."""
+    left_out, untold = model.file.left_out, model.file.untold
+    told = []
+    if left_out:
+        told.append(
+            f"Left out, though the study varies it: {', '.join(left_out)}. What it changes is in the "
+            "intervals only."
+        )
+    if untold:
+        told.append(f"Not predicted, as some cases lack it or all are alike: {', '.join(untold)}.")
+    return told
 
 
 def _print_scores(
@@ -273,7 +293,7 @@ def _print_scores(
 
 def _table(first: str, *others: str) -> Table:
     table = Table(box=None, pad_edge=False)
-    table.add_column(first)
+    table.add_column(first, overflow="fold")
     for heading in others:
         table.add_column(escape(heading), justify="left" if heading == "unit" else "right")
     return table

@@ -19,6 +19,7 @@ class FormName(StrEnum):
     """Which inputs and outputs an approximator has."""
 
     AGGREGATED = "aggregated"
+    VARIED = "varied"
     PROFILE = "profile"
     ORIGINAL = "original"
 
@@ -38,14 +39,16 @@ def train(
     ],
     out: Annotated[Path, typer.Option(help="File to write (JSON).")] = Path("model.json"),
     form: Annotated[
-        FormName,
+        FormName | None,
         typer.Option(
             metavar="FORM",
-            help="aggregated; profile: also with the location of the steep sections, beyond mean and "
-            "standard deviation of the gradients; or original: the highest mean speed of a train added "
-            "to a line, from the number and the speed of the trains that run there.",
+            help="aggregated; varied: inputs are what the study varies, by its key paths; profile: "
+            "aggregated, also with the location of the steep sections, beyond mean and standard "
+            "deviation of the gradients; or original: the highest mean speed of a train added to a "
+            "line, from the number and the speed of the trains that run there. By default aggregated "
+            "if that describes all that varies, else varied.",
         ),
-    ] = FormName.AGGREGATED,
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random numbers.")] = 0,
     force: Force = False,
     quiet: Quiet = False,
@@ -59,7 +62,8 @@ def train(
     """
     from tpss.cli.approximate import train_model
 
-    raise typer.Exit(train_model(folder, out, form.value, seed, force, quiet))
+    name = None if form is None else form.value
+    raise typer.Exit(train_model(folder, out, name, seed, force, quiet))
 
 
 @app.command(

@@ -29,7 +29,11 @@ Assignments = Annotated[
     ),
 ]
 
-ResultFolder = Annotated[Path, argument(metavar="RESULT", help="Folder written by tpss run.")]
+ResultFolder = Annotated[
+    Path, argument(metavar="RESULT", help="Folder written by tpss run, or by tpss sweep.")
+]
+
+OneResult = Annotated[Path, argument(metavar="RESULT", help="Folder written by tpss run.")]
 
 NoStepCheck = Annotated[
     bool,

@@ -21,6 +21,7 @@ from tpss.cli.arguments import (
     Force,
     From,
     NoStepCheck,
+    OneResult,
     Quiet,
     ResultFolder,
     ScenarioFile,
@@ -148,7 +149,8 @@ def report(
         list[Path],
         argument(
             metavar="RESULT...",
-            help="Folder written by tpss run; several are compared side by side.",
+            help="Folder written by tpss run, of which several are compared side by side, or by tpss "
+            "sweep.",
         ),
     ],
     out: Annotated[
@@ -171,13 +173,18 @@ def report(
     to: To = None,
     force: Force = False,
 ) -> None:
-    """Write a report of a result, or a comparison of several, into one HTML file.
+    """Write a report of a result, a comparison of several, or a report of a study into one HTML file.
 
     It holds summary, plots, tables, audit and scenario, opens in any browser without a network, and
     can be printed.
     """
     from tpss.cli.report import report_results
+    from tpss.cli.study import demand_unused, is_study, report_study
 
+    if len(results) == 1 and is_study(results[0]):
+        demand_unused("a study", label=label, corridor=stations_of(corridor, from_, to))
+        report_study(results[0], out, force)
+        return
     report_results(results, out, force, label or [], stations_of(corridor, from_, to))
 
 
@@ -214,14 +221,22 @@ def plot(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Draw figures of a result, one file per figure, for print and presentations.
+    """Draw figures of a result or a study, one file per figure, for print and presentations.
+
+    Of a study they are parallel, for parallel coordinates of what varied and what came of it, and
+    trade-offs, two key figures against each other.
 
     Exit codes: 0 done, 2 the folder holds no result, its audit failed, there is no such figure or
     train or nothing to draw, or the files cannot be written.
     """
     from tpss.cli.plot import plot_result
+    from tpss.cli.study import demand_unused, is_study, plot_study
 
     stations = stations_of(corridor, from_, to)
+    if is_study(result):
+        demand_unused("a study", train=train, corridor=stations)
+        plot_study(result, figure, out, force)
+        return
     plot_result(result, figure, train, against.value, stations, out, force)
 
 
@@ -246,15 +261,20 @@ def export(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write the tables of a result as files for other programs; all files are written or none.
+    """Write the tables of a result or a study as files for other programs; all are written or none.
 
     They hold trains and stations, every step of every train, violations of voltage limits, and the
-    evidence for standards. Headings carry units, such as `energy [MWh]`. xlsx is one workbook.
+    evidence for standards; of a study, every column of every case. Headings carry units, such as
+    `energy [MWh]`. xlsx is one workbook.
 
     Exit codes: 0 done, 2 the folder holds no result, or the files cannot be written.
     """
     from tpss.cli.export import export_result
+    from tpss.cli.study import export_study, is_study
 
+    if is_study(result):
+        export_study(result, to, out, force)
+        return
     export_result(result, to, out, force)
 
 
@@ -263,7 +283,7 @@ def export(
     "--out profiles.json"
 )
 def export_profiles(
-    result: ResultFolder,
+    result: OneResult,
     out: Annotated[Path, option(help="File to write (JSON).")],
     tracks: Annotated[
         Path | None,
@@ -313,7 +333,9 @@ def export_profiles(
     "tpss sweep --summary converters"
 )
 def sweep(
-    study: Annotated[Path | None, argument(help="Study file (TOML).")] = None,
+    study: Annotated[
+        Path | None, argument(help="Study file (TOML); with --case also its folder.")
+    ] = None,
     out: Annotated[
         Path | None,
         option(help="Folder for the table; a study that it holds in part is continued."),
@@ -322,11 +344,11 @@ def sweep(
         str | None,
         option(
             metavar="ADDRESS",
-            help="Dask scheduler, such as tcp://10.0.0.1:8786; by default a local cluster.",
+            help="Dask scheduler, such as tcp://10.0.0.1:8786; by default processes here.",
         ),
     ] = None,
     workers: Annotated[
-        int | None, option(min=1, help="Processes of the local cluster; by default one per core.")
+        int | None, option(min=1, help="Processes on this computer; by default one per core.")
     ] = None,
     dry_run: Annotated[
         bool,
@@ -339,6 +361,16 @@ def sweep(
         Path | None, option(metavar="DIR", help="Print key figures of a study's folder.")
     ] = None,
     no_step_check: NoStepCheck = False,
+    case: Annotated[
+        int | None,
+        option(
+            min=0,
+            metavar="NUMBER",
+            help="Write a case as a scenario into --out, by default NAME-NUMBER.toml here; the study is "
+            "then given by its file or its folder, and nothing is simulated.",
+        ),
+    ] = None,
+    force: Force = False,
     quiet: Quiet = False,
 ) -> None:
     """Run the cases of a study, and write one row per case into a table (Parquet).
@@ -351,12 +383,17 @@ def sweep(
     Exit codes: 0 done, 2 bad input, or some cases could not be run (the table says why), 4 the audit
     of a case failed, 130 interrupted (finished cases are kept).
     """
-    from tpss.cli.sweep import run_study_file, summarise_folder
+    from tpss.cli.study import write_case
+    from tpss.cli.sweep import demand_packages, run_study_file, summarise_folder
 
     if summary is not None and study is None:
         raise typer.Exit(summarise_folder(summary))
     if study is None or summary is not None:
         raise typer.BadParameter("give either a study, or --summary with its folder")
+    if case is not None:
+        demand_packages()
+        write_case(study, case, out, force)
+        return
     if out is None and not dry_run:
         raise typer.BadParameter("give --out with a folder for the table, or --dry-run")
     code = run_study_file(

@@ -60,7 +60,7 @@ def plot_result(
         except NothingToDrawError as error:
             left_out.append((name, str(error)))
             continue
-        contents[file] = _bytes(drawn, Path(file).suffix.removeprefix("."))
+        contents[file] = figure_bytes(drawn, Path(file).suffix.removeprefix("."))
     if not contents:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in left_out))
         raise ResultError(f"{folder} ({result.status}) holds nothing to draw: {reasons}")
@@ -99,7 +99,8 @@ def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str
     return file.parent, {figure: file.name}
 
 
-def _bytes(figure: "Figure", suffix: str) -> bytes:
+def figure_bytes(figure: "Figure", suffix: str) -> bytes:
+    """A figure as a file of some format."""
     file = io.BytesIO()
     # Without its date the same result gives the same file.
     undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[suffix.lower()]

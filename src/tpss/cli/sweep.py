@@ -24,14 +24,15 @@ MOST_PROBLEMS = 5
 """Different problems of cases that are printed."""
 
 
-def demand_packages() -> None:
-    """Demand the packages that studies need.
+def demand_packages(scheduler: str | None = None) -> None:
+    """Demand the packages that studies need, those of Dask with a scheduler only.
 
     Raises
     ------
     StudyError
     """
-    absent = [name for name in ("distributed", "pyarrow", "scipy") if find_spec(name) is None]
+    needed = ("pyarrow", "scipy", *(("distributed",) if scheduler else ()))
+    absent = [name for name in needed if find_spec(name) is None]
     if absent:
         raise StudyError(f'studies need {", ".join(absent)}: pip install "tpss[study]"')
 
@@ -46,13 +47,13 @@ def run_study_file(
     step_check: bool,
 ) -> int:
     """Run a study, or only check it; return the exit code."""
-    demand_packages()
+    demand_packages(scheduler)
     from tpss.sweep.campaign import run_study
     from tpss.sweep.study import load_study
 
     study = load_study(file)
     if dry_run or out is None:
-        _print_estimate(study, workers)
+        _print_estimate(study, workers, step_check)
         return DONE
     console = Console(stderr=True, quiet=quiet)
     announce_compilation(console)
@@ -96,14 +97,15 @@ def summarise_folder(folder: Path, quiet: bool = False) -> int:
     return BAD_INPUT if summary.problems else DONE
 
 
-def _print_estimate(study: "Study", workers: int | None) -> None:
+def _print_estimate(study: "Study", workers: int | None, step_check: bool) -> None:
     from tpss.sweep.campaign import estimate
 
-    expected = estimate(study, workers)
+    expected = estimate(study, workers, step_check=step_check)
     each_ms = expected.case_s * 1e3
     print(
-        f"{study.file.name}: {expected.cases:,} cases, {each_ms:.1f} ms each in one process, about "
-        f"{_duration(expected.whole_s)} with {expected.workers} worker(s).  Nothing was written."
+        f"{study.file.name}: {expected.cases:,} cases, {each_ms:.1f} ms each in one process, after "
+        f"{_duration(expected.before_s)} of checks and start, about {_duration(expected.whole_s)} "
+        f"with {expected.workers} worker(s).  Nothing was written."
     )
 
 

@@ -35,14 +35,8 @@ def rows_on_cluster(
         It does not answer, its workers are of another version, or some cases could not be run.
     """
     # Dask takes long to import, and is needed here only.
-    from tpss.sweep.campaign import (
-        BATCH_S,
-        BATCHES_AHEAD,
-        Task,
-        client_of,
-        in_turn,
-        prepare_workers,
-    )
+    from tpss.sweep.batch import batch_size
+    from tpss.sweep.cluster import BATCHES_AHEAD, Task, client_of, in_turn, prepare_workers
 
     if not cases:
         return
@@ -52,10 +46,10 @@ def rows_on_cluster(
     started = time.perf_counter()
     run_documents([first], evaluation)
     case_s = time.perf_counter() - started
-    with client_of(scheduler, None) as client:
+    with client_of(scheduler) as client:
         threads = sum(client.nthreads().values())
         prepare_workers(client, warm_up, [first], evaluation)
-        size = max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-len(cases) // (4 * threads))))
+        size = min(MOST_IN_BATCH, batch_size(len(cases), case_s, threads))
         batches = (cases[begin : begin + size] for begin in range(0, len(cases), size))
         tasks = (
             Task(

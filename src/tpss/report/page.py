@@ -5,7 +5,7 @@ is part of the file.  A page blocks all access to the network.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
@@ -19,7 +19,13 @@ from tpss.units import kilometres
 
 
 def fill(
-    template: str, title: str, figures: Mapping[str, Figure], data: Mapping[str, Any], **parts: Any
+    template: str,
+    title: str,
+    figures: Mapping[str, Figure],
+    data: Mapping[str, Any],
+    *,
+    scripts: Sequence[str] = ("report.js",),
+    **parts: Any,
 ) -> str:
     """Page of a template.
 
@@ -31,7 +37,9 @@ def fill(
     figures : mapping of str to Figure
         Plots by the names of their elements.
     data : mapping
-        What the script has to know besides.
+        What the scripts have to know besides.
+    scripts : sequence of str
+        Files of the scripts, in the order in which they run.
     **parts
         What else the template shows.
     """
@@ -50,7 +58,7 @@ def fill(
         figures=figures,
         data=data,
         style=_part("report.css"),
-        script=_part("report.js"),
+        script="\n".join(map(_part, scripts)),
         plotly=get_plotlyjs() if figures else "",
         report_data=_for_script(figures, data),
         **parts,

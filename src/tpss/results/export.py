@@ -61,11 +61,23 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
     _demand_package(kind)
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
     check_files(folder, names, force)
-    tables = {name: with_units(table(result)) for name, table in TABLES.items()}
-    contents = (
-        [_workbook(tables)] if kind is Kind.XLSX else [_bytes(t, kind) for t in tables.values()]
-    )
-    return save_files(folder, dict(zip(names, contents, strict=True)), force)
+    tables = {name: table(result) for name, table in TABLES.items()}
+    return save_files(folder, contents_of(tables, kind, WORKBOOK), force)
+
+
+def contents_of(tables: Mapping[str, pd.DataFrame], kind: Kind, workbook: str) -> dict[str, bytes]:
+    """Files of tables by their names: one for each, or the workbook.
+
+    Raises
+    ------
+    ResultError
+        A package is missing, or a table is too long.
+    """
+    _demand_package(kind)
+    headed = {name: with_units(table) for name, table in tables.items()}
+    if kind is Kind.XLSX:
+        return {workbook: _workbook(headed)}
+    return {f"{name}.{kind}": _bytes(table, kind) for name, table in headed.items()}
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:

@@ -18,6 +18,7 @@ from tpss.scenario.files import Profile, read_gradients, read_toml
 from tpss.scenario.override import copy_of
 from tpss.scenario.rolling_stock import completed
 from tpss.scenario.timetable import Defaults, TimetabledTrain, read_timetable
+from tpss.scenario.timetable_density import at_density, density_of
 
 Location = tuple[int | str, ...]
 
@@ -93,6 +94,32 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
         _insert_profile(line, inlined)
     _insert_timetables(inlined)
     return inlined
+
+
+def with_timetables(
+    document: dict[str, Any], source: Path, texts: Mapping[str, str]
+) -> dict[str, Any]:
+    """Put the trains of a document's timetables into its traffic, in place; it then names none.
+
+    Parameters
+    ----------
+    document : dict
+    source : Path
+        File to name in errors.
+    texts : mapping of str to str
+        What the files hold, by the names that the document gives them; others are read.
+
+    Raises
+    ------
+    ScenarioError
+        A timetable has faults.
+    """
+    inlined = Inlined(document, source)
+    _insert_timetables(inlined, texts)
+    if inlined.findings:
+        raise ScenarioError(inlined.findings)
+    document.pop("timetables", None)
+    return document
 
 
 def _names_files(document: dict[str, Any]) -> bool:
@@ -197,8 +224,11 @@ def _insert_profile(place: Location, inlined: Inlined) -> None:
         inlined.findings += error.findings
 
 
-def _insert_timetables(inlined: Inlined) -> None:
-    """Add the trains of timetables to the traffic, behind its own entries."""
+def _insert_timetables(inlined: Inlined, texts: Mapping[str, str] | None = None) -> None:
+    """Add the trains of timetables to the traffic, behind its own entries.
+
+    Files whose texts are given by their names are not read.
+    """
     document, source = inlined.document, inlined.source
     own = document.get("traffic", [])
     if "timetables" not in document or not isinstance(own, list | tuple):
@@ -209,12 +239,13 @@ def _insert_timetables(inlined: Inlined) -> None:
         if not isinstance(table.get("file"), str):
             continue
         path, defaults = source.parent / table["file"], Defaults.of(i, table)
+        text = (texts or {}).get(table["file"])
         try:
-            trains = read_timetable(path, start_of(document), defaults, inlined.findings)
+            trains = read_timetable(path, start_of(document), defaults, inlined.findings, text)
         except ScenarioError as error:
             inlined.findings += error.findings
             continue
-        for train in trains:
+        for train in at_density(trains, density_of(table)):
             if train.entry["name"] in names:
                 inlined.findings.append(train.named_twice)
                 continue

@@ -47,6 +47,13 @@ class Timetable(Part):
         default=0.0, description="As of a service in the traffic, of all its trains."
     )
     supplement_min_per_100km: Supplement = Field(default=0.0, description="Likewise.")
+    density: Real = Field(
+        default=1.0,
+        ge=0.01,
+        le=100,
+        description="How many times as often trains depart: times between departures are divided by "
+        "it. A denser timetable then begins again, until the departure of its last train.",
+    )
 
 
 OF_ALL_TRAINS = ("delays", "supplement_percent", "supplement_min_per_100km")
@@ -130,7 +137,11 @@ class Defaults(NamedTuple):
 
 
 def read_timetable(
-    path: Path, start_s: float | None, defaults: Defaults, findings: list[Finding]
+    path: Path,
+    start_s: float | None,
+    defaults: Defaults,
+    findings: list[Finding],
+    text: str | None = None,
 ) -> list[TimetabledTrain]:
     """Trains of a CSV file; those with faults are left out, and their faults added to the findings.
 
@@ -142,13 +153,15 @@ def read_timetable(
     defaults : Defaults
     findings : list of Finding
         Of what has been read so far.
+    text : str, optional
+        What the file holds, if it has been read before.
 
     Raises
     ------
     ScenarioError
         The file cannot be read, or its header is wrong.
     """
-    rows = read_rows(path, f"timetables.{defaults.table}.file", findings)
+    rows = read_rows(path, f"timetables.{defaults.table}.file", findings, text)
     trains, first_line = [], dict[str, int]()
     for name, group in groupby(rows, key=lambda row: row["name"]):
         its_rows = list(group)

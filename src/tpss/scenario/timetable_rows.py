@@ -88,8 +88,12 @@ KIND_OF_PLACE = {
 }
 
 
-def read_rows(path: Path, named_by: str, findings: list[Finding]) -> list[Row]:
+def read_rows(
+    path: Path, named_by: str, findings: list[Finding], text: str | None = None
+) -> list[Row]:
     """Rows of a timetable; those with faults are left out, and their faults added to the findings.
+
+    The file is not read where its text is given.
 
     Lines that begin with # are comments, and semicolons may stand for the commas.
 
@@ -98,10 +102,11 @@ def read_rows(path: Path, named_by: str, findings: list[Finding]) -> list[Row]:
     ScenarioError
         The file cannot be read, or its header is wrong.
     """
+    content = read_text(path, named_by) if text is None else text
     lines = [
-        (number, text)
-        for number, text in enumerate(read_text(path, named_by).splitlines(), 1)
-        if text.strip() and not text.lstrip().startswith("#")
+        (number, line)
+        for number, line in enumerate(content.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
     ]
     number, header = lines[0] if lines else (1, "")
     separator = ";" if ";" in header else ","
@@ -115,14 +120,14 @@ def read_rows(path: Path, named_by: str, findings: list[Finding]) -> list[Row]:
     if faults:
         raise ScenarioError(faults)
     rows = []
-    for number, text in lines[1:]:
-        cells = _split(text, separator)
+    for number, line in lines[1:]:
+        cells = _split(line, separator)
         if len(cells) == len(columns):
             rows.append(Row(path, number, dict(zip(columns, cells, strict=True))))
         else:
             problem = f"{len(cells)} values, expected {len(columns)}"
             remedy = "write one for each column of the header; those that are not given are empty"
-            findings.append(Finding(str(path), f"line {number}", text, problem, remedy))
+            findings.append(Finding(str(path), f"line {number}", line, problem, remedy))
     return rows
 
 

@@ -4,6 +4,7 @@ import datetime as dt
 import gc
 import io
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -28,6 +29,11 @@ from tpss.sweep.design import Design, design_of
 from tpss.sweep.inputs import inputs_of
 from tpss.sweep.study import study_of_json
 from tpss.sweep.versions import versions
+
+BATCH_S = 1.0
+"""Approximate time of a batch: a hundred times the overhead of processes and the file system. [s]"""
+
+MOST_IN_BATCH = 5_000
 
 
 @dataclass(frozen=True)
@@ -65,6 +71,17 @@ def run_batch(plan: Plan, first: int, end: int) -> bytes:
     file = io.BytesIO()
     pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
     return file.getvalue()
+
+
+def run_cases(plan: Plan, cases: Sequence[int]) -> None:
+    """Simulate some cases to see how long that takes."""
+    for case in cases:
+        run_case(_open(plan).design, case)
+
+
+def batch_size(left: int, case_s: float, workers: int) -> int:
+    """Cases of a batch: it takes about a second, and each worker has several."""
+    return max(1, min(MOST_IN_BATCH, round(BATCH_S / case_s), -(-left // (4 * workers))))
 
 
 def warm_up(plan: Plan) -> None:

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from tpss.errors import Finding, ScenarioError
+from tpss.scenario.fields import LINE
 from tpss.scenario.override import copy_of
 from tpss.scenario.scenario import Scenario
 from tpss.sweep.design import DEVIATION, DRAWN, MEAN, PROFILE, Design
 from tpss.sweep.settings import Settings, apply
+from tpss.sweep.timetables import apply_timetables, is_of_timetables
 
 
 def scenario_of(design: Design, case: int) -> Scenario:
@@ -34,17 +36,18 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
         They do not give a valid scenario.
     """
     study = design.study
-    document = {**study.base, "name": f"{study.file.name}-{case}"}
-    if study.file.gradients is not None:
-        line = study.base.get("line", {})
-        document["line"] = {key: line[key] for key in line if not key.startswith("gradients")}
-    document = copy_of(document)
+    document = copy_of({**study.base, "name": f"{study.file.name}-{case}"})
     settings: Settings = {}
     for name, value in values.items():
         if name in study.file.choices:
             settings |= study.file.choices[name][value]
         elif name not in DRAWN:
             settings[name] = value
+    if study.timetables:
+        places = (study.source, study.base_source)
+        settings = apply_timetables(document, settings, study.timetables, *places)
+        of_all = {path: v for path, v in study.file.set.items() if not is_of_timetables(path)}
+        apply(document, of_all, study.source)
     apply(document, settings, study.source)
     if study.file.gradients is not None:
         number = values.get(PROFILE, case)
@@ -61,9 +64,10 @@ def draw_gradients(
     one before, and a normal number.  Then the profile is shifted and scaled.
     """
     drawn = design.study.file.gradients
-    length_km = document["line"]["length_km"]
-    begin_km = document["line"].get("begins_at_km", 0.0)
-    if drawn is None or not all(isinstance(km, int | float) for km in (length_km, begin_km)):
+    assert drawn is not None, "they are asked for"
+    line = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
+    length_km, begin_km = line.get("length_km"), line.get("begins_at_km", 0.0)
+    if not all(isinstance(km, int | float) for km in (length_km, begin_km)):
         return
     pieces = max(1, math.ceil(length_km / drawn.piece_km - 1e-9))
     if pieces == 1 and deviation > 0.0:
@@ -80,7 +84,8 @@ def draw_gradients(
     profile -= share @ profile
     spread = math.sqrt(share @ profile**2)
     profile *= deviation / spread if spread > 0.0 else 0.0
-    document["line"]["gradients"] = [
+    line.pop("gradients_file", None)
+    line["gradients"] = [
         {"from_km": begin_km + km, "permille": permille}
         for km, permille in zip(from_begin_km.tolist(), (profile + mean).tolist(), strict=True)
     ]

@@ -7,20 +7,27 @@ from typing import NamedTuple
 
 from tpss.scenario.fields import library_name
 from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import Station
 from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.sweep.gradients import gradient_statistics
+from tpss.sweep.route import route_of
 
 
 class Inputs(NamedTuple):
-    """Inputs of a case.  Of the trains, those of the first traffic entry are described."""
+    """Inputs of a case.  Of the trains, those of the first traffic entry are described.
+
+    Gradients, limits and stations between which it is steep are those of the line; of a network, or of a
+    train that turns round, those of the studied train's route.
+    """
 
     length_km: float
+    """Of all lines."""
     route_km: float
     """Route of the studied train."""
     stops: int
     converter_stations: int
     station_distance_km: float
-    """Mean distance between neighbouring feeding stations; NaN for a single one."""
+    """Mean distance between neighbouring feeding stations of a line; NaN for a single one."""
     longest_station_distance_km: float
     converters: int
     """Installed, in all stations."""
@@ -42,6 +49,8 @@ class Inputs(NamedTuple):
     """NaN if departures are listed."""
     trains_per_h: float
     """Of all services with a headway."""
+    listed_trains: int
+    """Trains with listed departures, those of timetables among them."""
     speed_limit_kmh: float
     """Highest on the route of the studied train, by the line and the train itself."""
     mean_speed_limit_kmh: float
@@ -66,31 +75,28 @@ class Inputs(NamedTuple):
 def inputs_of(scenario: Scenario) -> Inputs:
     """Inputs of a scenario."""
     supply, first = scenario.supply, scenario.traffic[0]
-    only = scenario.only_line
-    places_km = {station.name: station.position_km for station in only.stations}
-    down = places_km[first.destination] < places_km[first.origin]
-    line, sign = (only.mirrored(), -1.0) if down else (only, 1.0)
     train, catenary = scenario.trains[first.train], supply.catenary
-    place_km = {station.name: station.position_km for station in line.stations}
-    begin_km, end_km = place_km[first.origin], place_km[first.destination]
-    stations_km = sorted(sign * station.position_km for station in supply.stations)
-    transformers_km = [sign * km for km in transformer_positions_km(supply)]
+    line, begin_km, end_km, stations_km = route_of(scenario)
+    transformers_km = transformer_positions_km(supply)
     converters = [station.installed for station in supply.stations]
     ratings = [station.installed * station.unit_mva for station in supply.stations]
     headways = [entry.headway_min for entry in scenario.traffic if entry.headway_min is not None]
+    listed = [entry.listed_departures_min or () for entry in scenario.traffic]
     limits = [
         (end - begin, min(speed, train.max_speed_kmh))
         for begin, end, speed in line.speed_limits_between(begin_km, end_km)
     ]
     gradients = gradient_statistics(line, begin_km, end_km, stations_km)
+    stations = _by_line(scenario, supply.stations)
+    feeding = _by_line(scenario, supply.stations, transformers_km)
     return Inputs(
-        length_km=line.length_km,
+        length_km=sum(each.length_km for each in scenario.lines_by_name.values()),
         route_km=end_km - begin_km,
         stops=len(first.stops),
-        converter_stations=len(stations_km),
-        station_distance_km=_mean_distance(stations_km),
+        converter_stations=len(supply.stations),
+        station_distance_km=_mean_distance(stations),
         longest_station_distance_km=max(
-            (b - a for a, b in pairwise(stations_km)), default=math.nan
+            (b - a for places_km in stations for a, b in pairwise(places_km)), default=math.nan
         ),
         converters=sum(converters),
         converters_per_station=sum(converters) / len(converters),
@@ -101,9 +107,10 @@ def inputs_of(scenario: Scenario) -> Inputs:
         connection_x_ohm=catenary.connection_x_ohm,
         high_voltage_line=supply.high_voltage_line is not None,
         transformers=len(transformers_km),
-        feeding_distance_km=_mean_distance(sorted([*stations_km, *transformers_km])),
+        feeding_distance_km=_mean_distance(feeding),
         headway_min=_or_nan(first.headway_min),
         trains_per_h=sum(60.0 / headway for headway in headways),
+        listed_trains=sum(map(len, listed)),
         speed_limit_kmh=max(speed for _, speed in limits),
         mean_speed_limit_kmh=sum(km * speed for km, speed in limits) / (end_km - begin_km),
         train_mass_t=train.mass_t,
@@ -122,7 +129,23 @@ def _or_nan(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _mean_distance(places_km: Sequence[float]) -> float:
-    if len(places_km) < 2:
+def _by_line(
+    scenario: Scenario, stations: Sequence[Station], transformers_km: Sequence[float] = ()
+) -> list[list[float]]:
+    """Positions of feeding points on each line, ascending. [km]"""
+    places_km: dict[str, list[float]] = {name: [] for name in scenario.lines_by_name}
+    for station in stations:
+        places_km[scenario.line_of(station)].append(station.position_km)
+    high_voltage = scenario.supply.high_voltage_line
+    if high_voltage is not None:
+        places_km[scenario.line_of(high_voltage)] += transformers_km
+    return [sorted(each) for each in places_km.values()]
+
+
+def _mean_distance(by_line: Sequence[Sequence[float]]) -> float:
+    """Mean distance between neighbours on the same line; NaN if there are none. [km]"""
+    several = [places_km for places_km in by_line if len(places_km) > 1]
+    if not several:
         return math.nan
-    return (places_km[-1] - places_km[0]) / (len(places_km) - 1)
+    lengths = sum(places_km[-1] - places_km[0] for places_km in several)
+    return lengths / sum(len(places_km) - 1 for places_km in several)

@@ -5,23 +5,18 @@ from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario import Scenario
-from tpss.scenario.fields import AlongLine, marked
-from tpss.scenario.line import end_of_line
+from tpss.scenario.fields import LINE
 from tpss.scenario.override import copy_of, put_in
-from tpss.scenario.paths import NoSuchPlaceError, places_of
+from tpss.scenario.paths import ONE_MORE, NoSuchPlaceError, places_of
+from tpss.scenario.raw import lines_of
 from tpss.scenario.traffic import DEPARTURES
+from tpss.sweep.lengths import is_length, put_length
 
 Settings = dict[str, Any]
 """Values by the key paths of a scenario, see `tpss.scenario.paths`."""
 
 LEFT_OUT = "none"
 """Marks a key of the scenario as left out; TOML has no null."""
-
-LENGTH = "line.length_km"
-
-PLACES = tuple(place for place in marked(Scenario, AlongLine) if not place.startswith("lines."))
-"""Positions whose distances from its beginning scale with the length of the line; gradients do not."""
 
 INSTEAD_OF = {
     "transformers": ("transformers_km",),
@@ -35,74 +30,72 @@ INSTEAD_OF = {
 
 
 def apply(document: dict[str, Any], settings: Mapping[str, Any], source: Path) -> None:
-    """Put values into a document; a new length of the line comes first, positions after it.
+    """Put values into a document; new lengths of lines come first, positions after them.
 
     Raises
     ------
     ScenarioError
-        A path leads to no place; the finding names `source`.
+        Paths lead to no place; the findings name `source`.
     """
     values = {
         path: None if isinstance(value, str) and value == LEFT_OUT else copy_of(value)
         for path, value in settings.items()
     }
-    length_km = values.pop(LENGTH, None)
-    if length_km is not None:
-        _move_places(document, length_km)
-    _put(document, values, source)
-
-
-def _put(document: dict[str, Any], settings: Settings, source: Path) -> None:
-    """Put values of a document in all the places that match their paths."""
+    findings: list[Finding] = []
     # One after the other: a path may lead into what another one has put in.
-    for path, value in settings.items():
+    for path, value in sorted(values.items(), key=lambda item: not is_length(item[0])):
         try:
-            places, remedy = places_of(document, path), "name tables by their keys"
-        except NoSuchPlaceError as error:
-            places, remedy = [], str(error)
-        if not places:
-            problem = "there is no such place in the base scenario"
-            raise ScenarioError([Finding(str(source), path, repr(value), problem, remedy)])
-        changes: dict[str, Any] = {}
+            _put(document, path, value, source)
+        except ScenarioError as error:
+            findings += error.findings
+    if findings:
+        raise ScenarioError(findings)
+
+
+def _put(document: dict[str, Any], path: str, value: Any, source: Path) -> None:
+    """Put a value of a document in all the places that match its path."""
+    places = _places(document, path, value, source)
+    if is_length(path):
         for place in places:
-            above, _, key = place.rpartition(".")
-            if value is not None:
-                changes |= {f"{above}.{other}": None for other in INSTEAD_OF.get(key, ())}
-            changes[place] = value
-        put_in(document, changes, source)
+            put_length(document, place, value)
+        return
+    if ONE_MORE in path.split("."):
+        if value is not None:  # otherwise nothing is added
+            put_in(document, {path: value}, source)
+        return
+    changes: dict[str, Any] = {}
+    for place in places:
+        above, _, key = place.rpartition(".")
+        if value is not None:
+            changes |= {f"{above}.{other}": None for other in INSTEAD_OF.get(key, ())}
+        changes[place] = value
+    put_in(document, changes, source)
 
 
-def _item(container: Any, key: str) -> Any:
-    """An item of a table or list; None if there is none."""
-    if isinstance(container, Mapping):
-        return container.get(key)
-    is_there = isinstance(container, list | tuple) and key.isdigit() and int(key) < len(container)
-    return container[int(key)] if is_there else None
+def _places(document: dict[str, Any], path: str, value: Any, source: Path) -> list[str]:
+    """Places that match a path.
+
+    Raises
+    ------
+    ScenarioError
+        There are none.
+    """
+    try:
+        places, remedy = places_of(document, path), "name tables by their keys"
+    except NoSuchPlaceError as error:
+        places, remedy = [], str(error)
+    lines = [key for key, _ in lines_of(document).values()]
+    if places and not all(_is_on_a_line(place, lines) for place in places):
+        places, remedy = [], f"name one of {', '.join(lines)}"
+    if not places:
+        problem = "there is no such place in the base scenario"
+        raise ScenarioError([Finding(str(source), path, repr(value), problem, remedy)])
+    return places
 
 
-def _move_places(document: dict[str, Any], length_km: float) -> None:
-    """Change the length of a line; the distances of positions from its beginning scale with it."""
-    line = _item(document, "line")
-    begin_km, before_km = _item(line, "begins_at_km") or 0.0, _item(line, "length_km")
-    if _are_numbers(begin_km, before_km, length_km) and before_km > 0:
-        for place in (place for pattern in PLACES for place in places_of(document, pattern)):
-            *above, last = place.split(".")
-            container: Any = document
-            for key in above:
-                container = _item(container, key)
-            position = _item(container, last)
-            if isinstance(position, int | float):
-                key_or_number: Any = int(last) if isinstance(container, list) else last
-                container[key_or_number] = _moved(position, begin_km, before_km, length_km)
-    document["line"]["length_km"] = length_km
-
-
-def _are_numbers(*values: Any) -> bool:
-    return all(isinstance(value, int | float) for value in values)
-
-
-def _moved(position_km: float, begin_km: float, before_km: float, length_km: float) -> float:
-    """A position on a line whose length has changed; one at the end stays exactly there."""
-    if position_km == end_of_line(begin_km, before_km):
-        return end_of_line(begin_km, length_km)
-    return begin_km + (position_km - begin_km) * length_km / before_km
+def _is_on_a_line(place: str, lines: list[str]) -> bool:
+    """Whether a place is not one of a line that there is not."""
+    key, *below = place.split(".")
+    if key not in (LINE, "lines") or not below:
+        return True
+    return (key if key == LINE else f"{key}.{below[0]}") in lines or (key != LINE and not below[1:])

@@ -2,25 +2,32 @@
 
 import hashlib
 import json
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.fields import Part, Real, Whole, fault
+from tpss.scenario.fields import LINE, Name, Part, Real, Whole, fault
 from tpss.scenario.files import read_toml
 from tpss.scenario.inline import inline_files
+from tpss.scenario.override import copy_of
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.validate import validate
 from tpss.sweep.settings import Settings, apply
+from tpss.sweep.timetables import TIMETABLES, is_of_timetables, texts_of
+from tpss.sweep.variable import fault_of_drawn_line, faults_of_paths
 from tpss.sweep.variation import Variation, flattened
 
 
 class Gradients(Part):
     """A gradient profile that is drawn for every case."""
 
+    line: Name | None = Field(
+        default=None, description="Name of the line that gets it; needed where there are several."
+    )
     mean_permille: Variation = Field(description="Mean of the gradient over the line.")
     standard_deviation_permille: Variation = Field(
         description="Standard deviation of the gradient over the line."
@@ -38,6 +45,11 @@ class Gradients(Part):
         le=1_000,
         description="Distance over which the correlation of the gradient falls to 1/e.",
     )
+
+    @property
+    def key(self) -> str:
+        """Key of this line in a scenario."""
+        return LINE if self.line in (None, LINE) else f"lines.{self.line}"
 
 
 class StudyFile(Part):
@@ -75,6 +87,21 @@ class StudyFile(Part):
             raise fault(f"{name} is in vary and in choices", "leave one of them out")
         return self
 
+    @property
+    def varied(self) -> list[tuple[str, str, Any]]:
+        """Key paths of all that varies, where they stand in the file, and the values at their ends."""
+        ranges = [
+            (path, f"vary.{path}", value)
+            for path, variation in self.vary.items()
+            for value in variation.ends
+        ]
+        return ranges + [
+            (path, f"choices.{name}.{option}.{path}", value)
+            for name, options in self.choices.items()
+            for option, settings in options.items()
+            for path, value in settings.items()
+        ]
+
 
 @dataclass(frozen=True)
 class Study:
@@ -86,6 +113,8 @@ class Study:
     source: Path
     """The study file."""
     base_source: Path
+    timetables: dict[str, str] = field(default_factory=dict)
+    """Texts of timetables by the names of their files, if timetables vary."""
 
     @property
     def digest(self) -> str:
@@ -96,7 +125,11 @@ class Study:
         document = self.file.model_dump(mode="json")
         for key in ("name", "description", *(["cases"] if self.file.design == "sobol" else [])):
             del document[key]
-        text = json.dumps([document, self.base], sort_keys=True)
+        drawn = document["gradients"]
+        if drawn is not None and drawn["line"] is None:
+            del drawn["line"]  # a study of one line has the digest that it always had
+        more = [self.timetables] if self.timetables else []
+        text = json.dumps([document, self.base, *more], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def as_json(self) -> str:
@@ -107,6 +140,7 @@ class Study:
                 "base": self.base,
                 "source": str(self.source),
                 "base_source": str(self.base_source),
+                "timetables": self.timetables,
             }
         )
 
@@ -119,6 +153,7 @@ def study_of_json(text: str) -> Study:
         base=parts["base"],
         source=Path(parts["source"]),
         base_source=Path(parts["base_source"]),
+        timetables=parts.get("timetables", {}),
     )
 
 
@@ -144,31 +179,73 @@ def load_study(path: str | Path) -> Study:
                 options[name] = flattened(settings, is_variation=False)
     file = validate(StudyFile, document, source)
     base_source = source.parent / file.scenario
-    base = _load_base(base_source, source, file.scenario)
-    _apply_set(file, base, source, base_source)
-    return Study(file, base, source.absolute(), base_source.absolute())
+    base, timetables = _load_base(base_source, source, file)
+    _demand_variable(file, base, source)
+    return Study(file, base, source.absolute(), base_source.absolute(), timetables)
 
 
-def _load_base(base_source: Path, source: Path, name: str) -> dict[str, Any]:
-    """Document of a valid base scenario, with the files that it names."""
+def _demand_variable(file: StudyFile, base: Mapping[str, Any], source: Path) -> None:
+    """Refuse to vary what no case depends on.
+
+    Raises
+    ------
+    ScenarioError
+    """
+    paths = {path: f"set.{path}" for path in file.set} | {path: key for path, key, _ in file.varied}
+    drawn = file.gradients
+    faults = list(faults_of_paths(paths, file.set, base, drawn.key if drawn else "", source))
+    if drawn is not None:
+        faults += fault_of_drawn_line(drawn.line, base, source)
+    if faults:
+        raise ScenarioError(faults)
+
+
+def _load_base(
+    base_source: Path, source: Path, file: StudyFile
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Document of a valid base scenario with what all cases share, and with the files that it names.
+
+    Timetables that vary stay in it, and the texts of their files are given too; what all cases share is
+    then set in each of them, as it may concern the trains of timetables.
+    """
+    document = _valid_base(base_source, source, file.scenario)
+    varied = [(path, value) for path, _, value in file.varied]
+    own = {path: value for path, value in file.set.items() if is_of_timetables(path)}
+    _set(document, own, source, base_source)
+    texts = texts_of(document, varied, base_source)
+    kept = copy_of(document.get(TIMETABLES, []))
+    inlined = inline_files(document, base_source)
+    if inlined.findings:
+        raise ScenarioError(inlined.findings)
+    base = copy_of(inlined.document)
+    base.pop(TIMETABLES, None)  # its trains are entries of the traffic now
+    _set(base, {path: v for path, v in file.set.items() if path not in own}, source, base_source)
+    if texts:
+        document.pop(TIMETABLES, None)
+        base = inline_files(document, base_source).document | {TIMETABLES: kept}
+    return base, texts
+
+
+def _valid_base(base_source: Path, source: Path, name: str) -> dict[str, Any]:
+    """Document of a valid scenario, as it was written."""
     try:
-        inlined = inline_files(read_toml(base_source), base_source)
-        if inlined.findings:
-            raise ScenarioError(inlined.findings)
-        Scenario.from_document(inlined.document, base_source)
+        document = read_toml(base_source)
+        Scenario.from_document(document, base_source)
     except ScenarioError as error:
         problem = f"the base scenario has {len(error.findings)} fault(s), listed below"
         remedy = "correct them, or name another scenario"
         first = Finding(str(source), "scenario", repr(name), problem, remedy)
         raise ScenarioError([first, *error.findings]) from error
-    return inlined.document
+    return document
 
 
-def _apply_set(file: StudyFile, base: dict[str, Any], source: Path, base_source: Path) -> None:
-    """Put the values that all cases share into the base; its faults are now those of the study."""
+def _set(document: dict[str, Any], settings: Settings, source: Path, base_source: Path) -> None:
+    """Put values that all cases share into the base; its faults are now those of the study."""
+    if not settings:
+        return
     try:
-        apply(base, file.set, source)
-        Scenario.from_document(base, base_source)
+        apply(document, settings, source)
+        Scenario.from_document(document, base_source)
     except ScenarioError as error:
         findings = [replace(f, file=str(source), key=f"set.{f.key}") for f in error.findings]
         raise ScenarioError(findings) from error

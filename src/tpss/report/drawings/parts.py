@@ -153,7 +153,8 @@ class Panel:
 class Drawing:
     """Panels above each other with one horizontal axis; the legend is that of the first panel.
 
-    Where its axis counts columns, from 0, it carries their names, above.
+    Where its axis counts columns, from 0, it carries their names, above.  Without a name and columns it
+    is not drawn.
     """
 
     axis: str

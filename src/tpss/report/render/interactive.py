@@ -51,6 +51,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
     figure.update_layout(LAYOUT, meta=drawing.axis.partition(" ")[0], height=height_px)
     figure.update_xaxes(AXIS, range=drawing.span).update_yaxes(AXIS)
     figure.update_xaxes(title={"text": drawing.axis}, row=count, col=1)
+    if not (drawing.axis or drawing.columns):
+        figure.update_xaxes(visible=False)
     items = [item for panel in drawing.panels for item in panel.items]
     curves = [item for item in items if isinstance(item, parts.Curve)]
     # The values of all curves are read at once, unless points have words of their own.

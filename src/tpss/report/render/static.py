@@ -83,6 +83,9 @@ def render(drawing: Drawing) -> Figure:
         for item in panel.items:
             _draw(item, axes)
         _set_vertical_axis(panel, axes)
+        if not (drawing.axis or drawing.columns):
+            axes.set_xticks([])
+            axes.spines["bottom"].set_visible(False)
     if drawing.columns:
         room_inch = drawing.width_inch / len(drawing.columns)
         _name_columns(drawing.columns, room_inch, places[0])
