@@ -10,7 +10,7 @@ with two points is exact, at
 
 import math
 
-from tpss.driving.data import DrivingData
+from tpss.driving.data import DrivingData, Options
 from tpss.driving.pull import Pull
 from tpss.kernel import inlined, kernel
 from tpss.numerics.curve import Points, curve_at
@@ -24,6 +24,17 @@ MOST_PIECES = 4
 
 GAUSS = 1.0 / math.sqrt(3.0)
 """Places of the two points in half the length of a piece. [1]"""
+
+
+@kernel
+def rails_pass_on(speed_m_s: float, kind: TrainType, options: Options, points: Points) -> float:
+    """`adhesion_of` a train, where it is asked for in few steps only. [N]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.6), (F.5).
+    """
+    return adhesion_of(kind, speed_m_s, options.rail, options.adhesion_in_km_h, points)
 
 
 @inlined
@@ -58,7 +69,7 @@ def brake_electrically(
     ----------
     [EN50388]_, as `vehicle.regeneration.electric_force`.
     """
-    options, own, a = data.options, kind.regeneration, pull.acceleration_m_s2
+    own, a = kind.regeneration, pull.acceleration_m_s2
     begin_m_s = pull.mean_speed_m_s - a * pull.duration_s / 2.0
     time = 0.0
     for _ in range(MOST_PIECES):
@@ -66,7 +77,7 @@ def brake_electrically(
         half = (until - time) / 2.0
         for side in (-GAUSS, GAUSS):
             speed = max(0.0, begin_m_s + a * (time + half * (1.0 + side)))
-            rails_n = adhesion_of(kind, speed, options.rail, options.adhesion_in_km_h, points)
+            rails_n = rails_pass_on(speed, kind, data.options, points)
             work_j = electric_force(pull.braking_n, speed, rails_n, own) * speed * half
             passage.electric_j += work_j
             curve = own.efficiency

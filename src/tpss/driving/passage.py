@@ -21,14 +21,13 @@ slopes over it are found by a second passage at a voltage close by; else those o
 import math
 
 from tpss.driving.data import DrivingData, Floats
-from tpss.driving.electric_brakes import brake_electrically
+from tpss.driving.electric_brakes import brake_electrically, rails_pass_on
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.neutral import follow_power, has_neutral, room_to_change, time_without_power
 from tpss.driving.pull import Aim, End, Pull, find_pull, when_a_phase_ends
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.staircase import index_at, index_from
-from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.braking import band_above, band_below, braking_square
 from tpss.vehicle.feed_back import regenerates
 from tpss.vehicle.phase import demand_of_phase, demand_standing, voltage_decides
@@ -290,11 +289,8 @@ def _drive(
         # of the time that is left, the demand would jump there.
         _draw_standing(voltage_v, passage.left_s, passage, kind)
         # For those who ask what limits it.
-        options = data.options
         train.demand.force_cap_n = pull.cap_n
-        train.demand.adhesion_n = adhesion_of(
-            kind, pull.mean_speed_m_s, options.rail, options.adhesion_in_km_h, points
-        )
+        train.demand.adhesion_n = rails_pass_on(pull.mean_speed_m_s, kind, data.options, points)
     # 3. Where that leads: to speeds and places exactly.
     motion.position_m = position_m + pull.mean_speed_m_s * pull.duration_s
     motion.speed_m_s = max(0.0, v + a * pull.duration_s)

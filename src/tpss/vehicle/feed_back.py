@@ -25,6 +25,10 @@ def offer(
         Force of all brakes, positive; otherwise they give nothing. [N]
     speed_m_s : float
         Mean speed of the step. [m/s]
+
+    References
+    ----------
+    [EN50388]_, as `electric_force`.
     """
     demand.electric_power_w = demand.offered_power_w = demand.regenerated_power_w = 0.0
     if braking_n <= 0.0:
