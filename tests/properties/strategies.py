@@ -295,7 +295,7 @@ def sound_scenarios(draw: Draw) -> Document:
     document = document if begin_km is None else moved(document, begin_km)
     if draw(st.integers(0, 3)) == 3:
         document = into_network(draw, document, lines())
-        give_tracks(Random(draw(st.integers(0, 999))), document)
+        give_tracks(Random(repr(document)), document)  # no draw: all else is as it was without
     if "signalling" in document and draw(st.booleans()):
         with_single_tracks(draw, document)
     if draw(st.integers(0, 3)) == 3:
