@@ -259,7 +259,7 @@ def test_a_wrong_unit_also_leaves_the_right_key_missing():
 
 ABSENT = [
     pytest.param({f"{FREIGHT}.regenerative_braking": True}, f"{FREIGHT}.regenerative_braking",
-                 "trains do not feed power back", "leave it out", id="regeneration"),
+                 "regeneration at this place", "write [trains.NAME.regeneration]", id="regeneration"),
     pytest.param({"line.neutral_sections": [{"from_km": 4.0, "to_km": 4.1}]}, "line.neutral_sections",
                  "neutral sections", "write [[supply.neutral_sections]]", id="neutral sections"),
     pytest.param({"line.speed_limits": [{"from_km": 0.0, "to_km": 5.0, "speed_kmh": 80.0}]},
