@@ -195,5 +195,5 @@ def judge_roots(result: Result) -> None:
         error = np.abs(again[: drawn.size][drawn] / volts[step][drawn] - 1.0).max(initial=0.0)
         assert error < 1e-6, f"a false root in step {step}: off by {error}"
     if result.status == "collapsed":
-        share, _ = replay.root_of_step(steps, data.attrs["time_step_s"])
+        share, _ = replay.root_of_step(steps, replay.tried_s(steps))
         assert share != 1.0, "the load of the collapse can be carried"

@@ -45,6 +45,7 @@ class Replay:
         model, _ = build_model(scenario)
         start = start_of(scenario, model)
         self.switchings = start.switchings
+        self.control = start.model.control
         if start.turns is not None:  # for the trains of the run, no others
             self.run = run_of(replace(start, model=model))
             return
@@ -59,8 +60,7 @@ class Replay:
         others; a train that would depart later is not on the line.
         """
         run = self.run
-        while (until := switch(run, self.switchings, step)) > run.step:
-            run.advance_to(until)
+        self.go_to(step)
         untouched = copy.deepcopy(run.state)
         clock = run.state.clock[0]
         clock.on_line = begin_step(step, run.model, run.state, run.recording)
@@ -73,6 +73,25 @@ class Replay:
         voltages[places.train] = np.abs(places.voltage_v)
         run.state = untouched
         return share, voltages
+
+    def go_to(self, step: int) -> None:
+        """Bring the run to the beginning of a step."""
+        while (until := switch(self.run, self.switchings, step)) > self.run.step:
+            self.run.advance_to(until)
+
+    def tried_s(self, step: int) -> float:
+        """Length at which a step was given up: one that would end with an arrival is tried shorter. [s]
+
+        Means over less time are higher, so it may be that only the shorter step has no solution.
+        """
+        run = self.run
+        self.go_to(step)
+        untouched = copy.deepcopy(run.state)
+        model = run.model._replace(control=self.control)
+        run.clock(step, step + 1, model, run.state, run.recording)
+        length_s = float(run.state.clock[0].last_step_s)
+        run.state = untouched
+        return length_s
 
 
 def solve_step_slowly(count: int, model: Model, state: State) -> float:

@@ -10,6 +10,7 @@ import tpss
 
 from properties.judge import judge_result
 from properties.kilometres import moved
+from properties.roots import Replay
 from properties.rules import Journey
 from scenarios import SHORT_LINE, short_line
 
@@ -167,3 +168,33 @@ def test_a_solution_within_millivolts_of_a_knee_is_found():
         above_v.append(highest_v - 1e3 * knee_kv)
     assert np.abs(above_v).max() < 0.1
     assert (np.diff(above_v) < 0.0).all()
+
+
+def test_a_collapse_within_a_step_that_ends_with_an_arrival_is_judged_in_that_time():
+    """Eight trains start for a stop 10 m ahead, 87 km from the only converter: over some seconds they
+    ask for more than the line carries, over a step of five minutes for a twentieth of that or less."""
+    result = tpss.simulate(
+        short_line(
+            {
+                "simulation": {"time_step_min": 5.0},
+                "line.length_km": 100.0,
+                "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 6.9}],
+                "line.stations": [
+                    {"name": "West", "position_km": 89.74},
+                    {"name": "East", "position_km": 89.75},
+                ],
+                "supply.converter_stations": [
+                    {"name": "C", "position_km": 2.4, "type": "Q48/Q49", "converters": 1}
+                ],
+                "traffic.0.headway_min": 2100.0,
+                "traffic.0.initial_trains": [{"position_km": 89.74, "speed_kmh": 0.0}] * 7,
+            }
+        )
+    )
+    assert result.status == "collapsed"
+    judge_result(result)
+    replay = Replay(result.scenario, 1)
+    short_s = replay.tried_s(0)
+    assert 5.0 < short_s < 30.0
+    assert replay.root_of_step(0, short_s)[0] < 1.0
+    assert replay.root_of_step(0, 300.0)[0] == 1.0
