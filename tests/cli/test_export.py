@@ -21,7 +21,8 @@ def test_tables_are_written_beside_the_result(tpss_command, demo):
     said = tpss_command("export", "demo")
     assert (said.code, said.err) == (0, "")
     assert said.out.startswith(
-        "Wrote into demo/tables: trips.csv, stops.csv, waits.csv, stations.csv, regeneration.csv, violations.csv"
+        "Wrote into demo/tables: trips.csv, stops.csv, waits.csv, stations.csv, regeneration.csv, "
+        "violations.csv"
     )
     assert {file.name for file in (demo / "tables").iterdir()} == {f"{name}.csv" for name in TABLES}
 
