@@ -71,8 +71,11 @@ class Record:
 
     @classmethod
     def array(cls, rows: Iterable[tuple[Any, ...]]) -> Records[Self]:
-        """Array of records, a `row` each."""
-        return np.array(list(rows), dtype=cls.dtype).view(np.recarray)  # type: ignore[return-value]
+        """Array of records, a `row` each; what lies between fields is zero."""
+        given = list(rows)
+        array = cls.blank(len(given))
+        array.view(np.ndarray)[:] = given
+        return array
 
     @classmethod
     def blank(cls, *shape: int) -> Records[Self]:

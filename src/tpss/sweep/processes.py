@@ -139,11 +139,12 @@ def _pool(plan: Plan, count: int) -> Iterator[ProcessPoolExecutor]:
         yield pool
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
-        started = set(multiprocessing.active_children()) - before
-        for process in started:
-            process.terminate()
-        for process in started:
-            process.join()
+        # One that the pool was about to start is there a moment later.
+        while started := set(multiprocessing.active_children()) - before:
+            for process in started:
+                process.terminate()
+            for process in started:
+                process.join()
         raise
     pool.shutdown()
 
