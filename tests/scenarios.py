@@ -5,7 +5,8 @@ from typing import Any
 
 import tpss
 
-from properties.rules import Journey, keep_the_rules
+from properties.journeys import Journey
+from properties.rules import keep_the_rules
 
 SHORT_LINE: dict[str, Any] = {
     "format": 1,

@@ -8,10 +8,10 @@ import pytest
 
 import tpss
 
+from properties.journeys import Journey
 from properties.judge import judge_result
 from properties.kilometres import moved
 from properties.roots import Replay
-from properties.rules import Journey
 from scenarios import SHORT_LINE, short_line
 
 

@@ -21,6 +21,7 @@ from tpss.sweep import campaign, cluster
 from tpss.sweep.derive import scenario_of
 from tpss.sweep.design import design_of
 from tpss.sweep.folder import Folder, batches, missing
+from tpss.sweep.progress import Advance
 
 from scenarios import gradients
 
@@ -101,7 +102,7 @@ def test_rows_are_the_same_on_processes_of_their_own(tmp_path):
 def test_a_study_that_is_stopped_leaves_no_processes(tmp_path):
     """As by Ctrl-C: what is done is kept, what runs is ended."""
 
-    def stop(_: campaign.Advance) -> None:
+    def stop(_: Advance) -> None:
         raise KeyboardInterrupt
 
     slow = study(tmp_path, SLOW)

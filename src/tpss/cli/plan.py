@@ -5,6 +5,7 @@ import os
 import random
 import sys
 import time
+from collections.abc import Sized
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from tpss.errors import AuditError, NoPlanError
 if TYPE_CHECKING:
     from tpss.planning.cases import CaseList
     from tpss.planning.load import Plan
-    from tpss.planning.simulate import Advance
+    from tpss.sweep.progress import Advance
 
 GAP_LEFT = 5
 """Exit code of a plan that may not be the best one."""
@@ -49,14 +50,19 @@ def _print_size(case_list: "CaseList", console: Console) -> None:
     file = case_list.plan.file
     for each in case_list.areas:
         name = each.area.name or file.name
-        outages = f", each with {len(file.require.also_with)} outage(s)" * bool(
-            file.require.also_with
-        )
-        say(
-            console,
-            f"{name}: {len(each.area.measures)} measures, {len(each.configurations)} configurations, "
-            f"{len(each.states.states)} states of traffic{outages}",
-        )
+        outages = file.require.also_with
+        listed = [
+            _counted(each.area.measures, "measure"),
+            _counted(each.configurations, "configuration"),
+            _counted(each.states.states, "state", " of traffic"),
+            *([f"each with {_counted(outages, 'outage')}"] if outages else []),
+        ]
+        say(console, f"{name}: {', '.join(listed)}")
+
+
+def _counted(things: Sized, word: str, more: str = "") -> str:
+    """How many things there are, in words."""
+    return f"{len(things)} {word}{'' if len(things) == 1 else 's'}{more}"
 
 
 def _print_tree(case_list: "CaseList", console: Console) -> None:

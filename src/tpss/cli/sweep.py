@@ -14,7 +14,7 @@ from tpss.cli.terminal import announce_compilation, progress_bar, say
 from tpss.errors import StudyError
 
 if TYPE_CHECKING:
-    from tpss.sweep.campaign import Advance
+    from tpss.sweep.progress import Advance
     from tpss.sweep.study import Study
     from tpss.sweep.summary import Summary
 

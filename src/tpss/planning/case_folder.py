@@ -13,7 +13,7 @@ import pandas as pd
 from tpss.errors import StudyError
 from tpss.files.refusals import ANOTHER, explained
 from tpss.files.whole import write_file
-from tpss.sweep.folder import CASES, LOCK, REMEDY, lock
+from tpss.sweep.folder import CASES, LOCK, REMEDY, lock, read_parts
 from tpss.sweep.versions import versions
 
 MANIFEST = "cases.json"
@@ -90,17 +90,8 @@ class CaseFolder:
             A file is damaged.
         """
         import pyarrow as pa
-        import pyarrow.parquet as pq
 
-        tables = []
-        for file in sorted((self.path / CASES).glob("*.parquet")):
-            try:
-                tables.append(pq.read_table(file))
-            except (OSError, pa.ArrowException) as error:
-                raise StudyError(
-                    f"{file} is damaged ({error}); delete it and run the plan's command again, which "
-                    "repeats its cases"
-                ) from error
+        tables = read_parts(sorted((self.path / CASES).glob("*.parquet")), "plan")
         if not tables:
             return pd.DataFrame(index=pd.Index([], name=DIGEST, dtype=object))
         whole: pd.DataFrame = pa.concat_tables(tables, promote_options="permissive").to_pandas()

@@ -9,6 +9,7 @@ from tpss.api import build
 from tpss.errors import Finding, ScenarioError, TooLargeError
 from tpss.outages.run import with_outage
 from tpss.planning.load import Plan, PlannedArea
+from tpss.planning.period import period_of
 from tpss.planning.plan import LEVEL, PlannedMeasure
 from tpss.planning.plan_faults import price_faults
 from tpss.planning.states import TODAY, State, States, put_state
@@ -166,6 +167,7 @@ def _faults_of(
         scenario = Scenario.from_own_document(document, area.source)
         yield from price_faults(plan.file, scenario, str(plan.source))
         yield from _without_step(plan, area, scenario)
+        yield from _without_period(plan, scenario)
         prepared = build(with_step(scenario))
         for name in outages_of(plan, scenario):
             with_outage(prepared, next(each for each in scenario.outages if each.name == name))
@@ -189,6 +191,14 @@ def _without_step(plan: Plan, area: PlannedArea, scenario: Scenario) -> Iterator
         remedy = "add one, such as 0.5, here or to the scenario"
         place = f"evaluate.time_step_min of {area.name}" if area.name else "evaluate.time_step_min"
         yield Finding(str(plan.source), place, "", problem, remedy)
+
+
+def _without_period(plan: Plan, scenario: Scenario) -> Iterator[Finding]:
+    try:
+        period_of(scenario, plan.file.evaluate)
+    except ScenarioError as error:
+        for finding in error.findings:
+            yield replace(finding, file=str(plan.source))
 
 
 def _named(

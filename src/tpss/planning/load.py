@@ -15,6 +15,7 @@ from tpss.planning.plan_faults import (
     renewals_of,
 )
 from tpss.scenario.files import read_toml
+from tpss.scenario.load import demand_no_scenario
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.validate import validate
@@ -108,9 +109,7 @@ def load_plan(path: str | Path) -> Plan:
     """
     source = Path(path)
     document = read_toml(source)
-    if {"trains", "traffic"} <= document.keys():
-        remedy = "run it with tpss run, or name it in a plan"
-        raise ScenarioError([Finding(str(source), "", "", "a scenario, not a plan", remedy)])
+    demand_no_scenario(document, source, "a plan")
     return plan_of(document, source)
 
 

@@ -11,10 +11,11 @@ from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
 from tpss.planning.configurations import check_configurations
 from tpss.planning.load import Plan
-from tpss.planning.simulate import Advance, simulate_cases
+from tpss.planning.simulate import simulate_cases
 from tpss.planning.solve import model_of, tree_of
 from tpss.planning.turning import Turn, all_turns
 from tpss.planning.write import write_answer
+from tpss.sweep.progress import Advance
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
@@ -12,21 +11,10 @@ from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList, distinct
 from tpss.planning.cluster import rows_on_cluster
 from tpss.planning.rows import row_of
+from tpss.sweep.progress import Advance
 
 FILE_S = 1.0
 """Time after which finished cases are written. [s]"""
-
-
-@dataclass(frozen=True)
-class Advance:
-    """Progress of the cases of a plan."""
-
-    cases: int
-    done: int
-    """Finished cases."""
-    before: int
-    """Cases that were finished at the start."""
-    elapsed_s: float
 
 
 def simulate_cases(

@@ -93,6 +93,21 @@ def train_current(
     return current, y1, y2
 
 
+@inlined
+def _drawn(
+    p: float, q: float, p_slope: float, q_slope: float, voltage: complex, square: float,
+    magnitude: float, scale: float, start: Pass,
+) -> tuple[complex, complex, complex]:  # fmt: skip
+    """`train_current` of a demand and its slopes at a voltage, whose square and magnitude are known."""
+    reciprocal = scaled(voltage, 1.0 / square)
+    current = complex(scale * p, -scale * q) * reciprocal
+    if start == FLAT:
+        return current, 0j, 0j
+    half = 0.5 * scale / magnitude
+    y1 = complex(half * p_slope, -half * q_slope)
+    return current, y1, (y1 * voltage - current) * reciprocal
+
+
 @kernel
 def _current_with_brakes(
     voltage: complex, scale: float, start: Pass, train: Train, loads: Loads
@@ -102,13 +117,7 @@ def _current_with_brakes(
     magnitude = math.sqrt(square)
     with_slopes = start != CHECK and start != FLAT
     p, q, p_slope, q_slope = demand_with_brakes(magnitude, with_slopes, train, loads)
-    reciprocal = scaled(voltage, 1.0 / square)
-    current = complex(scale * p, -scale * q) * reciprocal
-    if start == FLAT:
-        return current, 0j, 0j
-    half = 0.5 * scale / magnitude
-    y1 = complex(half * p_slope, -half * q_slope)
-    return current, y1, (y1 * voltage - current) * reciprocal
+    return _drawn(p, q, p_slope, q_slope, voltage, square, magnitude, scale, start)
 
 
 @kernel
@@ -122,13 +131,7 @@ def _current_of_passage(
         magnitude, start != CHECK and start != FLAT, train, loads.types[at(train.train_type)],
         loads.driving, loads.points, loads.scratch,
     )  # fmt: skip
-    reciprocal = scaled(voltage, 1.0 / square)
-    current = complex(scale * p, -scale * q) * reciprocal
-    if start == FLAT:
-        return current, 0j, 0j
-    half = 0.5 * scale / magnitude
-    y1 = complex(half * p_slope, -half * q_slope)
-    return current, y1, (y1 * voltage - current) * reciprocal
+    return _drawn(p, q, p_slope, q_slope, voltage, square, magnitude, scale, start)
 
 
 @fused

@@ -16,7 +16,7 @@ from tpss.scenario.itineraries import check_traffic
 from tpss.scenario.machine import CurrentLimitation
 from tpss.scenario.positions import check_positions, check_stations_named
 from tpss.scenario.raw import Fault, number, table
-from tpss.scenario.simulation import made_of_stepped_motion
+from tpss.scenario.stepped_motion import check_stepped_motion
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 from tpss.scenario.wiring import check_wiring
 
@@ -30,10 +30,8 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings = list(check_positions(document))
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
     findings += [*check_feeds(document), *check_wiring(document)]
-    findings += [*_open_step(simulation), *_driver(simulation), *_bands(document, simulation)]
-    findings += [*_separation(document, simulation), *_planned_order(document, simulation)]
-    findings += _neutral_sections(supply, simulation)
-    findings += _feeding_back(document, simulation)
+    findings += [*_open_step(simulation), *_driver(simulation), *check_stepped_motion(document)]
+    findings += _planned_order(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
     return [Finding(file, *finding) for finding in findings]
@@ -56,52 +54,12 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[Fault]:
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
 
 
-def _separation(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Trains that are kept apart, with stepped motion, which knows no authorities."""
-    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
-    choices += made_of_stepped_motion(simulation.get)
-    wanted = table(document, "signalling").get("separation", "none")
-    if choices and wanted != "none":
-        problem = f"does not go with {choices[0]}"
-        yield "signalling.separation", repr(wanted), problem, f"leave {choices[0]} out"
-
-
-def _feeding_back(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Trains that feed back, with stepped motion, which knows no brakes for a part of a step."""
-    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
-    choices += made_of_stepped_motion(simulation.get)
-    for name, train in table(document, "trains").items():
-        if choices and isinstance(train, Mapping) and table(train, "regeneration"):
-            problem = f"does not go with {choices[0]}"
-            yield f"trains.{name}.regeneration", "", problem, f"leave {choices[0]} out"
-
-
-def _neutral_sections(supply: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Neutral sections, with stepped motion, in which a train has power in whole steps."""
-    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
-    choices += made_of_stepped_motion(simulation.get)
-    if choices and supply.get("neutral_sections"):
-        problem = f"trains pass them for a part of a step, which {choices[0]} does not know"
-        yield "supply.neutral_sections", "", problem, f"leave {choices[0]} out"
-
-
 def _planned_order(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
     """Trains that keep a planned order, in a run of which it is not known how long it lasts."""
     rule = table(document, "signalling").get("single_track")
     if rule == "timetable-order" and "duration_min" not in simulation:
         problem = "it is missing; the order of trains is planned for as long as the run lasts"
         yield "simulation.duration_min", "", problem, "add it"
-
-
-def _bands(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
-    """Retardations that depend on the speed, with stepped motion, whose plans know a single one."""
-    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
-    choices += made_of_stepped_motion(simulation.get)
-    for name, train in table(document, "trains").items():
-        if choices and isinstance(train, Mapping) and table(train, "max_retardation_m_s2"):
-            problem = f"one for each band of speeds, which {choices[0]} does not know"
-            remedy = f"give a number, or leave {choices[0]} out"
-            yield f"trains.{name}.max_retardation_m_s2", "", problem, remedy
 
 
 def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[Fault]:

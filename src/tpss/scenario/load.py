@@ -10,6 +10,27 @@ from tpss.scenario.override import override
 from tpss.scenario.scenario import Scenario
 
 
+def demand_no_scenario(document: Mapping[str, Any], source: Path, what: str) -> None:
+    """Refuse a scenario where a document that starts from one is asked for.
+
+    Parameters
+    ----------
+    document : mapping
+        As it was written.
+    source : Path
+        Its file.
+    what : str
+        What is asked for, such as a study.
+
+    Raises
+    ------
+    ScenarioError
+    """
+    if {"trains", "traffic"} <= document.keys():
+        remedy = f"run it with tpss run, or name it in {what}"
+        raise ScenarioError([Finding(str(source), "", "", f"a scenario, not {what}", remedy)])
+
+
 def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scenario:
     """Scenario of a TOML file, with the CSV files that it names.
 

@@ -1,5 +1,6 @@
 """Validation that reports every fault at once: each field by pydantic, then the parts together."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -195,30 +196,30 @@ def _follow(model: type, location: Location) -> tuple[type, Location]:
     Pydantic's locations name the alternative that it took (a number or a curve) too.
     """
     part, within = model, model
-    choices: dict[str, type | None] = {}
+    choices: dict[str, Any] = {}
     written: list[int | str] = []
     for key in location:
         if key in choices:
-            within = choices[str(key)] or within
-            choices = {}
+            taken = choices[str(key)]
+            within, choices = _part_in(taken) or within, _choices(get_args(taken))
             continue
         written.append(key)
         part = within
         fields = {field.alias or name: field for name, field in fields_of(part).items()}
         if key in fields:  # otherwise the number of a list's item, or the name of a train
-            choices = _choices(fields[str(key)])
+            choices = _choices([fields[str(key)].annotation])
             within = _part_in(fields[str(key)].annotation) or part
     return part, tuple(written)
 
 
-def _choices(field: Any) -> dict[str, type | None]:
-    """Alternatives of a field by their tags, with their parts."""
-    choices: dict[str, type | None] = {}
-    waiting = [field.annotation]
+def _choices(annotations: Iterable[Any]) -> dict[str, Any]:
+    """Alternatives within annotations by their tags; not those within an alternative."""
+    choices: dict[str, Any] = {}
+    waiting = list(annotations)
     while waiting:
         annotation = waiting.pop()
         tags = [m.tag for m in getattr(annotation, "__metadata__", ()) if isinstance(m, Tag)]
-        choices |= {tag: _part_in(annotation) for tag in tags}
+        choices |= dict.fromkeys(tags, annotation)
         waiting += [] if tags else get_args(annotation)
     return choices
 

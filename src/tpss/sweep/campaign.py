@@ -24,24 +24,13 @@ from tpss.sweep.folder import (
     missing,
 )
 from tpss.sweep.processes import in_processes, trial
+from tpss.sweep.progress import Advance
 from tpss.sweep.step_sample import sample_steps
 from tpss.sweep.study import Study
 from tpss.sweep.versions import versions
 
 WORTHWHILE_S = 4.0
 """Computing time from which on processes are started, which takes them some seconds. [s]"""
-
-
-@dataclass(frozen=True)
-class Advance:
-    """Progress of a study."""
-
-    cases: int
-    done: int
-    """Finished cases."""
-    before: int
-    """Cases that were finished at the start."""
-    elapsed_s: float
 
 
 @dataclass(frozen=True)

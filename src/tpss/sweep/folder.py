@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -174,7 +174,6 @@ def load_table(folder: str | Path) -> pd.DataFrame:
         The folder is not that of a study, or of another version's format, or a file is damaged.
     """
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
     path = Path(folder)
     written = read_manifest(path).get(FORMAT_KEY)
@@ -186,14 +185,34 @@ def load_table(folder: str | Path) -> pd.DataFrame:
     files = sorted((path / CASES).glob("*.parquet"))
     if not files:
         raise StudyError(f"{path} has no cases yet; run the study's command again")
+    table: pd.DataFrame = pa.concat_tables(read_parts(files, "study")).to_pandas()
+    return table.sort_values("case", ignore_index=True)
+
+
+def read_parts(files: Iterable[Path], what: str) -> list[Any]:
+    """Tables of files of cases.
+
+    Parameters
+    ----------
+    files : iterable of Path
+    what : str
+        What they are of, whose command repeats cases that are not there.
+
+    Raises
+    ------
+    StudyError
+        A file is damaged.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     tables = []
     for file in files:
         try:
             tables.append(pq.read_table(file))
         except (OSError, pa.ArrowException) as error:
             raise StudyError(
-                f"{file} is damaged ({error}); delete it and run the study's command again, which "
+                f"{file} is damaged ({error}); delete it and run the {what}'s command again, which "
                 "repeats its cases"
             ) from error
-    table: pd.DataFrame = pa.concat_tables(tables).to_pandas()
-    return table.sort_values("case", ignore_index=True)
+    return tables

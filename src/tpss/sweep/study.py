@@ -13,6 +13,7 @@ from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import LINE, Name, Part, Real, Whole, fault
 from tpss.scenario.files import read_toml
 from tpss.scenario.inline import inline_files
+from tpss.scenario.load import demand_no_scenario
 from tpss.scenario.override import copy_of
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.validate import validate
@@ -167,9 +168,7 @@ def load_study(path: str | Path) -> Study:
     """
     source = Path(path)
     document = read_toml(source)
-    if {"trains", "traffic"} <= document.keys():
-        remedy = "run it with tpss run, or name it in a study"
-        raise ScenarioError([Finding(str(source), "", "", "a scenario, not a study", remedy)])
+    demand_no_scenario(document, source, "a study")
     for key in ("set", "vary"):
         if isinstance(document.get(key), dict):
             document[key] = flattened(document[key], is_variation=key == "vary")

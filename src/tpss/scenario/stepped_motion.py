@@ -1,0 +1,70 @@
+"""What a scenario may not ask for where trains move in steps.
+
+The checks read the document as it was written, see `scenario.raw`.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from tpss.scenario.raw import Fault, table
+from tpss.scenario.simulation import made_of_stepped_motion
+
+Asked = tuple[str, str, str, str]
+"""Key path and value of what is asked for, its problem, and a remedy beside leaving out the choice that
+makes trains move in steps, which the problem names at ``{}``."""
+
+
+def check_stepped_motion(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """What is asked for beside a choice that makes trains move in steps."""
+    simulation = table(document, "simulation")
+    choices = ['motion = "stepped"'] if simulation.get("motion") == "stepped" else []
+    choices += made_of_stepped_motion(simulation.get)
+    if not choices:
+        return
+    for asked in UNKNOWN:
+        for key, value, problem, remedy in asked(document):
+            yield key, value, problem.format(choices[0]), f"{remedy}leave {choices[0]} out"
+
+
+def _separation(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Trains that are kept apart: it knows no authorities."""
+    wanted = table(document, "signalling").get("separation", "none")
+    if wanted != "none":
+        yield "signalling.separation", repr(wanted), "does not go with {}", ""
+
+
+def _bands(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Retardations that depend on the speed: its plans know a single one."""
+    for name, train in _trains(document):
+        if table(train, "max_retardation_m_s2"):
+            problem = "one for each band of speeds, which {} does not know"
+            yield f"trains.{name}.max_retardation_m_s2", "", problem, "give a number, or "
+
+
+def _electric_brakes(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Trains that feed back: it knows no brakes for a part of a step."""
+    for name, train in _trains(document):
+        if table(train, "regeneration"):
+            yield f"trains.{name}.regeneration", "", "does not go with {}", ""
+
+
+def _neutral_sections(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Neutral sections: a train has power in whole steps."""
+    if table(document, "supply").get("neutral_sections"):
+        problem = "trains pass them for a part of a step, which {} does not know"
+        yield "supply.neutral_sections", "", problem, ""
+
+
+def _trains(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    for name, train in table(document, "trains").items():
+        if isinstance(train, Mapping):
+            yield name, train
+
+
+UNKNOWN: tuple[Callable[[Mapping[str, Any]], Iterator[Asked]], ...] = (
+    _bands,
+    _separation,
+    _neutral_sections,
+    _electric_brakes,
+)
+"""What is looked for, in the order of the findings."""
