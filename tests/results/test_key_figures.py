@@ -60,6 +60,8 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
         assert close(station.peak_power_mw, expected.peak_power_mw)
     assert close(found.total_energy_mwh, summary["total_energy_mwh"], found.losses_mwh)
     assert close(found.losses_mwh, summary["losses_mwh"])
+    converters = summary.get("converter_losses")
+    assert close(found.converter_losses_mwh, converters and converters["losses_mwh"])
     lowest = found.lowest_voltage
     assert (lowest and lowest.as_dict()) == summary["lowest_voltage"]
     useful = summary["standards"]["mean_useful_voltage"]

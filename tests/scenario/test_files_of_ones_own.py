@@ -133,6 +133,10 @@ def test_every_place_that_takes_a_library_name_takes_a_file():
             waiting = [(field.annotation, (*above, name))]
             while waiting:
                 annotation, at = waiting.pop()
+                marks = getattr(annotation, "__metadata__", ())
+                if any(isinstance(item, FromLibrary) for item in marks):
+                    found.append(at)
+                    continue
                 if isinstance(annotation, type) and issubclass(annotation, BaseModel):
                     found += places(annotation, at)
                     continue

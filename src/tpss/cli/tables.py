@@ -13,6 +13,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.terminal import parts_that_fit, say, width_of
+from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import Result
@@ -40,6 +41,8 @@ def print_result(result: Result, console: Console) -> None:
         _named_rows(result.stations, "station"),
         console,
     )
+    if len(result.converter_losses):
+        _print_losses(result.converter_losses, console)
     for line in key_figures(result):
         say(console, line)
     print_violations(result, console)
@@ -93,6 +96,22 @@ _STATION_COLUMNS = (
     _Column("mean_converters", "converters", "mean", 1),
 )
 
+_RARE = ("to_grid_mwh", "burnt_mwh", "auxiliaries_mwh")
+"""Columns of the 50 Hz side that are left out where they are 0."""
+
+_LOSS_COLUMNS = (
+    _Column("from_grid_mwh", "taken", "MWh", 3),
+    _Column("to_grid_mwh", "given", "MWh", 3),
+    _Column("burnt_mwh", "burnt", "MWh", 3),
+    _Column("losses_mwh", "losses", "MWh", 3),
+    _Column("idle_mwh", "idle", "MWh", 3),
+    _Column("by_load_mwh", "by load", "MWh", 3),
+    _Column("auxiliaries_mwh", "auxil.", "MWh", 3),
+    _Column("mean_efficiency", "mean eff.", "%", 1, 100.0),
+    _Column("starts", "starts", "", 0),
+    _Column("peak_from_grid_mw", "peak", "MW", 2),
+)
+
 _STEP_PLACE = [_Column("line", "on", "", 0), _Column("track", "track", "", 0)]
 """Where a train is beside its kilometre, where that has to be told."""
 
@@ -144,6 +163,13 @@ def _print_trains(result: Result, console: Console) -> None:
         say(console, f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result")
 
 
+def _print_losses(found: pd.DataFrame, console: Console) -> None:
+    """Print the 50 Hz side of stations, without columns of what does not occur."""
+    occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
+    title = "50 Hz side of converter stations"
+    _print_table(title, "station", occurs, _named_rows(found, "station"), console)
+
+
 def _print_table(
     title: str,
     first: str,
@@ -183,6 +209,8 @@ def key_figures(result: Result) -> list[str]:
     )
     if (totals := fed_back(result.dataset, result.scenario)) is not None:
         lines.append(in_words(totals))
+    if (lost := summary.get("converter_losses")) is not None:
+        lines.append(losses_in_words(lost))
     lowest = summary["lowest_voltage"]
     if lowest is not None:
         place = f"{lowest['position_km']:.2f} km"

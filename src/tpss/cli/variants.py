@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 BASE = "base"
 """Names the scenario as it is, among its variants."""
 
-COLUMNS = ("trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %")
+COLUMNS = (
+    "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %", "converters lose MWh",
+    "from grid MWh", "to grid MWh",
+)  # fmt: skip
+"""Those of which no run has a figure are left out."""
 
 PLACE = 4
 """Column of a place, whose differences mean nothing."""
@@ -59,6 +63,9 @@ def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
     """Print the key figures of several results, and what differs from the first one."""
     first = next(iter(rows.values())).figures
     compared = [*first[:PLACE], None, *first[PLACE + 1 :]]
+    shown = [
+        k for k in range(len(COLUMNS)) if any(row.figures[k] is not None for row in rows.values())
+    ]
 
     def table_of(numbers: Sequence[int], more: str = "") -> Table:
         table = Table(title=f"Variants{more}", title_justify="left", box=None, pad_edge=False)
@@ -71,14 +78,15 @@ def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
             table.add_row(name, row.ended, *cells)
         return table
 
-    for k, part in enumerate(parts_that_fit(range(len(COLUMNS)), table_of, console)):
+    for k, part in enumerate(parts_that_fit(shown, table_of, console)):
         console.print(table_of(part, ", continued" if k else ""))
 
 
 def row_of(result: "Result") -> Row:
-    """Trip time, energy, losses, lowest voltage and its place, highest loading of a station."""
+    """Figures of a result in the order of the columns; None of what it does not have."""
     summary, lowest = result.summary, result.summary["lowest_voltage"] or {}
     loading = result.stations.peak_loading.max()
+    grid = summary.get("converter_losses") or {}
     figures = [
         summary["trip_time_min"],
         summary["total_energy_mwh"],
@@ -86,6 +94,7 @@ def row_of(result: "Result") -> Row:
         lowest.get("voltage_kv"),
         _place(lowest),
         None if loading != loading else 100.0 * float(loading),
+        *(grid.get(key) for key in ("losses_mwh", "from_grid_mwh", "to_grid_mwh")),
     ]
     return Row(result.status, figures)
 

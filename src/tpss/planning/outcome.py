@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from tpss.planning.plan import Evaluation
 from tpss.planning.steady import FINISHED, SteadyRun, Window, run_steadily
-from tpss.results.key_figures import KeyFigures, frame_of, key_figures_of
+from tpss.results.grid_side import sides_of
+from tpss.results.key_figures import KeyFigures, frame_of, grid_side_w, key_figures_of
 from tpss.run.run import Run, arrivals_s
 from tpss.run.stiff import lost_by_train
 from tpss.scenario.scenario import Scenario
@@ -24,12 +25,6 @@ from tpss.step.state import TrainState
 from tpss.vehicle.train import Phase
 
 Floats = npt.NDArray[np.float64]
-
-FED = "station_active_power"
-"""What stations feed into the railway, as recorded. [W]"""
-
-LOST_IN_STATION = "_losses"
-"""Ends the names of what stations lose of what they take from the grid, as recorded. [W]"""
 
 _MEGA = {"W": ("mw", 1e-6), "var": ("mvar", 1e-6)}
 """Endings of columns and scales, by recorded units of power."""
@@ -114,16 +109,18 @@ def _electrical(steady: SteadyRun, window: Window) -> dict[str, float]:
     for name, each in whole.items():
         unit, scale = _MEGA[each.unit]
         found[f"{name}_{unit}"] = float(mean(getattr(run.recording, each.array))) * scale
-    from_grid = stations[FED] + sum(
-        np.nan_to_num(stations[name]) for name in powers if name.endswith(LOST_IN_STATION)
-    )
+    sides = sides_of(steady.scenario)
+    lost, drawn, fed_back = (mean(each) * 1e-6 for each in grid_side_w(run, sides))
+    described = [s for s, side in enumerate(sides) if side.is_described]
     loading = stations["converter_loading"][inside]
     return {
-        "drawn_from_grid_mw": float(mean(np.maximum(from_grid, 0.0)).sum()) * 1e-6,
-        "fed_back_to_grid_mw": float(mean(np.maximum(-from_grid, 0.0)).sum()) * 1e-6,
+        "drawn_from_grid_mw": float(drawn.sum()),
+        "fed_back_to_grid_mw": float(fed_back.sum()),
+        "converter_losses_mw": float(lost[described].sum()) if described else math.nan,
         "lowest_voltage_kv": _lowest_voltage_v(run, inside) / 1e3,
         "peak_loading": float(np.nanmax(loading, initial=0.0)),
         **found,
+        **{f"station.{sides[s].name}.converter_losses_mw": float(lost[s]) for s in described},
     }
 
 

@@ -196,8 +196,8 @@ def values(answer: Answer) -> pd.DataFrame:
 
 
 SHOWN = (
-    "drawn_from_grid_mw", "fed_back_to_grid_mw", "network_losses_mw", "lowest_voltage_kv",
-    "mean_useful_voltage_kv", "peak_loading",
+    "drawn_from_grid_mw", "fed_back_to_grid_mw", "converter_losses_mw", "network_losses_mw",
+    "lowest_voltage_kv", "mean_useful_voltage_kv", "peak_loading",
 )  # fmt: skip
 """Columns of the outcomes in the table of configurations."""
 
@@ -218,7 +218,7 @@ def configurations(model: Model) -> pd.DataFrame:
                 "traffic": area.states.states[case.state].name,
                 "carried": not reasons,
                 "why_not": "; ".join(reasons),
-                **{name: outcome[name] for name in SHOWN},
+                **{name: outcome.get(name, np.nan) for name in SHOWN},
             }
         )
     return pd.DataFrame(rows).replace({np.inf: np.nan})

@@ -1,8 +1,9 @@
 """What a plan does not count, in words, for whoever reads its figures."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tpss.planning.solve import Model
+from tpss.scenario.scenario import Scenario
 
 GENERAL = (
     "Traffic is as asked for in each future: none is added because the supply is better.",
@@ -17,24 +18,23 @@ GENERAL = (
 def uncounted(model: Model) -> Iterator[str]:
     """What a plan does not count: of any plan, and of this one."""
     yield from GENERAL
-    lossless = [
-        each.area.name or model.plan.file.name
-        for each in model.areas
-        if each.area.today.supply.converter_stations and not _loses(model, each.area.today.name)
-    ]
-    if lossless:
-        yield (
-            "Losses of converters are not described in the scenarios, so energy is what stations "
-            "give to the railway."
-        )
+    yield from _converter_losses([each.area.today for each in model.areas])
     if not (model.table["fed_back_to_grid_mw"].fillna(0.0) > 0.0).any():
         yield "No energy is given back to the grid."
     if model.plan.file.budget is None:
         yield "There is no budget."
 
 
-def _loses(model: Model, scenario: str) -> bool:
-    """Whether stations of a scenario lose some of what they take from the grid."""
-    table = model.table[model.table.scenario.str.startswith(scenario)]
-    columns = [name for name in table if str(name).endswith("station_losses_mw")]
-    return bool((table[columns].fillna(0.0) > 0.0).any(axis=None))
+def _converter_losses(scenarios: Sequence[Scenario]) -> Iterator[str]:
+    """Whether scenarios describe what converters lose, and how well."""
+    types = [station.type for each in scenarios for station in each.supply.converter_stations]
+    known = [kind.losses for kind in types if kind.losses is not None]
+    if len(known) < len(types):
+        which = "some converters" if known else "converters"
+        whose = "their energy" if known else "energy"
+        yield (
+            f"Losses of {which} are not described in the scenarios, so {whose} is what stations "
+            "give to the railway."
+        )
+    if any(losses.origin == "estimate" for losses in known):
+        yield "Losses of converters are by estimate."

@@ -14,6 +14,7 @@ from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import ALONG, along, gradients_along, is_corridor
+from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
@@ -114,6 +115,7 @@ def report(result: Result, corridor: Sequence[str] = ()) -> str:
             else []
         ),
         tables.of_frame("stations", "Feeding stations", result.stations),
+        *tables.of_converter_losses(result),
         *tables.of_standards(result),
     ]
     return _page(
@@ -176,7 +178,10 @@ def _figures(
 
 
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
-    return {key: render(describe(runs), height) for key, (describe, height) in OVER_TIME.items()}
+    over_time = dict(OVER_TIME)
+    if any(len(result.converter_losses) for result in runs.values()):
+        over_time["converter-losses"] = (converter_losses, 440)
+    return {key: render(describe(runs), height) for key, (describe, height) in over_time.items()}
 
 
 def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) -> dict[str, Any]:

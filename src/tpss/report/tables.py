@@ -94,6 +94,15 @@ def of_standards(result: Result) -> list[Table]:
     return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
 
 
+def of_converter_losses(result: Result) -> list[Table]:
+    """The 50 Hz side of converter stations, where any describes its losses."""
+    found = result.converter_losses
+    caption = "50 Hz side of the converter stations"
+    if (found.origin == "estimate").any():
+        caption += ", losses by estimate"
+    return [of_frame("converter-losses", caption, found)] if len(found) else []
+
+
 def of_figures(results: Mapping[str, Result]) -> Table:
     """Key figures of runs, one row per figure and one column per run, with differences to the first."""
     columns = [
@@ -130,6 +139,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ("total energy", "MWh", total),
         ("losses", "MWh", lost),
         ("share of losses", "%", 100.0 * lost / total if total else None),
+        *_grid_side(summary.get("converter_losses")),
         ("lowest voltage", "kV", lowest.get("voltage_kv")),
         ("train with lowest voltage", "", lowest.get("train")),
         _place("place of lowest voltage", lowest),
@@ -145,6 +155,25 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
             (f"peak loading of {name}", "%", 100.0 * float(loading))
             for name, loading in zip(stations.station, stations.peak_loading, strict=True)
         ),
+    ]
+
+
+def _grid_side(found: Mapping[str, Any] | None) -> list[tuple[str, str, Any]]:
+    """What converter stations lose, take from the 50 Hz grid and give back; empty if not described."""
+    if found is None:
+        return []
+    origin = " by estimate" if "estimate" in found["origins"] else ""
+    efficiency = found["mean_efficiency"]
+    return [
+        (f"losses of converter stations{origin}", "MWh", found["losses_mwh"]),
+        ("energy from the 50 Hz grid", "MWh", found["from_grid_mwh"]),
+        ("energy to the 50 Hz grid", "MWh", found["to_grid_mwh"]),
+        (
+            "mean efficiency of converter stations",
+            "%",
+            None if efficiency is None else 100.0 * efficiency,
+        ),
+        ("starts of converters", "", found["starts"]),
     ]
 
 

@@ -30,6 +30,7 @@ TABLE_PLACES = {
     "waits": "waits",
     "stations": "stations",
     "regeneration": "regeneration",
+    "converter_losses": "converter_losses",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "trains": "train_steps",
 }
@@ -42,7 +43,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "energy",
+    "stations", "converters", "converter-losses", "energy",
     "effort",
 )  # fmt: skip
 

@@ -15,6 +15,7 @@ from tpss.audit.verdict import JUDGED, Audit, judge, limits_of
 from tpss.kernel import plain
 from tpss.model.build import Layout
 from tpss.powerflow.system import System
+from tpss.results.grid_side import StationSide, powers_of, sides_of
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
@@ -26,6 +27,8 @@ from tpss.step.recording import Memory
 from tpss.step.state import Counter
 from tpss.track.leg import leg_of, place_on_line
 from tpss.vehicle.train import Phase
+
+Floats = npt.NDArray[np.float64]
 
 LIMITED = tuple(counter.name.lower() for counter in Counter)
 """Names of what is counted, in the order of the recording."""
@@ -93,6 +96,13 @@ class KeyFigures:
     services, stations : tuple
         In the order of the scenario.
     losses_mwh : float
+        Of the network.
+    converter_losses_mwh : float
+        Of converter stations, auxiliaries included; NaN unless some describe them.
+    drawn_from_grid_mwh : float
+        Energy that all stations take from their grids: what they feed and lose; NaN likewise.
+    fed_back_to_grid_mwh : float
+        Energy that they give back; NaN unless losses are described or trains have electric brakes.
     lowest_voltage : LowestVoltage or None
     mean_useful_voltage_kv : float
         Lowest one of the zones, by EN 50388, in the peak window.
@@ -116,6 +126,9 @@ class KeyFigures:
     services: tuple[ServiceFigures, ...]
     stations: tuple[StationFigures, ...]
     losses_mwh: float
+    converter_losses_mwh: float
+    drawn_from_grid_mwh: float
+    fed_back_to_grid_mwh: float
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
     dimensioning_train_kv: float
@@ -146,6 +159,10 @@ class Frame:
     limits: dict[str, float]
     """Of the audit."""
     system: System
+    sides: tuple[StationSide, ...]
+    """The stations' 50 Hz sides."""
+    feeds_back: bool
+    """Whether trains have electric brakes."""
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -160,6 +177,8 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         at_line_level=np.array(layout.supply.node_level) == 1.0,
         limits=limits_of(model),
         system=model.network.system,
+        sides=sides_of(scenario),
+        feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
     )
 
 
@@ -214,6 +233,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         services=_services(run, start),
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
+        **_grid_side(run, frame),
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),
@@ -304,6 +324,45 @@ def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures,
             frame.stations, figures.stations.tolist(), strict=True
         )
     )
+
+
+def _grid_side(run: Run, frame: Frame) -> dict[str, float]:
+    """Energies on the grids' side of all stations, NaN where they are not described. [MWh]"""
+    lost = drawn = fed_back = math.nan
+    described = any(side.is_described for side in frame.sides)
+    if described or frame.feeds_back:
+        found = grid_side_w(run, frame.sides)
+        duration_s = np.full(run.step, run.model.options.step_s)
+        duration_s[-1:] = run.last_step_s
+        energies = [math.fsum(each.sum(axis=1) * duration_s) / J_PER_MWH for each in found]
+        fed_back = energies[2]
+        if described:
+            lost, drawn = energies[:2]
+    return {
+        "converter_losses_mwh": lost,
+        "drawn_from_grid_mwh": drawn,
+        "fed_back_to_grid_mwh": fed_back,
+    }
+
+
+def grid_side_w(run: Run, sides: Sequence[StationSide]) -> tuple[Floats, Floats, Floats]:
+    """Losses of converters, power from the grid, power to it, of each step and station. [W]"""
+    rows = np.asarray(run.recording.stations)[: run.step]
+    # What transformer stations lose is recorded, and acts on the railway.
+    active = rows["station_active_power"] + np.nan_to_num(rows["station_losses"])
+    reactive, running = rows["station_reactive_power"], rows["active_converters"]
+    found = [
+        powers_of(active[:, s], reactive[:, s], running[:, s], side) for s, side in enumerate(sides)
+    ]
+    lost, drawn, fed_back = (
+        np.stack(each, axis=1)
+        for each in (
+            [powers.losses for powers in found],
+            [powers.from_grid for powers in found],
+            [powers.to_grid for powers in found],
+        )
+    )
+    return lost, drawn, fed_back
 
 
 def _number(value: float) -> float:

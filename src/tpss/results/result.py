@@ -10,6 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results import store, tables
+from tpss.results.converter_losses import converter_losses
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
@@ -81,6 +82,11 @@ class Result:
     def regeneration(self) -> pd.DataFrame:
         """One row per train: what it brakes and where that goes; empty without electric brakes."""
         return regeneration(self.dataset)
+
+    @cached_property
+    def converter_losses(self) -> pd.DataFrame:
+        """One row per converter station that describes losses: the 50 Hz side; otherwise empty."""
+        return converter_losses(self.dataset, self.scenario)
 
     @cached_property
     def train_steps(self) -> pd.DataFrame:

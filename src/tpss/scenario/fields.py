@@ -169,6 +169,8 @@ class FromLibrary:
     """Accept the name of a library entry in place of a table."""
 
     kind: str
+    own: str = ""
+    """Key whose tables have names that are accepted too, and are replaced before."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -178,8 +180,9 @@ class FromLibrary:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        names = {"type": "string", "enum": sorted(library.entries(self.kind))}
-        return {"anyOf": [names, OWN_FILE, handler(schema)]}
+        names: JsonSchemaValue = {"type": "string", "enum": sorted(library.entries(self.kind))}
+        own: JsonSchemaValue = {"type": "string", "description": f"A name of {self.own}."}
+        return {"anyOf": [names, *([own] if self.own else []), OWN_FILE, handler(schema)]}
 
     def _look_up(self, value: Any) -> Any:
         if not isinstance(value, str):

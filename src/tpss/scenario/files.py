@@ -8,21 +8,40 @@ from typing import Any, NamedTuple
 
 from tpss.errors import Finding, ScenarioError, shortened
 
-PROFILE_COLUMNS = {"from_km": "position_km", "permille": "gradient_permille"}
-"""Columns of a gradient profile, by the corresponding keys of a scenario."""
+
+class Columns(NamedTuple):
+    """Columns of a CSV file of numbers, of which the first increases."""
+
+    names: dict[str, str]
+    """Headings by the corresponding keys of a scenario."""
+    ascending: str
+    """What increases, in words."""
+    row: str
+    """What a row is, in words."""
+
+
+GRADIENTS = Columns(
+    {"from_km": "position_km", "permille": "gradient_permille"},
+    "position",
+    "a position and a gradient",
+)
+LOSSES = Columns(
+    {"load_percent": "load_percent", "loss_kw": "loss_kw"}, "load", "a load and the losses at it"
+)
 
 
 class Profile(NamedTuple):
-    """Gradients of a CSV file, as in a scenario, and where they came from."""
+    """Rows of a CSV file, as in a scenario, and where they came from."""
 
     path: Path
     rows: list[dict[str, float]]
     lines: list[int]
     """Number of each row's line in the file, counted from 1."""
+    columns: Columns
 
     def place(self, row: int, key: str) -> str:
         """Place in the file of a row's value."""
-        return f"line {self.lines[row]}, {PROFILE_COLUMNS[key]}"
+        return f"line {self.lines[row]}, {self.columns.names[key]}"
 
 
 def read_text(path: Path, named_by: str = "") -> str:
@@ -77,8 +96,8 @@ def shown_line(text: str, number: int) -> tuple[str, str]:
     return f"line {number}", shortened(line)
 
 
-def read_gradients(path: Path, named_by: str = "line.gradients_file") -> Profile:
-    """Rows of a gradient profile: CSV with a header; lines that begin with # are comments.
+def read_profile(path: Path, named_by: str, columns: Columns = GRADIENTS) -> Profile:
+    """Rows of numbers: CSV with a header; lines that begin with # are comments.
 
     Raises
     ------
@@ -91,7 +110,7 @@ def read_gradients(path: Path, named_by: str = "line.gradients_file") -> Profile
         if text.strip() and not text.lstrip().startswith("#")
     ]
     rows = [(number, [cell.strip() for cell in text.split(",")]) for number, text in lines]
-    header = list(PROFILE_COLUMNS.values())
+    header = list(columns.names.values())
     if not rows or rows[0][1] != header:
         header_row = ",".join(rows[0][1]) if rows else ""
         remedy = f"begin with the line {','.join(header)}"
@@ -100,12 +119,12 @@ def read_gradients(path: Path, named_by: str = "line.gradients_file") -> Profile
             [Finding(str(path), key, header_row, "not the expected header", remedy)]
         )
     findings: list[Finding] = []
-    gradients = [_read_row(path, number, cells, findings) for number, cells in rows[1:]]
-    if not gradients:
-        remedy = "add rows of a position and a gradient"
+    read = [_read_row(path, number, cells, columns, findings) for number, cells in rows[1:]]
+    if not read:
         place, value = f"line {rows[0][0]}", ",".join(header)
+        remedy = f"add rows of {columns.row}"
         findings.append(Finding(str(path), place, value, "no rows follow the header", remedy))
-    profile = Profile(path, gradients, [number for number, _ in rows[1:]])
+    profile = Profile(path, read, [number for number, _ in rows[1:]], columns)
     if not findings:
         findings = _check_order(profile)
     if findings:
@@ -114,32 +133,33 @@ def read_gradients(path: Path, named_by: str = "line.gradients_file") -> Profile
 
 
 def _check_order(profile: Profile) -> list[Finding]:
-    """Faults of rows whose position does not increase."""
+    """Faults of rows whose first column does not increase."""
     findings = []
-    for i, (before, after) in enumerate(pairwise(row["from_km"] for row in profile.rows)):
+    first, what = next(iter(profile.columns.names)), profile.columns.ascending
+    for i, (before, after) in enumerate(pairwise(row[first] for row in profile.rows)):
         if after <= before:
-            problem = f"the position does not increase: {after:g} follows {before:g}"
-            remedy = "put the rows in ascending order, each position once"
-            place = profile.place(i + 1, "from_km")
+            problem = f"the {what} does not increase: {after:g} follows {before:g}"
+            remedy = f"put the rows in ascending order, each {what} once"
+            place = profile.place(i + 1, first)
             findings.append(Finding(str(profile.path), place, f"{after:g}", problem, remedy))
     return findings
 
 
 def _read_row(
-    path: Path, number: int, cells: list[str], findings: list[Finding]
+    path: Path, number: int, cells: list[str], columns: Columns, findings: list[Finding]
 ) -> dict[str, float]:
-    row = ",".join(cells)
-    if len(cells) != len(PROFILE_COLUMNS):
-        problem = f"{len(cells)} values, expected {len(PROFILE_COLUMNS)}"
-        remedy = "write a position and a gradient, separated by a comma, with decimal points"
+    row, names = ",".join(cells), columns.names
+    if len(cells) != len(names):
+        problem = f"{len(cells)} values, expected {len(names)}"
+        remedy = f"write {columns.row}, separated by a comma, with decimal points"
         findings.append(Finding(str(path), f"line {number}", row, problem, remedy))
         return {}
     values = []
-    for column, cell in zip(PROFILE_COLUMNS.values(), cells, strict=True):
+    for column, cell in zip(names.values(), cells, strict=True):
         try:
             values.append(float(cell))
         except ValueError:
             place = f"line {number}, {column}"
             remedy = "write a number with a decimal point and no unit"
             findings.append(Finding(str(path), place, cell, "not a number", remedy))
-    return dict(zip(PROFILE_COLUMNS, values, strict=False))
+    return dict(zip(names, values, strict=False))

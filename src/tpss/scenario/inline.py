@@ -1,12 +1,12 @@
 """Put the files that a scenario names in place of their names.
 
 A name that ends in ``.toml`` stands for the table in that file, next to the scenario: of a train's
-model, of the line, of anything that the library has entries for.  ``gradients_file`` stands for a
-profile in CSV, and ``timetables`` for entries of the traffic.  A scenario then holds everything that it
-says, and its faults are traced back to the files that contain them.
+model, of the line, of anything that the library has entries for.  ``gradients_file`` and
+``curve_file`` stand for rows in CSV, and ``timetables`` for entries of the traffic.  A scenario then
+holds everything that it says, and its faults are traced back to the files that contain them.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.clock import start_of
-from tpss.scenario.files import Profile, read_gradients, read_toml
+from tpss.scenario.files import GRADIENTS, LOSSES, Columns, Profile, read_profile, read_toml
 from tpss.scenario.override import copy_of
 from tpss.scenario.rolling_stock import completed
 from tpss.scenario.timetable import Defaults, TimetabledTrain, read_timetable
@@ -28,13 +28,25 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("line",),
     ("lines", "*"),
     ("supply", "catenary"),
+    ("supply", "contact_lines", "*", "catenary"),
     ("supply", "high_voltage_line", "type"),
     ("supply", "high_voltage_line", "line_transformer"),
     ("supply", "high_voltage_line", "station_transformer"),
     ("supply", "converter_stations", "*", "type"),
+    ("supply", "converter_types", "*"),
     ("trains", "*", "model"),
 )
 """Where a file may be named; ``*`` is any item or key."""
+
+LOSSES_OF = (
+    ("supply", "converter_types", "*", "losses"),
+    ("supply", "converter_stations", "*", "type", "losses"),
+)
+"""Where losses may name a CSV file with their curve."""
+
+LEVEL = ({"from_km": 0.0, "permille": 0.0},)
+LOSSLESS = ({"load_percent": 0.0, "loss_kw": 0.0}, {"load_percent": 100.0, "loss_kw": 0.0})
+"""Rows that allow the rest of a document to be checked, in place of those that cannot be read."""
 
 
 @dataclass
@@ -51,16 +63,16 @@ class Inlined:
     unread: set[Location] = field(default_factory=set)
     """Tables whose file could not be read."""
     profiles: dict[Location, Profile] = field(default_factory=dict)
-    """Gradients that came from CSV files, by their lines."""
+    """Lists that came from CSV files, by their places."""
 
     timetabled: dict[int, TimetabledTrain] = field(default_factory=dict)
     """Trains that came from timetables, by the numbers of their entries of the traffic."""
 
     def origin(self, location: Location) -> tuple[Path, Location]:
         """File that holds a value, and the value's place in it."""
-        for line, profile in self.profiles.items():
-            if location[: len(line) + 1] == (*line, "gradients") and len(location) > len(line) + 2:
-                row, key = location[len(line) + 1 : len(line) + 3]
+        for rows, profile in self.profiles.items():
+            if location[: len(rows)] == rows and len(location) > len(rows) + 1:
+                row, key = location[len(rows) : len(rows) + 2]
                 return profile.path, (profile.place(int(row), str(key)),)
         if location[:1] == ("traffic",) and location[1:]:
             train = self.timetabled.get(int(location[1]))
@@ -90,8 +102,10 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
                 _merge_model(container, location[:-1], inlined)
             else:
                 _insert_table(container, key, location, inlined)
-    for line in lines_of(document):
-        _insert_profile(line, inlined)
+    for location, line in lines_of(document).items():
+        _insert_rows(line, location, "gradients", GRADIENTS, LEVEL, inlined)
+    for location, losses in _losses_of(document).items():
+        _insert_rows(losses, location, "curve", LOSSES, LOSSLESS, inlined)
     _insert_timetables(inlined)
     return inlined
 
@@ -125,6 +139,7 @@ def with_timetables(
 def _names_files(document: dict[str, Any]) -> bool:
     return (
         any("gradients_file" in line for line in lines_of(document).values())
+        or any("curve_file" in losses for losses in _losses_of(document).values())
         or bool(document.get("timetables"))
         or any(True for place in PLACES for _ in _named_files(document, place, ()))
     )
@@ -134,12 +149,20 @@ def _named_files(
     container: Any, place: tuple[str, ...], above: Location
 ) -> Iterator[tuple[Any, Any, Location]]:
     """Containers and keys at a place whose value is the name of a file."""
+    for found, name, location in _items_at(container, place, above):
+        if isinstance(found[name], str) and found[name].endswith(SUFFIX):
+            yield found, name, location
+
+
+def _items_at(
+    container: Any, place: tuple[str, ...], above: Location
+) -> Iterator[tuple[Any, Any, Location]]:
+    """Containers and keys at a place, and where these are."""
     below = place[1:]
     for name in _keys_at(container, place[0]):
-        value = container[name]
         if below:
-            yield from _named_files(value, below, (*above, name))
-        elif isinstance(value, str) and value.endswith(SUFFIX):
+            yield from _items_at(container[name], below, (*above, name))
+        else:
             yield container, name, (*above, name)
 
 
@@ -201,26 +224,58 @@ def lines_of(document: Mapping[str, Any]) -> dict[Location, dict[str, Any]]:
     return {place: line for place, line in tables.items() if isinstance(line, dict)}
 
 
-def _insert_profile(place: Location, inlined: Inlined) -> None:
-    """Read the gradients that a line names as a file into it."""
-    line = lines_of(inlined.document)[place]
-    if not isinstance(line.get("gradients_file"), str):
+def _losses_of(document: Mapping[str, Any]) -> dict[Location, dict[str, Any]]:
+    """The tables of losses of a document, by their places."""
+    return {
+        location: container[key]
+        for place in LOSSES_OF
+        for container, key, location in _items_at(document, place, ())
+        if isinstance(container[key], dict)
+    }
+
+
+def _insert_rows(
+    table: dict[str, Any],
+    place: Location,
+    name: str,
+    columns: Columns,
+    instead: Sequence[dict[str, float]],
+    inlined: Inlined,
+) -> None:
+    """Read the CSV file that a table names as ``<name>_file`` into its list of that name.
+
+    Parameters
+    ----------
+    table : dict
+    place : tuple
+        Where the table is.
+    name : str
+        Of the list.
+    columns : Columns
+        Of the file.
+    instead : sequence of dict
+        Rows that are put in if those of the file have faults.
+    inlined : Inlined
+    """
+    of_file = f"{name}_file"
+    if not isinstance(table.get(of_file), str):
         return
-    file, location = inlined.origin((*place, "gradients_file"))
-    key, name = ".".join(str(part) for part in location), line["gradients_file"]
-    if "gradients" in line:
-        problem = "gradients are given twice, as a file and as a list"
-        remedy = "leave out gradients_file or gradients"
-        inlined.findings.append(Finding(str(file), key, repr(name), problem, remedy))
+    file, location = inlined.origin((*place, of_file))
+    key, value = ".".join(str(part) for part in location), table[of_file]
+    if name in table:
+        problem = (
+            f"{name} {'are' if name.endswith('s') else 'is'} given twice, as a file and as a list"
+        )
+        remedy = f"leave out {of_file} or {name}"
+        inlined.findings.append(Finding(str(file), key, repr(value), problem, remedy))
         return
-    del line["gradients_file"]
+    del table[of_file]
     try:
-        profile = read_gradients(file.parent / name, ".".join((*map(str, place), "gradients_file")))
-        inlined.profiles[place] = profile
-        line["gradients"] = profile.rows
+        rows = read_profile(file.parent / value, ".".join(map(str, (*place, of_file))), columns)
+        inlined.profiles[*place, name] = rows
+        table[name] = rows.rows
     except ScenarioError as error:
-        # A level line allows the rest of the document to be checked.
-        line["gradients"] = [{"from_km": 0.0, "permille": 0.0}]
+        table[name] = list(instead)
         inlined.findings += error.findings
 
 

@@ -103,6 +103,9 @@ def _follows_from_another(
         if location == ("traffic",) and inlined.document.get("timetables"):
             return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
+    if detail["type"] == "unknown_name" and location[-1] == "type":
+        own = inlined.document["supply"].get("converter_types")
+        return isinstance(own, dict) and detail["input"] in own  # which has a fault of its own
     if detail["type"] == "default_factory_not_called":
         return True  # what is left out follows from another key, which has a fault
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":

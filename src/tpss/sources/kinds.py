@@ -118,7 +118,7 @@ def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
 def losses(current: complex, running: float, source: Source) -> float:
     """Losses within a source, none of a converter or of one that is out of service. [W]
 
-    Those of converters are not described.
+    Those of converters do not act on the network: `tpss.results.converter_losses` finds them.
     """
     if source.kind == SourceKind.GRID and running > 0.0:
         return grid_losses(current, running, source.grid)

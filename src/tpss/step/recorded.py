@@ -118,7 +118,7 @@ RECORDED = (
     Recorded("converter_loading", "station", "1", "loading of the running converters", "Ld",
              "apparent power over their rating"),
     Recorded("station_losses", "station", "W", "losses within transformer stations and their grid",
-             remark="0 in converter stations, whose losses are not described"),
+             remark="0 in converter stations: the table converter_losses has theirs"),
     Recorded("network_losses", "", "W", "losses of contact line, transformers, high-voltage line",
              array="network_losses"),
     Recorded("branch_current", "branch", "A", "current of a branch, at its own level",

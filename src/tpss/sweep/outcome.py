@@ -63,7 +63,7 @@ class Outcome:
     @property
     def figures(self) -> list[str]:
         """Columns of key figures that cases have, and that differ."""
-        return [name for name in SHOWN if self.ran[name].nunique() > 1]
+        return [name for name in SHOWN if name in self.ran and self.ran[name].nunique() > 1]
 
     def axis(self, column: str) -> Axis:
         """Values of a column in the cases that ran; what came of a line that collapsed is no figure."""

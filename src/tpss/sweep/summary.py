@@ -9,6 +9,9 @@ SHOWN = {
     "mean_speed_kmh": "mean speed [km/h]",
     "total_energy_mwh": "energy of all stations [MWh]",
     "losses_mwh": "losses [MWh]",
+    "converter_losses_mwh": "losses of converters [MWh]",
+    "drawn_from_grid_mwh": "drawn from the grid [MWh]",
+    "fed_back_to_grid_mwh": "fed back to the grid [MWh]",
     "lowest_voltage_kv": "lowest voltage [kV]",
     "mean_useful_voltage_kv": "mean useful voltage [kV]",
     "peak_loading": "peak loading [1]",
@@ -42,7 +45,9 @@ def summarise(table: pd.DataFrame, cases: int) -> Summary:
     """Key figures of a table."""
     finished = table[table.status == "finished"]
     columns = {
-        label: finished[name] for name, label in SHOWN.items() if finished[name].notna().any()
+        label: finished[name]
+        for name, label in SHOWN.items()
+        if name in finished and finished[name].notna().any()
     }
     unusable = table[~table.status.isin(("finished", "collapsed", "stalled"))]
     return Summary(

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from tpss.errors import ResultError, suggest
 from tpss.report.corridor import ALONG, along
+from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.effort import effort
 from tpss.report.drawings.energy import energy_flow
 from tpss.report.drawings.journey import journey
@@ -33,6 +34,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "train-voltage": ("train", lambda run, train, _: voltage_along_line({"": run}, train)),
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
+    "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }

@@ -4,6 +4,7 @@ from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
+from tpss.scenario.supply.losses import ConverterLosses
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import TransformerStation
@@ -11,6 +12,7 @@ from tpss.scenario.supply.transformer_station import TransformerStation
 __all__ = [
     "Catenary",
     "ContactLine",
+    "ConverterLosses",
     "ConverterStation",
     "ConverterType",
     "HighVoltageLine",

@@ -19,6 +19,7 @@ from tpss.scenario.fields import (
 )
 from tpss.scenario.supply.feedback import Feedback, feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
+from tpss.scenario.supply.losses import ConverterLosses
 
 
 class ConverterType(Part):
@@ -36,6 +37,9 @@ class ConverterType(Part):
     motor_reactance_pu: Real = Field(ge=0, le=10, description="q-axis reactance of the motor.")
     motor_base_mva: Real = Field(ge=0.1, le=1_000, description="Base of the motor's reactance.")
     base_voltage_kv: Real = Field(ge=1, le=100, description="Base of both, on the railway's side.")
+    losses: ConverterLosses | None = Field(
+        default=None, description="What one converter loses; leave it out: not described."
+    )
 
 
 class ConverterStation(Part):
@@ -46,8 +50,8 @@ class ConverterStation(Part):
     at: Name | None = station_at()
     position_km: Position = Field(description="Position on its line.")
     feeds: Feeds | None = feeds()
-    type: Annotated[ConverterType, FromLibrary("converters")] = Field(
-        description="Library name, or a table of your own."
+    type: Annotated[ConverterType, FromLibrary("converters", own="supply.converter_types")] = Field(
+        description="Library name, a name of `supply.converter_types`, or a table of your own."
     )
     converters: Whole = Field(ge=1, le=100, description="Number of converters installed.")
     control: Literal["all-on", "loading"] = Field(
@@ -55,6 +59,13 @@ class ConverterStation(Part):
         description="Whether all converters run, or as many as the loading needs.",
     )
     feedback: Feedback = feedback()
+    station_kw: Real | None = Field(
+        default=None,
+        ge=0,
+        le=10_000,
+        description="Power of the station's auxiliaries, such as cooling, taken from the 50 Hz grid as "
+        "long as it is in service; leave it out: not described.",
+    )
     grid_reactance_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Reactance of the 50 Hz grid, on the railway's side."
     )

@@ -5,10 +5,20 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticKnownError
 
-from tpss.scenario.fields import Flag, FromLibrary, Part, Real, demand_unique, fault, unique
+from tpss import library
+from tpss.scenario.fields import (
+    Flag,
+    FromLibrary,
+    Name,
+    Part,
+    Real,
+    demand_unique,
+    fault,
+    unique,
+)
 from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
-from tpss.scenario.supply.converter_station import ConverterStation
+from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
@@ -30,6 +40,13 @@ def _alternates(frequency_hz: Any) -> Any:
     if isinstance(frequency_hz, int | float) and frequency_hz == 0 and frequency_hz is not False:
         raise fault("not modelled: direct current", "give the frequency of an alternating current")
     return frequency_hz
+
+
+def _with_own_type(station: Any, own: dict[str, ConverterType]) -> Any:
+    """A station's table, with an own type in place of its name."""
+    if not isinstance(station, dict) or not isinstance(station.get("type"), str):
+        return station
+    return {**station, "type": own.get(station["type"], station["type"])}
 
 
 class Supply(Part):
@@ -77,6 +94,9 @@ class Supply(Part):
     transformer_stations: Annotated[
         tuple[TransformerStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(default=(), description="Transformer stations at a grid of the same frequency.")
+    converter_types: dict[Name, Annotated[ConverterType, FromLibrary("converters")]] | None = Field(
+        default=None, description="Own types of converters by name, for `type` of a station."
+    )
     converter_stations: Annotated[
         tuple[ConverterStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(
@@ -84,6 +104,22 @@ class Supply(Part):
         validate_default=True,
         description="Converter stations; there is at least one feeding station.",
     )
+
+    @field_validator("converter_types")
+    @classmethod
+    def _own_names(cls, types: dict[str, ConverterType] | None) -> dict[str, ConverterType] | None:
+        for name in types or ():
+            if name in library.entries("converters"):
+                raise fault(f"{name} is an entry of the library", "give the own type another name")
+        return types
+
+    @field_validator("converter_stations", mode="before")
+    @classmethod
+    def _own_types_by_name(cls, stations: Any, info: ValidationInfo) -> Any:
+        own = info.data.get("converter_types")
+        if not own or not isinstance(stations, list | tuple):
+            return stations
+        return [_with_own_type(each, own) for each in stations]
 
     @field_validator("converter_stations")
     @classmethod

@@ -1,0 +1,178 @@
+"""The 50 Hz side of feeding stations: what they take from the grid for what they feed.
+
+Sign: positive powers go from the grid to the railway.  A converter's losses follow its apparent power on
+the railway's side, in either direction.  They do not act on the railway.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tpss.results.standards.windows import Floats
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import ConverterLosses, ConverterStation, Station
+from tpss.units import si, si_factor
+
+
+@dataclass(frozen=True)
+class LossLaw:
+    """Losses of one converter; of a curve, or of coefficients in per unit of the rated power."""
+
+    rating_va: float
+    """Rated power. [VA]"""
+    idle_w: float
+    """Losses without load. [W]"""
+    linear: float = 0.0
+    """Losses over the apparent power. [1]"""
+    quadratic: float = 0.0
+    """Losses in proportion to its square, over the rated power at rated power. [1]"""
+    feedback_quadratic: float = 0.0
+    """The same while the railway feeds back. [1]"""
+    curve_load: tuple[float, ...] = ()
+    """Loads of a curve, ascending from 0. [1]"""
+    curve_w: tuple[float, ...] = ()
+    """Losses at these. [W]"""
+
+    def by_load_w(self, loading: Floats, feeds_back: npt.NDArray[np.bool_]) -> Floats:
+        r"""Losses of one converter beyond those without load. [W]
+
+        .. math:: P = b S_N l + c S_N l^2, \qquad l = S / S_N
+
+        Parameters
+        ----------
+        loading : array
+            Apparent power over the rated power, not negative. [1]
+        feeds_back : array of bool, of the same shape
+            Whether the railway feeds back.
+        """
+        if self.curve_load:
+            return self._of_curve_w(loading) - self.idle_w
+        quadratic = np.where(feeds_back, self.feedback_quadratic, self.quadratic)
+        return np.asarray(self.rating_va * (self.linear * loading + quadratic * loading**2))
+
+    def _of_curve_w(self, loading: Floats) -> Floats:
+        """Losses on a curve, of which the last straight line goes on. [W]"""
+        load, loss = np.array(self.curve_load), np.array(self.curve_w)
+        piece = np.clip(np.searchsorted(load, loading, side="right") - 1, 0, len(load) - 2)
+        slope = np.diff(loss) / np.diff(load)
+        return np.asarray(loss[piece] + slope[piece] * (loading - load[piece]))
+
+
+@dataclass(frozen=True)
+class StationSide:
+    """What a station loses, and where what it takes from the railway goes.
+
+    Attributes
+    ----------
+    name : str
+    law : LossLaw or None
+        None: losses of its converters are not described.
+    auxiliaries_w : float or None
+        Power of its auxiliaries; None: not described. [W]
+    burns : bool
+        Whether a resistor takes what the railway feeds back beyond the losses, so that nothing reaches
+        the grid.
+    origin : str or None
+        Where the figures of the losses come from.
+    """
+
+    name: str
+    law: LossLaw | None = None
+    auxiliaries_w: float | None = None
+    burns: bool = False
+    origin: str | None = None
+
+    @property
+    def is_described(self) -> bool:
+        """Whether it says anything about losses."""
+        return self.law is not None or self.auxiliaries_w is not None
+
+
+class Powers(NamedTuple):
+    """Powers of a station in every step. [W], shape (steps,)
+
+    What comes from the grid, less what goes there, is what is fed, plus losses, plus what is burnt.  All
+    but what is fed are not negative.
+    """
+
+    fed: Floats
+    from_grid: Floats
+    to_grid: Floats
+    burnt: Floats
+    idle: Floats
+    by_load: Floats
+    auxiliaries: Floats
+
+    @property
+    def losses(self) -> Floats:
+        """All losses of converters and auxiliaries."""
+        return np.asarray(self.idle + self.by_load + self.auxiliaries)
+
+
+def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: StationSide) -> Powers:
+    r"""Powers on the 50 Hz side of a station.
+
+    .. math:: P_{50} = P + n \, P_0 + b S + c \frac{S^2}{n S_N} + P_{aux}, \qquad S = \sqrt{P^2 + Q^2}
+
+    The running converters share alike.  Below zero the station delivers to the grid; one with a resistor
+    burns that instead.  A station of which no converter runs is out of service, and takes nothing.
+
+    Parameters
+    ----------
+    active_w, reactive_var : array, shape (steps,)
+        Powers fed into the railway. [W], [var]
+    running : array, shape (steps,)
+        Number of converters that run.
+    side : StationSide
+    """
+    runs, zero = running > 0.0, np.zeros_like(active_w)
+    idle = by_load = zero
+    if side.law is not None:
+        rating_va = np.where(runs, running, 1.0) * side.law.rating_va
+        loading = np.where(runs, np.hypot(active_w, reactive_var) / rating_va, 0.0)
+        idle = running * side.law.idle_w
+        by_load = running * side.law.by_load_w(loading, active_w < 0.0)
+    auxiliaries = np.where(runs, side.auxiliaries_w or 0.0, 0.0)
+    balance = active_w + idle + by_load + auxiliaries
+    surplus = np.maximum(-balance, 0.0)
+    to_grid, burnt = (zero, surplus) if side.burns else (surplus, zero)
+    from_grid = np.maximum(balance, 0.0)
+    return Powers(active_w, from_grid, to_grid, burnt, idle, by_load, auxiliaries)
+
+
+def sides_of(scenario: Scenario) -> tuple[StationSide, ...]:
+    """The 50 Hz sides of all feeding stations, in the order of the results."""
+    return tuple(_side_of(station) for station in scenario.supply.stations)
+
+
+def _side_of(station: Station) -> StationSide:
+    burns = station.feedback == "resistor"
+    if not isinstance(station, ConverterStation):
+        return StationSide(station.name, burns=burns)
+    losses, rating_va = station.type.losses, si(station.type, "rating_mva")
+    return StationSide(
+        name=station.name,
+        law=None if losses is None else law_of(losses, rating_va),
+        auxiliaries_w=None if station.station_kw is None else si(station, "station_kw"),
+        burns=burns,
+        origin=None if losses is None else losses.origin,
+    )
+
+
+def law_of(losses: ConverterLosses, rating_va: float) -> LossLaw:
+    """Losses of a converter in SI units."""
+    if losses.curve is not None:
+        watts = tuple(si(point, "loss_kw") for point in losses.curve)
+        loads = tuple(si(point, "load_percent") for point in losses.curve)
+        return LossLaw(rating_va, watts[0], curve_load=loads, curve_w=watts)
+    quadratic = losses.quadratic_percent or 0.0
+    back, percent = losses.feedback_quadratic_percent, si_factor("_percent")
+    return LossLaw(
+        rating_va,
+        (losses.idle_kw or 0.0) * si_factor("_kw"),
+        linear=(losses.linear_percent or 0.0) * percent,
+        quadratic=quadratic * percent,
+        feedback_quadratic=(quadratic if back is None else back) * percent,
+    )
