@@ -52,10 +52,19 @@ def page() -> str:
 def _values(entry: dict[str, Any]) -> str:
     rows = [
         (f"`{key}`", f"{value:g}" if isinstance(value, int | float) else code(value), label(key))
-        for key, value in entry.items()
+        for key, value in _flat(entry).items()
         if key != "source"
     ]
     return table(("key", "value", "unit"), rows)
+
+
+def _flat(entry: dict[str, Any]) -> dict[str, Any]:
+    """Values by their key paths."""
+    found: dict[str, Any] = {}
+    for key, value in entry.items():
+        inner = _flat(value) if isinstance(value, dict) else {"": value}
+        found |= {f"{key}.{below}".rstrip("."): each for below, each in inner.items()}
+    return found
 
 
 def _networks() -> str:

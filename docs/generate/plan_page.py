@@ -75,6 +75,7 @@ COLUMNS = {
     "period_min": "period of the timetable",
     "drawn_from_grid_mw": "mean power that all stations take from the grid: what they feed and lose",
     "fed_back_to_grid_mw": "mean power that they give back to it",
+    "converter_losses_mw": "mean losses of converter stations; null unless their types describe them",
     "network_losses_mw": "mean losses of the network",
     "lowest_voltage_kv": "lowest voltage at a pantograph in the window",
     "mean_useful_voltage_kv": "lowest mean useful voltage of a zone, EN 50388, in the window",
@@ -83,7 +84,8 @@ COLUMNS = {
 }
 
 EACH = """Each station has `station.NAME.` with the means of all powers that are recorded of it, such as
-`station.A.station_active_power_mw`, and each service `service.NAME.` with these:
+`station.A.station_active_power_mw`, and with `converter_losses_mw` where they are described; each service
+has `service.NAME.` with these:
 
 | column | meaning |
 |---|---|

@@ -122,6 +122,27 @@ SUMMARY = {
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
 }
+OF_LOSSES = {
+    "converter_losses": "only where types of converters describe what they lose: totals of the table of "
+    "that name, the `origins` of the losses, losses by `stations`, and those `not_described`",
+}
+CONVERTER_LOSSES = {
+    "station": "converter station",
+    "from_grid_mwh": "energy from the 50 Hz grid",
+    "to_grid_mwh": "energy to it",
+    "burnt_mwh": 'energy that a station with `feedback = "resistor"` burns: what would go to the grid',
+    "losses_mwh": "losses of converters, and auxiliaries",
+    "idle_mwh": "of these, what converters lose without load",
+    "by_load_mwh": "what their load adds",
+    "auxiliaries_mwh": "auxiliaries of the station",
+    "mean_efficiency": "what leaves the station, to either side, over what it is given",
+    "starts": "converters started within the run",
+    "peak_from_grid_mw": "highest power from the grid in a time step",
+    "peak_1_min_mw": "highest mean over 1 min",
+    "peak_15_min_mw": "over 15 min",
+    "peak_1_h_mw": "over 1 h; NaN where the run is shorter",
+    "origin": "where the losses come from: `estimate`, `measurement`, or not told",
+}
 EARLY_END = {
     "problem": "only after an early end: when and where it came, in words",
     "advice": "only after an early end: what would help",
@@ -210,11 +231,17 @@ def page() -> str:
         described(STOPS, result.stops, "column"),
         "### `stations`, a row a feeding station",
         described(STATIONS, result.stations, "column"),
+        "### `converter_losses`, a row a converter station that describes losses",
+        described(CONVERTER_LOSSES, result.converter_losses, "column"),
         "### `train_steps`, a row a train and instant",
         described(TRAIN_STEPS, result.train_steps, "column"),
         "## Summary",
         "`Result.summary` is a dictionary, and the content of `summary.json`.",
-        described({**SUMMARY, **EARLY_END}, {**result.summary, **EARLY_END}, "key"),
+        described(
+            {**SUMMARY, **OF_LOSSES, **EARLY_END},
+            {**result.summary, **OF_LOSSES, **EARLY_END},
+            "key",
+        ),
         STEP,
         described(STEP_CHECK, check, "key"),
         "Each of its `changes`:",

@@ -124,6 +124,10 @@ MEANINGS = {
     "mean_speed_kmh": "its mean speed",
     "total_energy_mwh": "energy of all converter stations",
     "losses_mwh": "losses of the network",
+    "converter_losses_mwh": "losses of converter stations; null unless their types describe them",
+    "drawn_from_grid_mwh": "energy that stations take from their grids; null likewise",
+    "fed_back_to_grid_mwh": "energy that they give back; null unless losses are described, or trains "
+    "have electric brakes",
     "lowest_voltage_kv": "lowest voltage at a pantograph",
     "lowest_voltage_km": "where it was",
     "lowest_voltage_min": "when it was",

@@ -20,7 +20,19 @@ def test_all_figures_go_into_a_folder_of_the_result(tpss_command, demo):
     assert (said.code, said.err) == (0, "")
     assert said.out.startswith("Wrote into demo/figures: network.png, time-distance.png, journey")
     written = {file.name for file in (demo / "figures").iterdir()}
-    assert written == {f"{name}.png" for name in FIGURES}
+    assert written == {f"{name}.png" for name in FIGURES} - {"converter-losses.png"}
+
+
+def test_losses_of_converters_are_drawn_where_they_are_described(tpss_command, short_file):
+    losses = "supply.converter_stations.*.type=Q48/Q49 with losses (estimate)"
+    assert tpss_command("run", short_file, *SHORT, "--set", losses).code == 0
+    assert "converter-losses.png" in tpss_command("plot", "demo").out
+
+
+def test_losses_that_are_not_described_are_not_drawn(tpss_command, demo):
+    said = tpss_command("plot", "demo", "--figure", "converter-losses")
+    assert said.code == 2
+    assert "no converter type describes its losses" in said.err
 
 
 @pytest.mark.parametrize("kind", BEGINS)

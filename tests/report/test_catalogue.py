@@ -14,7 +14,9 @@ from tpss.report.trains import NothingToDrawError
 
 from scenarios import run, short_line, stops
 
+LOSSES = {"supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)"}
 HILLY = {
+    **LOSSES,
     "line.gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 5.0, "permille": -1.0}],
     "traffic.0.headway_min": 10.0,
 }
@@ -145,11 +147,12 @@ def test_the_machine_s_limit_follows_a_current_limitation():
 
 
 def test_a_run_that_collapsed_says_so_in_every_title():
-    weak = {"supply.catenary": {"r_ohm_per_km": 0.3, "x_ohm_per_km": 0.35},
+    weak = {**LOSSES, "supply.catenary": {"r_ohm_per_km": 0.3, "x_ohm_per_km": 0.35},
             "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 100.0}],
             "line.gradients": [{"from_km": 0.0, "permille": 5.0}],
             "supply.converter_stations": [
-                {"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 1}],
+                {"name": "West", "position_km": 0.0, "converters": 1,
+                 "type": "Q48/Q49 with losses (estimate)"}],
             "traffic.0.headway_min": 3.0,
             "simulation.duration_min": 25.0}  # fmt: skip
     result = run(weak)
@@ -175,7 +178,7 @@ def test_without_trains_the_stations_are_drawn_and_the_trains_are_not():
 
 
 def test_names_that_are_formulas_to_matplotlib_are_drawn_as_they_are(tmp_path):
-    names = {"traffic.0.name": "$1 to $2", "line.stations.1.name": "a$_{$",
+    names = {**LOSSES, "traffic.0.name": "$1 to $2", "line.stations.1.name": "a$_{$",
              "supply.converter_stations.0.name": "A$_{$"}  # fmt: skip
     result = run({**names, "simulation.duration_min": 3.0})
     for name in FIGURES:

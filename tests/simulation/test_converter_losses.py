@@ -205,6 +205,8 @@ def test_an_own_type_is_what_the_same_table_is() -> None:
         assert station.type.losses == ConverterLosses(**HAND)
     again = tpss.Scenario.from_document(scenario.as_document())
     assert again == scenario
+    assert hash(again.supply) == hash(scenario.supply)
+    assert len(tpss.simulate(scenario).converter_losses) == len(scenario.supply.stations)
 
 
 def faults_of(made: dict[str, Any], source: Any = "scenario") -> tuple[Finding, ...]:

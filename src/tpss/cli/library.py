@@ -174,8 +174,17 @@ def _print_entry(kind: str, name: str, console: Console) -> None:
         say(console, "Supplies of this system cannot be described yet.")
         return
     say(console, f"In a scenario:\n\n{used}")
-    values = ", ".join(tomli_w.dumps(library.values(kind, name)).splitlines())
-    say(console, how.remark.format(key=how.key, values=values))
+    say(console, how.remark.format(key=how.key, values=_in_a_line(library.values(kind, name))))
+
+
+def _in_a_line(table: dict[str, Any]) -> str:
+    """What is between the braces of an inline table."""
+    return ", ".join(
+        f"{key} = {{ {_in_a_line(value)} }}"
+        if isinstance(value, dict)
+        else tomli_w.dumps({key: value}).strip()
+        for key, value in table.items()
+    )
 
 
 def _entry_table(kind: str, entry: dict[str, Any]) -> Table:
@@ -202,6 +211,8 @@ def _heading(key: str) -> str:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return escape(_in_a_line(value))
     return "-" if value is None else escape(str(value))
 
 

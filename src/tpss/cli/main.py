@@ -278,6 +278,41 @@ def outages(
     raise typer.Exit(run_outages(file, n_1, set_ or [], jobs, out, force, quiet, report))
 
 
+@app.command(
+    epilog="Example:  tpss converters line.toml --set 'supply.converter_stations.*.type=Q48/Q49 with "
+    "losses (estimate)'"
+)
+def converters(
+    file: ScenarioFile,
+    set_: Assignments = None,
+    out: Annotated[
+        Path | None,
+        option(help="CSV file to write; by default results/NAME-converters-NNN.csv."),
+    ] = None,
+    figure: Annotated[
+        bool,
+        typer.Option(
+            "--figure", help="Also draw the losses over time, beside the CSV file, as .png."
+        ),
+    ] = False,
+    force: Force = False,
+    quiet: Quiet = False,
+) -> None:
+    """Tell what switching converters by their loading saves, against leaving all of them on.
+
+    The scenario is run twice, with `control = "all-on"` and with `control = "loading"` at every
+    converter station. The table has the losses of each station in a day of this traffic, what is saved,
+    and how often converters start. A second one, which follows from the losses alone, says up to which
+    power a station loses less with one converter less. The types of converters need `losses`.
+
+    Exit codes: 0 done, 2 bad input, 3 a run did not solve or a train stalled, 4 the audit of a run
+    failed, 130 interrupted.
+    """
+    from tpss.cli.converters import run_converters
+
+    raise typer.Exit(run_converters(file, set_ or [], out, figure, force, quiet))
+
+
 @app.command(epilog="Example:  tpss new my-line")
 def new(
     folder: Annotated[Path, argument(help="Folder to write; existing files are kept.")],

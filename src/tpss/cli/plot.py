@@ -51,6 +51,8 @@ def plot_result(
             )
     place, names = _target(folder, figure, out)
     result = load_result(folder)
+    if figure == ALL:
+        names = {name: file for name, file in names.items() if catalogue.applies(name, result)}
     check_files(place, names.values(), force)
     contents: dict[str, bytes] = {}
     left_out: list[tuple[str, str]] = []

@@ -46,5 +46,32 @@ def converter_losses(runs: Mapping[str, Result]) -> Drawing:
     return Drawing(TIME, panels, panel_inch=2.0)
 
 
+def losses_by_control(runs: Mapping[str, Result]) -> Drawing:
+    """Losses of converter stations of runs that switch differently, and units that run, over time.
+
+    A colour is a station, a line style for each run.
+
+    Parameters
+    ----------
+    runs : mapping of str to Result
+        Results to overlay, by label.
+    """
+    lost: list[Curve] = []
+    running: list[Curve] = []
+    for k, (label, result) in enumerate(runs.items()):
+        data = result.dataset
+        minutes = data.time.to_numpy() / 60.0
+        for s, (name, powers) in enumerate(station_powers(data, result.scenario).items()):
+            units = data.active_converters.sel(station=name).to_numpy()
+            megawatts = np.append(powers.losses, np.nan) / 1e6
+            for curves, values in ((lost, megawatts), (running, units)):
+                curves.append(Curve(minutes, values, f"{name}, {label}", s, k, held=True))
+    panels = [
+        Panel("losses of stations [MW]", lost, "losses of\nstations [MW]", from_zero=True),
+        Panel("units running", running, "units\nrunning", from_zero=True),
+    ]
+    return Drawing(TIME, panels, panel_inch=2.0)
+
+
 def _net_w(powers: Powers) -> Floats:
     return np.asarray(powers.from_grid - powers.to_grid)

@@ -105,6 +105,11 @@ def draw(
     return figure
 
 
+def applies(name: str, result: Result) -> bool:
+    """Whether a figure shows something that the scenario of a result describes."""
+    return name != "converter-losses" or len(result.converter_losses) > 0
+
+
 def demand_figure(name: str) -> None:
     """Raise a `ResultError` if there is no figure of that name."""
     if name not in FIGURES:

@@ -136,6 +136,10 @@ class Supply(Part):
         demand_unique(every, "position_km", of="line")
         return stations
 
+    def __hash__(self) -> int:
+        """Of all but the own types, which the stations hold."""
+        return hash(tuple(value for name, value in self if name != "converter_types"))
+
     @property
     def stations(self) -> tuple[Station, ...]:
         """All feeding stations, in the order of the results."""

@@ -1,0 +1,156 @@
+"""The command ``tpss converters``: switching converters by loading against all on."""
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss.cli.first_free import save_table
+from tpss.cli.run import DONE, INTERRUPTED, PROGRESS, SEVERITY, exit_code
+from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.errors import ResultError
+from tpss.files.refusals import explained, refuse_to_replace
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tpss.converter_control.compare import Comparison
+    from tpss.run.run import Progress
+
+PNG = ".png"
+"""End of the name of the figure, which otherwise is that of the table."""
+
+
+def run_converters(
+    file: Path, assignments: list[str], out: Path | None, figure: bool, force: bool, quiet: bool
+) -> int:
+    """Run a scenario with both controls; print and save what differs; return the exit code."""
+    from tpss.converter_control.compare import compare_controls
+    from tpss.run.interrupt import interruptible
+    from tpss.scenario import load_scenario
+    from tpss.scenario.override import parse_assignment
+
+    scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
+    if out is not None:
+        _demand_room(out, figure, force)
+    console = Console(stderr=True, quiet=quiet)
+    announce_compilation(console)
+    with (
+        interruptible() as interrupted,
+        progress_bar(scenario.name, PROGRESS, _progress, console) as progress,
+    ):
+        found = compare_controls(scenario, progress, interrupted)
+    codes = [exit_code(run) for run in found.runs.values()]
+    if any(code != DONE for code in codes):
+        for control, run in found.runs.items():
+            told = run.summary.get("problem") or "; ".join(run.audit["failures"]) or run.status
+            print(f'control = "{control}": {told}', file=sys.stderr)
+        print("Both runs have to finish to be compared; nothing was saved.", file=sys.stderr)
+        return max(codes, key=(*SEVERITY, INTERRUPTED).index)
+    content = found.table.to_csv(index=False).encode()
+    place = save_table(content, f"{scenario.name}-converters", out, force, beside=(PNG,))
+    if not quiet:
+        print_comparison(found, Console())
+        say(Console(), f"Saved in {place}")
+    if figure:
+        _draw(found, place.with_suffix(PNG))
+        if not quiet:
+            print(f"Wrote {place.with_suffix(PNG)}")
+    return DONE
+
+
+def _demand_room(out: Path, figure: bool, force: bool) -> None:
+    """Refuse to replace what is there, before anything runs.
+
+    Raises
+    ------
+    ResultError
+    """
+    refuse_to_replace(out, force, "a file", Path.is_file)
+    if not figure:
+        return
+    if out.suffix == PNG:
+        raise ResultError(f"{out} is to be the table; give --out a name that ends in .csv")
+    refuse_to_replace(out.with_suffix(PNG), force, "a file", Path.is_file)
+
+
+def _progress(state: "Progress") -> dict[str, Any]:
+    detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
+    return {"completed": state.share, "total": 1.0, "detail": detail}
+
+
+def _draw(found: "Comparison", file: Path) -> None:
+    from tpss.cli.plot import figure_bytes
+    from tpss.files.whole import write_file
+    from tpss.report.drawings.converter_losses import losses_by_control
+    from tpss.report.render.static import render
+
+    drawn = render(losses_by_control(found.runs))
+    with explained(file):
+        write_file(file, figure_bytes(drawn, PNG.removeprefix(".")))
+
+
+def print_comparison(found: "Comparison", console: Console) -> None:
+    """Print both tables, and what all stations save."""
+    console.print(_table("Losses of converter stations", "station", _STATIONS, found.table))
+    table, origins = found.table, found.by_loading.summary["converter_losses"]["origins"]
+    saved, before = table.saved_mwh.sum(), table.all_on_mwh.sum()
+    share = f" ({100.0 * saved / before:.1f} %)" if before > 0.0 else ""
+    starts = f"{table.starts.sum():.0f} starts a day"
+    by = f"; losses by {' and by '.join(origins)}" if origins else ""
+    say(console, f"Converters lose {saved:.3f} MWh a day less{share}, with {starts}{by}")
+    say(console, f"From the 50 Hz grid: {found.saved_at_the_grid_mwh:.3f} MWh a day less")
+    if len(found.break_even):
+        title = "One converter less loses less"
+        console.print(_table(title, "type", _BREAK_EVEN, found.break_even))
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column of numbers: where they come from, and how they are shown."""
+
+    key: str
+    heading: str
+    unit: str
+    digits: int
+    scale: float = 1.0
+
+
+_STATIONS = (
+    _Column("converters", "converters", "", 0),
+    _Column("all_on_mwh", "all on", "MWh/d", 3),
+    _Column("by_loading_mwh", "by loading", "MWh/d", 3),
+    _Column("saved_mwh", "saved", "MWh/d", 3),
+    _Column("starts", "starts", "1/d", 0),
+    _Column("peak_loading", "peak load", "%", 1, 100.0),
+)
+
+_BREAK_EVEN = (
+    _Column("converters", "converters", "", 0),
+    _Column("power_mva", "up to", "MVA", 2),
+    _Column("loading", "load of all", "%", 1, 100.0),
+    _Column("loading_of_one_less", "of one less", "%", 1, 100.0),
+)
+
+
+def _number(value: float, digits: int) -> str:
+    return "any" if math.isinf(value) else f"{value:.{digits}f}"
+
+
+def _table(title: str, first: str, columns: Sequence[_Column], frame: "pd.DataFrame") -> Table:
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
+    table.add_column(first)
+    for column in columns:
+        heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in frame.to_dict("records"):
+        cells = [_number(row[each.key] * each.scale, each.digits) for each in columns]
+        table.add_row(escape(row[first]), *cells)
+    return table
