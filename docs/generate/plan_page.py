@@ -84,8 +84,8 @@ COLUMNS = {
 }
 
 EACH = """Each station has `station.NAME.` with the means of all powers that are recorded of it, such as
-`station.A.station_active_power_mw`, and with `converter_losses_mw` where they are described; each service
-has `service.NAME.` with these:
+`station.A.station_active_power_mw`, and with `converter_losses_mw` where they are described; each
+service has `service.NAME.` with these:
 
 | column | meaning |
 |---|---|

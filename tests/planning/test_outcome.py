@@ -56,7 +56,7 @@ def test_means_are_of_the_steady_state_where_trains_lose_minutes_too():
 
 
 def test_powers_of_the_grid_are_those_of_the_stations_and_what_these_lose():
-    """Transformer stations lose some of what they take; converter stations' losses are not described."""
+    """Transformer stations lose some of what they take, which is recorded."""
     scenario = tpss.load_scenario(EXAMPLES / "emu_25kv.toml", {"simulation.time_step_min": 0.5})
     row = outcome_of(scenario, Evaluation())
     names = [station.name for station in scenario.supply.stations]
@@ -64,6 +64,23 @@ def test_powers_of_the_grid_are_those_of_the_stations_and_what_these_lose():
     lost = sum(row[f"station.{name}.station_losses_mw"] for name in names)
     assert lost > 0.0
     assert row["drawn_from_grid_mw"] - row["fed_back_to_grid_mw"] == pytest.approx(fed + lost)
+
+
+def test_the_grid_delivers_what_converters_lose_where_that_is_described():
+    """Two stations of two sets of 300 kW idle, and 30 kW of auxiliaries: more than 1.23 MW."""
+    kind = {"supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)",
+            "supply.converter_stations.0.station_kw": 30.0}  # fmt: skip
+    plain, row = (outcome_of(line(changes), Evaluation()) for changes in ({}, kind))
+    assert math.isnan(plain["converter_losses_mw"])
+    lost = row["converter_losses_mw"]
+    installed = sum(s.converters for s in line().supply.converter_stations)
+    assert lost > 0.3 * installed + 0.03
+    net = [each["drawn_from_grid_mw"] - each["fed_back_to_grid_mw"] for each in (row, plain)]
+    assert net[0] - net[1] == pytest.approx(lost, rel=1e-9)
+    names = [station.name for station in line().supply.stations]
+    each = [row[f"station.{name}.converter_losses_mw"] for name in names]
+    assert sum(each) == pytest.approx(lost, rel=1e-12)
+    assert row["service.eastbound.mean_trip_min"] == plain["service.eastbound.mean_trip_min"]
 
 
 def test_minutes_lost_are_those_against_a_supply_that_does_not_yield():
