@@ -49,6 +49,7 @@ DEFAULTS = {
     "Scenario.traffic": "this or `timetables`",
     "Supply.frequency_hz": "the system's",
     "Supply.transformer_stations": "none",
+    "Supply.mixed_stations": "none",
     "Supply.converter_stations": "none; there is a station of some kind",
     "ConverterLosses.idle_kw": "this, `curve` or `curve_file`",
     "ConverterLosses.curve": "this, `curve_file` or `idle_kw`",

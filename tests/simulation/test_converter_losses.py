@@ -20,7 +20,7 @@ from lines import line, network, scenario_of, service
 from tpss import Finding, ScenarioError, library
 from tpss.many import key_figures
 from tpss.results.converter_losses import PARTS, in_words, station_powers
-from tpss.results.grid_side import StationSide, law_of, powers_of
+from tpss.results.grid_side import StationSide, Units, law_of, powers_of
 from tpss.scenario.supply import ConverterLosses
 
 from scenarios import SHORT_LINE, short_line
@@ -37,7 +37,7 @@ ROTARY = "Q48/Q49 with losses (estimate)"
 
 def side(auxiliaries_w: float | None = None, burns: bool = False, **losses: Any) -> StationSide:
     law = law_of(ConverterLosses(**losses), 10e6)
-    return StationSide("West", law, auxiliaries_w, burns)
+    return StationSide("West", (Units(law),), None, auxiliaries_w, burns)
 
 
 def powers(p_mw: float, q_mvar: float, running: float, of: StationSide) -> Any:

@@ -1,20 +1,27 @@
 """Feeding stations of a scenario as sources in SI units: one builder a kind of station."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from tpss.record import Records
-from tpss.scenario.supply import ConverterStation, Station, TransformerStation
+from tpss.scenario.supply import (
+    ConverterStation,
+    ConverterType,
+    ConverterUnits,
+    MixedStation,
+    Station,
+    TransformerStation,
+)
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.grid import GridLaw
 from tpss.sources.kinds import Source, SourceKind
+from tpss.sources.mixed import TYPES, MixedLaw
 from tpss.units import si
 
 
 def _converter_station(node: int, station: ConverterStation) -> Any:
     kind = station.type
-    base_ohm_va = si(kind, "base_voltage_kv") ** 2
     return Source.row(
         node=node,
         kind=SourceKind.CONVERTER,
@@ -22,18 +29,53 @@ def _converter_station(node: int, station: ConverterStation) -> Any:
         controlled=station.control == "loading",
         rating_va=si(kind, "rating_mva"),
         converter=ConverterLaw.row(
-            no_load_voltage_v=si(kind, "no_load_voltage_kv"),
-            droop_v_per_var=si(kind, "droop_kv_per_mvar"),
-            generator_reactance_ohm=kind.generator_reactance_pu
-            * base_ohm_va
-            / si(kind, "generator_base_mva"),
-            motor_reactance_ohm=kind.motor_reactance_pu * base_ohm_va / si(kind, "motor_base_mva"),
-            motor_voltage_v=si(kind, "base_voltage_kv"),
+            **_of_type(kind),
             grid_reactance_ohm=si(station, "grid_reactance_ohm"),
             grid_reactive_power_var=si(station, "grid_reactive_power_mvar"),
             grid_angle_rad=si(station, "grid_angle_deg"),
         ),
     )
+
+
+def _of_type(kind: ConverterType) -> dict[str, float]:
+    """What the law of converters has of their type."""
+    base_ohm_va = si(kind, "base_voltage_kv") ** 2
+    return {
+        "no_load_voltage_v": si(kind, "no_load_voltage_kv"),
+        "droop_v_per_var": si(kind, "droop_kv_per_mvar"),
+        "generator_reactance_ohm": kind.generator_reactance_pu
+        * base_ohm_va
+        / si(kind, "generator_base_mva"),
+        "motor_reactance_ohm": kind.motor_reactance_pu * base_ohm_va / si(kind, "motor_base_mva"),
+        "motor_voltage_v": si(kind, "base_voltage_kv"),
+    }
+
+
+def _mixed_station(node: int, station: MixedStation) -> Any:
+    return Source.row(
+        node=node,
+        kind=SourceKind.MIXED,
+        installed=station.installed,
+        controlled=False,
+        rating_va=si(station, "unit_mva"),
+        mixed=mixed_law(station.units, si(station, "grid_angle_deg")),
+    )
+
+
+def mixed_law(units: Sequence[ConverterUnits], grid_angle_rad: float = 0.0) -> Any:
+    """Row of the law of converters of several types at one busbar."""
+    fields: dict[str, Any] = {}
+    whole_mva = sum(each.rated_mva for each in units)
+    for name, each in zip(TYPES, units, strict=False):
+        fields[name] = ConverterLaw.row(
+            **_of_type(each.type),
+            grid_reactance_ohm=0.0,
+            grid_reactive_power_var=0.0,
+            grid_angle_rad=grid_angle_rad,
+        )
+        fields[f"{name}_units"] = float(each.converters)
+        fields[f"{name}_share"] = each.rated_mva / whole_mva
+    return MixedLaw.row(**fields)
 
 
 def _transformer_station(node: int, station: TransformerStation) -> Any:
@@ -63,6 +105,7 @@ def _transformer_station(node: int, station: TransformerStation) -> Any:
 BUILDERS: dict[type, Callable[[int, Any], Any]] = {
     ConverterStation: _converter_station,
     TransformerStation: _transformer_station,
+    MixedStation: _mixed_station,
 }
 """What makes a row of `Source` of a station, by its kind."""
 

@@ -6,6 +6,7 @@ from tpss.errors import Finding, ScenarioError
 from tpss.scenario.outages import SWITCHES, Outage
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply.feeds import feeds_of, places_on
+from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
 
@@ -32,7 +33,7 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
 
 
 def single_outages(scenario: Scenario) -> Iterator[Outage]:
-    """Each station, each with one unit fewer if it has several, each transformer, each switch.
+    """Each station, each with one unit fewer if it has several alike, each transformer, each switch.
 
     Of the feeds those of stations with more than one: a single one is as much as its station.  The
     contact line is left out, which rules of n-1 exempt, as those of Bane NOR do (TRV:03191).
@@ -41,7 +42,7 @@ def single_outages(scenario: Scenario) -> Iterator[Outage]:
     for station in stations:
         yield Outage(name=f"{station.name} out", stations=(station.name,))
     for station in stations:
-        if station.installed > 1:
+        if station.installed > 1 and not isinstance(station, MixedStation):
             yield Outage(name=f"{station.name}, one unit out", units={station.name: 1})
     for km in feeding_positions_km(scenario.supply):
         yield Outage(name=f"transformer {kilometres(km)} km out", transformers_km=(km,))

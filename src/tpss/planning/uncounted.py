@@ -27,7 +27,7 @@ def uncounted(model: Model) -> Iterator[str]:
 
 def _converter_losses(scenarios: Sequence[Scenario]) -> Iterator[str]:
     """Whether scenarios describe what converters lose, and how well."""
-    types = [station.type for each in scenarios for station in each.supply.converter_stations]
+    types = [kind for each in scenarios for kind in each.supply.converters_in_use]
     known = [kind.losses for kind in types if kind.losses is not None]
     if len(known) < len(types):
         which = "some converters" if known else "converters"

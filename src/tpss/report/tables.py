@@ -98,7 +98,7 @@ def of_converter_losses(result: Result) -> list[Table]:
     """The 50 Hz side of converter stations, where any describes its losses."""
     found = result.converter_losses
     caption = "50 Hz side of the converter stations"
-    if (found.origin == "estimate").any():
+    if found.origin.str.contains("estimate").any():
         caption += ", losses by estimate"
     return [of_frame("converter-losses", caption, found)] if len(found) else []
 

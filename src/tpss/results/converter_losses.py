@@ -67,7 +67,7 @@ def converter_losses(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
                 "mean_efficiency": _efficiency([powers], dataset),
                 "starts": int(starts[s]),
                 **_peaks(powers.from_grid, dataset),
-                "origin": side.origin or "",
+                "origin": side.origin,
             }
         )
     return pd.DataFrame(rows, columns=list(COLUMNS))
@@ -116,16 +116,19 @@ def totals(table: pd.DataFrame, dataset: xr.Dataset, scenario: Scenario) -> dict
     if table.empty:
         return None
     efficiency = _efficiency(station_powers(dataset, scenario).values(), dataset)
-    converters = {station.name for station in scenario.supply.converter_stations}
+    undescribed = [
+        side.name for side in sides_of(scenario) if any(units.law is None for units in side.units)
+    ]
+    origins = [origin for each in table.origin for origin in each.split(", ") if origin]
     return {
         **{name: math.fsum(table[name]) for name in ENERGIES},
         "mean_efficiency": None if math.isnan(efficiency) else efficiency,
         "starts": int(table.starts.sum()),
-        "origins": [origin for origin in dict.fromkeys(table.origin) if origin],
+        "origins": list(dict.fromkeys(origins)),
         "stations": {
             str(name): float(mwh) for name, mwh in zip(table.station, table.losses_mwh, strict=True)
         },
-        "not_described": sorted(converters - set(table.station)),
+        "not_described": undescribed,
     }
 
 
@@ -150,7 +153,7 @@ def _remarks(found: dict[str, Any]) -> Iterator[str]:
     if found["origins"]:
         yield f"losses by {' and by '.join(found['origins'])}"
     if found["not_described"]:
-        yield f"without those of {', '.join(found['not_described'])}, which are not described"
+        yield f"without converters of {', '.join(found['not_described'])} that are not described"
 
 
 def _count(number: int, noun: str) -> str:

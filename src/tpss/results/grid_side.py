@@ -10,10 +10,22 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tpss.model.sources import mixed_law
+from tpss.record import Records
 from tpss.results.standards.windows import Floats
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import ConverterLosses, ConverterStation, Station
+from tpss.scenario.supply import (
+    ConverterLosses,
+    ConverterStation,
+    ConverterType,
+    MixedStation,
+    Station,
+    TransformerStation,
+)
+from tpss.sources.mixed import TYPES, MixedLaw, split_all
 from tpss.units import si, si_factor
+
+Complexes = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -61,33 +73,50 @@ class LossLaw:
 
 
 @dataclass(frozen=True)
+class Units:
+    """Converters of one type in a station."""
+
+    law: LossLaw | None
+    """None: their losses are not described."""
+    count: float | None = None
+    """How many run in a station with several types; None: as many as are recorded."""
+    origin: str | None = None
+    """Where the figures of the losses come from."""
+
+
+@dataclass(frozen=True)
 class StationSide:
     """What a station loses, and where what it takes from the railway goes.
 
     Attributes
     ----------
     name : str
-    law : LossLaw or None
-        None: losses of its converters are not described.
+    units : tuple of Units
+        Its converters by their types; none of a transformer station.
+    mixed : Records of MixedLaw or None
+        One record, by which several types share the power.
     auxiliaries_w : float or None
         Power of its auxiliaries; None: not described. [W]
     burns : bool
         Whether a resistor takes what the railway feeds back beyond the losses, so that nothing reaches
         the grid.
-    origin : str or None
-        Where the figures of the losses come from.
     """
 
     name: str
-    law: LossLaw | None = None
+    units: tuple[Units, ...] = ()
+    mixed: Records[MixedLaw] | None = None
     auxiliaries_w: float | None = None
     burns: bool = False
-    origin: str | None = None
 
     @property
     def is_described(self) -> bool:
         """Whether it says anything about losses."""
-        return self.law is not None or self.auxiliaries_w is not None
+        return self.auxiliaries_w is not None or any(each.law is not None for each in self.units)
+
+    @property
+    def origin(self) -> str:
+        """Where the figures of the losses come from; empty if that is not told."""
+        return ", ".join(dict.fromkeys(each.origin for each in self.units if each.origin))
 
 
 class Powers(NamedTuple):
@@ -116,7 +145,8 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
 
     .. math:: P_{50} = P + n \, P_0 + b S + c \frac{S^2}{n S_N} + P_{aux}, \qquad S = \sqrt{P^2 + Q^2}
 
-    The running converters share alike.  Below zero the station delivers to the grid; one with a resistor
+    The running converters share alike; those of several types by their own laws, each type with the
+    losses of its part.  Below zero the station delivers to the grid; one with a resistor
     burns that instead.  A station of which no converter runs is out of service, and takes nothing.
 
     Parameters
@@ -129,11 +159,16 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
     """
     runs, zero = running > 0.0, np.zeros_like(active_w)
     idle = by_load = zero
-    if side.law is not None:
-        rating_va = np.where(runs, running, 1.0) * side.law.rating_va
-        loading = np.where(runs, np.hypot(active_w, reactive_var) / rating_va, 0.0)
-        idle = running * side.law.idle_w
-        by_load = running * side.law.by_load_w(loading, active_w < 0.0)
+    powers = active_w + 1j * reactive_var
+    shares = [powers] if side.mixed is None else _shared(powers, side.mixed)
+    for own, units in zip(shares, side.units, strict=False):
+        if units.law is None:
+            continue
+        count = running if units.count is None else np.where(runs, units.count, 0.0)
+        rating_va = np.where(runs, count, 1.0) * units.law.rating_va
+        loading = np.where(runs, np.hypot(own.real, own.imag) / rating_va, 0.0)
+        idle = idle + count * units.law.idle_w
+        by_load = by_load + count * units.law.by_load_w(loading, own.real < 0.0)
     auxiliaries = np.where(runs, side.auxiliaries_w or 0.0, 0.0)
     balance = active_w + idle + by_load + auxiliaries
     surplus = np.maximum(-balance, 0.0)
@@ -142,23 +177,42 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
     return Powers(active_w, from_grid, to_grid, burnt, idle, by_load, auxiliaries)
 
 
+def _shared(powers_va: Complexes, law: Records[MixedLaw]) -> list[Complexes]:
+    """Powers of each of several types in all steps."""
+    shared = np.zeros((powers_va.size, len(TYPES)), dtype=complex)
+    split_all(powers_va, law[0], shared)
+    return list(shared.T)
+
+
 def sides_of(scenario: Scenario) -> tuple[StationSide, ...]:
     """The 50 Hz sides of all feeding stations, in the order of the results."""
     return tuple(_side_of(station) for station in scenario.supply.stations)
 
 
 def _side_of(station: Station) -> StationSide:
-    burns = station.feedback == "resistor"
-    if not isinstance(station, ConverterStation):
-        return StationSide(station.name, burns=burns)
-    losses, rating_va = station.type.losses, si(station.type, "rating_mva")
+    if isinstance(station, TransformerStation):
+        return StationSide(station.name, burns=station.feedback == "resistor")
+    if not isinstance(station, ConverterStation | MixedStation):
+        return StationSide(station.name)
+    mixed = None
+    if isinstance(station, MixedStation):
+        units = tuple(_units_of(each.type, each.converters) for each in station.units)
+        mixed = MixedLaw.array([mixed_law(station.units)])
+    else:
+        units = (_units_of(station.type),)
     return StationSide(
         name=station.name,
-        law=None if losses is None else law_of(losses, rating_va),
+        units=units,
+        mixed=mixed,
         auxiliaries_w=None if station.station_kw is None else si(station, "station_kw"),
-        burns=burns,
-        origin=None if losses is None else losses.origin,
+        burns=station.feedback == "resistor",
     )
+
+
+def _units_of(kind: ConverterType, count: float | None = None) -> Units:
+    if kind.losses is None:
+        return Units(None, count)
+    return Units(law_of(kind.losses, si(kind, "rating_mva")), count, kind.losses.origin)
 
 
 def law_of(losses: ConverterLosses, rating_va: float) -> LossLaw:

@@ -34,6 +34,7 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "high_voltage_line", "station_transformer"),
     ("supply", "converter_stations", "*", "type"),
     ("supply", "converter_types", "*"),
+    ("supply", "mixed_stations", "*", "units", "*", "type"),
     ("trains", "*", "model"),
 )
 """Where a file may be named; ``*`` is any item or key."""
@@ -41,6 +42,7 @@ PLACES: tuple[tuple[str, ...], ...] = (
 LOSSES_OF = (
     ("supply", "converter_types", "*", "losses"),
     ("supply", "converter_stations", "*", "type", "losses"),
+    ("supply", "mixed_stations", "*", "units", "*", "type", "losses"),
 )
 """Where losses may name a CSV file with their curve."""
 

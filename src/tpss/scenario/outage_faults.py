@@ -11,6 +11,7 @@ from tpss.scenario.simulation import Simulation
 from tpss.scenario.supply import Station, Supply
 from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.feeds import feeds_of, places_on
+from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import kilometres
 
@@ -73,6 +74,9 @@ def _units(name: str, count: int, station: Station) -> Iterator[Fault]:
     if left < 0:
         problem = f"more than are installed there, {station.installed}"
         yield key, str(count), problem, f"give {station.installed} or less"
+    elif left > 0 and isinstance(station, MixedStation):
+        problem = f"{name} has converters of several types, of which single ones do not go out"
+        yield key, str(count), problem, f"take {name} out as a station, under stations"
     elif left > 0 and isinstance(station, ConverterStation):
         reduced = station.model_copy(update={"converters": left})
         if station.grid_reactive_power_mvar <= reduced.least_reactive_mvar:

@@ -25,6 +25,14 @@ from tpss.sources.grid import (
     set_unloaded_grid,
     unloaded_grid,
 )
+from tpss.sources.mixed import (
+    MixedLaw,
+    mixed_is_plausible,
+    mixed_reserve,
+    mixed_residual,
+    set_unloaded_mixed,
+    unloaded_mixed,
+)
 
 
 class SourceKind(IntEnum):
@@ -32,6 +40,7 @@ class SourceKind(IntEnum):
 
     CONVERTER = 0
     GRID = 1
+    MIXED = 2
 
 
 class Source(Record):
@@ -49,6 +58,7 @@ class Source(Record):
     """Rated power of one unit. [VA]"""
     converter: ConverterLaw = ConverterLaw.row()
     grid: GridLaw = GridLaw.row()
+    mixed: MixedLaw = MixedLaw.row()
 
 
 @inlined
@@ -78,6 +88,8 @@ def residual(
     """
     if source.kind == SourceKind.GRID:
         return grid_residual(voltage, current, running, source.grid)
+    if source.kind == SourceKind.MIXED:
+        return mixed_residual(voltage, current, source.mixed)
     return converter_residual(voltage, current, running, source.converter, derivatives)
 
 
@@ -86,6 +98,8 @@ def is_plausible(voltage: complex, current: complex, running: float, source: Sou
     """Whether a source can be in a state that its law admits."""
     if source.kind == SourceKind.CONVERTER:
         return converter_is_plausible(voltage, current, running, source.converter)
+    if source.kind == SourceKind.MIXED:
+        return mixed_is_plausible(voltage, current, source.mixed)
     return True
 
 
@@ -94,6 +108,8 @@ def reserve(voltage: complex, current: complex, running: float, source: Source) 
     """How far a source is from the end of what its law admits: 1 without load, 0 there. [1]"""
     if source.kind == SourceKind.CONVERTER:
         return converter_reserve(voltage, current, running, source.converter)
+    if source.kind == SourceKind.MIXED:
+        return mixed_reserve(voltage, current, source.mixed)
     return 1.0
 
 
@@ -102,6 +118,8 @@ def unloaded(source: Source) -> tuple[float, float]:
     """Magnitude and angle of a source's voltage without load. [V], [rad]"""
     if source.kind == SourceKind.GRID:
         return unloaded_grid(source.grid)
+    if source.kind == SourceKind.MIXED:
+        return unloaded_mixed(source.mixed)
     return unloaded_converter(source.converter)
 
 
@@ -110,6 +128,8 @@ def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
     """Give a source another voltage without load; all else of its law stays."""
     if source.kind == SourceKind.GRID:
         set_unloaded_grid(magnitude_v, angle_rad, source.grid)
+    elif source.kind == SourceKind.MIXED:
+        set_unloaded_mixed(magnitude_v, angle_rad, source.mixed)
     else:
         set_unloaded_converter(magnitude_v, angle_rad, source.converter)
 

@@ -5,6 +5,7 @@ from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post,
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
 from tpss.scenario.supply.losses import ConverterLosses
+from tpss.scenario.supply.mixed_station import ConverterUnits, MixedStation
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import TransformerStation
@@ -15,8 +16,10 @@ __all__ = [
     "ConverterLosses",
     "ConverterStation",
     "ConverterType",
+    "ConverterUnits",
     "HighVoltageLine",
     "LineType",
+    "MixedStation",
     "NeutralSection",
     "Post",
     "SectionBreak",

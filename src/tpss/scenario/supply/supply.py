@@ -20,13 +20,14 @@ from tpss.scenario.supply.catenary import Catenary
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
+from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
 
-Station = ConverterStation | TransformerStation
+Station = ConverterStation | TransformerStation | MixedStation
 """A feeding station of any kind."""
 
-STATIONS = ("converter_stations", "transformer_stations")
+STATIONS = ("converter_stations", "transformer_stations", "mixed_stations")
 """Keys of the supply that list feeding stations, in the order of the results."""
 
 
@@ -42,11 +43,19 @@ def _alternates(frequency_hz: Any) -> Any:
     return frequency_hz
 
 
-def _with_own_type(station: Any, own: dict[str, ConverterType]) -> Any:
-    """A station's table, with an own type in place of its name."""
-    if not isinstance(station, dict) or not isinstance(station.get("type"), str):
-        return station
-    return {**station, "type": own.get(station["type"], station["type"])}
+def _with_own_types(tables: Any, own: dict[str, ConverterType]) -> Any:
+    """Tables of stations, or of their units, with own types in place of their names."""
+    if not isinstance(tables, list | tuple):
+        return tables
+    return [_with_own_type(each, own) if isinstance(each, dict) else each for each in tables]
+
+
+def _with_own_type(table: dict[str, Any], own: dict[str, ConverterType]) -> dict[str, Any]:
+    if isinstance(table.get("type"), str):
+        return {**table, "type": own.get(table["type"], table["type"])}
+    if "units" in table:
+        return {**table, "units": _with_own_types(table["units"], own)}
+    return table
 
 
 class Supply(Part):
@@ -97,6 +106,9 @@ class Supply(Part):
     converter_types: dict[Name, Annotated[ConverterType, FromLibrary("converters")]] | None = Field(
         default=None, description="Own types of converters by name, for `type` of a station."
     )
+    mixed_stations: Annotated[
+        tuple[MixedStation, ...], unique("name"), unique("position_km", of="line")
+    ] = Field(default=(), description="Converter stations with converters of several types.")
     converter_stations: Annotated[
         tuple[ConverterStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(
@@ -113,13 +125,11 @@ class Supply(Part):
                 raise fault(f"{name} is an entry of the library", "give the own type another name")
         return types
 
-    @field_validator("converter_stations", mode="before")
+    @field_validator("converter_stations", "mixed_stations", mode="before")
     @classmethod
     def _own_types_by_name(cls, stations: Any, info: ValidationInfo) -> Any:
         own = info.data.get("converter_types")
-        if not own or not isinstance(stations, list | tuple):
-            return stations
-        return [_with_own_type(each, own) for each in stations]
+        return _with_own_types(stations, own) if own else stations
 
     @field_validator("converter_stations")
     @classmethod
@@ -144,6 +154,12 @@ class Supply(Part):
     def stations(self) -> tuple[Station, ...]:
         """All feeding stations, in the order of the results."""
         return tuple(station for key in STATIONS for station in getattr(self, key))
+
+    @property
+    def converters_in_use(self) -> tuple[ConverterType, ...]:
+        """Types of converters of all stations, each as often as a station has it."""
+        mixed = (each.type for station in self.mixed_stations for each in station.units)
+        return (*(station.type for station in self.converter_stations), *mixed)
 
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:
