@@ -12,10 +12,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.first_free import save_table
-from tpss.cli.run import DONE, INTERRUPTED, PROGRESS, SEVERITY, exit_code
+from tpss.cli.plot import demand_format, figure_bytes
+from tpss.cli.run import DONE, PROGRESS, SEVERITY, exit_code
 from tpss.cli.terminal import announce_compilation, progress_bar, say
-from tpss.errors import ResultError
+from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
 
 if TYPE_CHECKING:
@@ -24,23 +24,31 @@ if TYPE_CHECKING:
     from tpss.converter_control.compare import Comparison
     from tpss.run.run import Progress
 
-PNG = ".png"
-"""End of the name of the figure, which otherwise is that of the table."""
-
 
 def run_converters(
-    file: Path, assignments: list[str], out: Path | None, figure: bool, force: bool, quiet: bool
+    file: Path, assignments: list[str], out: Path | None, plot: Path | None, force: bool
 ) -> int:
-    """Run a scenario with both controls; print and save what differs; return the exit code."""
+    """Run a scenario with both controls; print and write what differs; return the exit code.
+
+    Raises
+    ------
+    ScenarioError
+        The scenario has faults, or describes no losses.
+    ResultError
+        A file cannot be written.
+    """
     from tpss.converter_control.compare import compare_controls
     from tpss.run.interrupt import interruptible
     from tpss.scenario import load_scenario
     from tpss.scenario.override import parse_assignment
 
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
-    if out is not None:
-        _demand_room(out, figure, force)
-    console = Console(stderr=True, quiet=quiet)
+    for target in (out, plot):
+        if target is not None:
+            refuse_to_replace(target, force, "a file", Path.is_file)
+    if plot is not None:
+        demand_format(plot)
+    console = Console(stderr=True)
     announce_compilation(console)
     with (
         interruptible() as interrupted,
@@ -52,33 +60,14 @@ def run_converters(
         for control, run in found.runs.items():
             told = run.summary.get("problem") or "; ".join(run.audit["failures"]) or run.status
             print(f'control = "{control}": {told}', file=sys.stderr)
-        print("Both runs have to finish to be compared; nothing was saved.", file=sys.stderr)
-        return max(codes, key=(*SEVERITY, INTERRUPTED).index)
-    content = found.table.to_csv(index=False).encode()
-    place = save_table(content, f"{scenario.name}-converters", out, force, beside=(PNG,))
-    if not quiet:
-        print_comparison(found, Console())
-        say(Console(), f"Saved in {place}")
-    if figure:
-        _draw(found, place.with_suffix(PNG))
-        if not quiet:
-            print(f"Wrote {place.with_suffix(PNG)}")
+        print("Both runs have to finish to be compared.", file=sys.stderr)
+        return max(codes, key=SEVERITY.index)
+    print_comparison(found, Console())
+    if out is not None:
+        _write(out, found.table.to_csv(index=False).encode())
+    if plot is not None:
+        _write(plot, _drawn(found, plot))
     return DONE
-
-
-def _demand_room(out: Path, figure: bool, force: bool) -> None:
-    """Refuse to replace what is there, before anything runs.
-
-    Raises
-    ------
-    ResultError
-    """
-    refuse_to_replace(out, force, "a file", Path.is_file)
-    if not figure:
-        return
-    if out.suffix == PNG:
-        raise ResultError(f"{out} is to be the table; give --out a name that ends in .csv")
-    refuse_to_replace(out.with_suffix(PNG), force, "a file", Path.is_file)
 
 
 def _progress(state: "Progress") -> dict[str, Any]:
@@ -86,15 +75,18 @@ def _progress(state: "Progress") -> dict[str, Any]:
     return {"completed": state.share, "total": 1.0, "detail": detail}
 
 
-def _draw(found: "Comparison", file: Path) -> None:
-    from tpss.cli.plot import figure_bytes
-    from tpss.files.whole import write_file
+def _drawn(found: "Comparison", file: Path) -> bytes:
     from tpss.report.drawings.converter_losses import losses_by_control
     from tpss.report.render.static import render
 
     drawn = render(losses_by_control(found.runs))
+    return figure_bytes(drawn, file.suffix.removeprefix("."))
+
+
+def _write(file: Path, content: bytes) -> None:
     with explained(file):
-        write_file(file, figure_bytes(drawn, PNG.removeprefix(".")))
+        whole.write_file(file, content)
+    print(f"Wrote {file}")
 
 
 def print_comparison(found: "Comparison", console: Console) -> None:

@@ -285,18 +285,15 @@ def outages(
 def converters(
     file: ScenarioFile,
     set_: Assignments = None,
-    out: Annotated[
+    out: Annotated[Path | None, option(help="CSV file to write.")] = None,
+    plot: Annotated[
         Path | None,
-        option(help="CSV file to write; by default results/NAME-converters-NNN.csv."),
-    ] = None,
-    figure: Annotated[
-        bool,
-        typer.Option(
-            "--figure", help="Also draw the losses over time, beside the CSV file, as .png."
+        option(
+            help="Picture of the losses over time to write, of which the end says the kind: png, svg, "
+            "pdf."
         ),
-    ] = False,
+    ] = None,
     force: Force = False,
-    quiet: Quiet = False,
 ) -> None:
     """Tell what switching converters by their loading saves, against leaving all of them on.
 
@@ -310,7 +307,41 @@ def converters(
     """
     from tpss.cli.converters import run_converters
 
-    raise typer.Exit(run_converters(file, set_ or [], out, figure, force, quiet))
+    raise typer.Exit(run_converters(file, set_ or [], out, plot, force))
+
+
+@app.command(
+    name="spare-time",
+    epilog="Examples:  tpss spare-time examples/emu_25kv.toml, then tpss run examples/emu_25kv.toml "
+    "--set traffic.0.supplement_percent=5 --set traffic.0.spare_time=least-energy",
+)
+def spare_time(
+    file: ScenarioFile,
+    percent: Annotated[
+        list[float] | None,
+        option(
+            min=0,
+            max=200,
+            help="Time to spare, in percent of the technical running time; repeatable. By default 2, "
+            "5, 10, 15 and 20.",
+        ),
+    ] = None,
+    set_: Assignments = None,
+    out: Annotated[Path | None, option(help="CSV file to write.")] = None,
+    plot: Annotated[
+        Path | None, option(help="Picture to write, of which the end says the kind: png, svg, pdf.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Print how much energy trains save by using time that they have to spare.
+
+    A train that has more time from stop to stop than it needs can hold a lower speed, coast before it
+    brakes, or do both with the least energy. Each service is tried alone and at nominal voltage; the
+    key `spare_time` of a service lets its trains drive so in a run.
+    """
+    from tpss.cli.spare_time import print_savings
+
+    print_savings(file, percent or [], set_ or [], out, plot, force)
 
 
 @app.command(epilog="Example:  tpss new my-line")

@@ -1,6 +1,7 @@
 """The command ``tpss outages``: a scenario with each of its outages, in one ranked table."""
 
 import math
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,12 +11,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.first_free import save_table
 from tpss.cli.run import AUDIT_FAILED, DONE, INTERRUPTED, NO_SOLUTION
 from tpss.cli.terminal import announce_compilation, parts_that_fit, progress_bar, say
 from tpss.errors import ResultError
-from tpss.files.refusals import refuse_to_replace
+from tpss.files import whole
+from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import is_report
+from tpss.results.store import PARENT
 from tpss.units import on_line
 
 if TYPE_CHECKING:
@@ -106,9 +108,31 @@ def _exit_code(found: "Comparison") -> int:
 
 
 def _save(found: "Comparison", name: str, out: Path | None, force: bool) -> Path:
-    """Write the table; into the first free place if none is named."""
+    """Write the table, whole or not at all; into the first free place if none is named."""
     content = found.table().to_csv(index=False).encode()
-    return save_table(content, f"{name}-outages", out, force, beside=(HTML,))
+    try:
+        return _write(content, name, out, force)
+    except ResultError:
+        print(content.decode())  # so that nothing is lost
+        raise
+
+
+def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
+    if out is not None:
+        with explained(out):
+            refuse_to_replace(out, force, "a file", Path.is_file)
+            out.parent.mkdir(parents=True, exist_ok=True)
+            whole.write_file(out, content)
+        return out
+    number = 1
+    while True:
+        place = PARENT / f"{name}-outages-{number:03d}.csv"
+        with explained(place):
+            PARENT.mkdir(exist_ok=True)
+            if not any(map(os.path.lexists, (place, place.with_suffix(HTML)))):
+                whole.write_file(place, content)
+                return place
+        number += 1
 
 
 COLUMNS = (
