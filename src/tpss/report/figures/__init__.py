@@ -8,6 +8,7 @@ dashed, then dash-dotted.  All return a matplotlib figure, which is neither show
 from tpss.report.drawings import effort as _effort
 from tpss.report.drawings import energy as _energy
 from tpss.report.drawings import journey as _journey
+from tpss.report.drawings import measured as _measured
 from tpss.report.drawings import network as _network
 from tpss.report.drawings import stations as _stations
 from tpss.report.drawings import time_distance as _time_distance
@@ -19,6 +20,8 @@ from tpss.report.render.static import static
 effort = static(_effort.effort)
 energy_flow = static(_energy.energy_flow)
 journey = static(_journey.journey)
+measured_durations = static(_measured.measured_durations)
+measured_over_time = static(_measured.measured_over_time)
 network = static(_network.network)
 station_loading = static(_stations.station_loading)
 station_powers = static(_stations.station_powers)

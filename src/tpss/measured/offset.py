@@ -1,0 +1,227 @@
+"""The offset of a clock: where the measured series fit the simulated ones best."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tpss.measured.held import Held
+from tpss.measured.independent import correlation_time
+from tpss.measured.quantities import Floats
+
+RESOLUTION_S = 0.01
+"""An offset is told in hundredths of a second. [s]"""
+
+MOST_TRIED = 20_000
+"""Offsets that are tried at most before the best is refined."""
+
+LEAST_SHARE = 0.5
+"""Share of the most measured time that any offset lets compare: with less, an offset does not count."""
+
+LIKELY = 3.841
+"""By how much twice the logarithm of the likelihood falls to the ends of an interval of 95 %."""
+
+HALVINGS = 40
+"""Steps of a search between two offsets."""
+
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+
+
+class Offset(NamedTuple):
+    """An offset that was looked for, and how sharply it is found.
+
+    Attributes
+    ----------
+    seconds : float
+        What the clock of the file shows more than that of the run. [s]
+    range_s : float
+        It was looked for up to this on both sides. [s]
+    unexplained : float
+        Share of the variance of the measured series that remains in their difference to the run there.
+    low_s, high_s : float
+        Ends of its interval of confidence, 95 %. [s]
+    next_s, next_unexplained : float
+        The next best offset, of another valley, and what it leaves unexplained; NaN: there is none. [s]
+    at_end : bool
+        Whether it lies at an end of the range, so that a better one may lie beyond.
+    """
+
+    seconds: float
+    range_s: float
+    unexplained: float
+    low_s: float
+    high_s: float
+    next_s: float
+    next_unexplained: float
+    at_end: bool
+
+    @property
+    def in_words(self) -> str:
+        """The offset in a sentence."""
+        side = "behind" if self.seconds < 0.0 else "ahead of"
+        where = f"is {abs(self.seconds):.2f} s {side} the run's" if self.seconds else "is the run's"
+        text = (
+            f"Offset found: the clock of the file {where} (95 %: {self.low_s:+.2f} to "
+            f"{self.high_s:+.2f} s; tried: ±{self.range_s:g} s), {100.0 * self.unexplained:.2f} % "
+            "unexplained"
+        )
+        if not math.isnan(self.next_s):
+            text += f"; next best {self.next_s:+.2f} s, {100.0 * self.next_unexplained:.1f} %"
+        return text
+
+
+class Misfit:
+    """What an offset leaves unexplained: least squares with a free constant for each series.
+
+    Each series counts by its variance, so that units and sizes do not matter, and a constant difference
+    does not move the offset.
+
+    Parameters
+    ----------
+    pairs : sequence of (Held, Held)
+        Measured series at no offset, and the simulated ones.
+    of_file : bool
+        Whether means are taken over the intervals of the file, or over those of the run: of the two
+        the longer ones.
+    """
+
+    def __init__(self, pairs: Sequence[tuple[Held, Held]], of_file: bool) -> None:
+        self.of_file = of_file
+        self.pairs = [
+            (measured, simulated, float(np.var(measured.known.values)))
+            for measured, simulated in pairs
+            if len(measured.known.values) > 1 and np.ptp(measured.known.values) > 0.0
+        ]
+
+    def differences(self, offset_s: float) -> list[tuple[Floats, Floats]]:
+        """Simulated less measured means of each series, and the measured ones, where both are known."""
+        found = []
+        for measured, simulated, _ in self.pairs:
+            if self.of_file:
+                values = measured.values
+                run = simulated.means(measured.begin_s - offset_s, measured.end_s - offset_s)
+            else:
+                run = simulated.values
+                values = measured.means(simulated.begin_s + offset_s, simulated.end_s + offset_s)
+            there = np.isfinite(run) & np.isfinite(values)
+            found.append((run[there] - values[there], values[there]))
+        return found
+
+    def at(self, offset_s: float) -> tuple[float, int]:
+        """Unexplained share at an offset, and how many values are compared; infinite for none."""
+        left = total = 0.0
+        count = 0
+        for (difference, values), (_, _, variance) in zip(
+            self.differences(offset_s), self.pairs, strict=True
+        ):
+            if len(values):
+                left += float(np.var(difference)) * len(values) / variance
+                total += float(np.var(values)) * len(values) / variance
+                count += len(values)
+        return (left / total if total > 0.0 else math.inf), count
+
+    def independent(self, offset_s: float) -> float:
+        """Most independent values of a series' difference at an offset: series may tell the same."""
+        return max(
+            (len(d) / correlation_time(d) for d, _ in self.differences(offset_s) if len(d)),
+            default=1.0,
+        )
+
+
+def find_offset(
+    pairs: Sequence[tuple[Held, Held]], range_s: float, file_step_s: float, run_step_s: float
+) -> Offset | None:
+    """Offset within a range at which the measured series fit best; None if none of them varies.
+
+    Half steps of the finer one over the whole range are tried, and the best one is refined between its
+    neighbours.  Means are compared over the intervals of the other one.  The ends of its interval are where the logarithm of what is unexplained has risen by 3.84 over the number
+    of independent values: a likelihood ratio for normal differences.
+
+    Parameters
+    ----------
+    pairs : sequence of (Held, Held)
+        Measured series in the run's time at no offset, and the simulated ones.
+    range_s : float
+        Offsets up to this on both sides are tried. [s]
+    file_step_s, run_step_s : float
+        Steps of the two. [s]
+    """
+    misfit = Misfit(pairs, file_step_s >= run_step_s)
+    half = min(math.ceil(2.0 * range_s / min(file_step_s, run_step_s)), MOST_TRIED // 2)
+    tried_s = np.linspace(-range_s, range_s, 2 * half + 1)
+    found = [misfit.at(float(offset_s)) for offset_s in tried_s]
+    counts = np.array([count for _, count in found])
+    shares = np.array([share for share, _ in found])
+    shares[counts < LEAST_SHARE * counts.max(initial=0)] = math.inf
+    if not np.isfinite(shares).any():
+        return None
+    # Of equally good ones that which is nearest to none.
+    best = min(range(len(shares)), key=lambda k: (shares[k], abs(tried_s[k])))
+    apart_s = range_s / half
+    seconds = _refined(misfit, float(tried_s[best]), apart_s, range_s)
+    unexplained, _ = misfit.at(seconds)
+    rise = math.exp(LIKELY / misfit.independent(seconds))
+    limit = max(unexplained, np.finfo(float).eps) * rise
+    low_s, high_s = (_end(misfit, tried_s, shares, best, seconds, limit, side) for side in (-1, 1))
+    other = _next_valley(shares, best)
+    return Offset(
+        seconds, range_s, unexplained, low_s, high_s,
+        math.nan if other is None else float(tried_s[other]),
+        math.nan if other is None else float(shares[other]),
+        best in (0, len(shares) - 1),
+    )  # fmt: skip
+
+
+def _refined(misfit: Misfit, best_s: float, apart_s: float, range_s: float) -> float:
+    """The best offset between the neighbours of the best one that was tried, by golden sections."""
+    low, high = max(best_s - apart_s, -range_s), min(best_s + apart_s, range_s)
+    for _ in range(HALVINGS):
+        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        if misfit.at(left)[0] <= misfit.at(right)[0]:
+            high = right
+        else:
+            low = left
+    rounded = round((low + high) / 2.0 / RESOLUTION_S) * RESOLUTION_S
+    return rounded if misfit.at(rounded)[0] <= misfit.at(best_s)[0] else best_s
+
+
+def _end(
+    misfit: Misfit,
+    tried_s: Floats,
+    shares: Floats,
+    best: int,
+    seconds: float,
+    limit: float,
+    side: int,
+) -> float:
+    """Where the unexplained share first passes a limit beside the best offset; else the range's end."""
+    k = best
+    while 0 <= k + side < len(shares):
+        k += side
+        if shares[k] > limit:
+            break
+    else:
+        return float(tried_s[k])
+    within, beyond = seconds, float(tried_s[k])
+    if side * (float(tried_s[k - side]) - seconds) > 0.0:
+        within = float(tried_s[k - side])
+    for _ in range(HALVINGS):
+        middle = (within + beyond) / 2.0
+        if misfit.at(middle)[0] > limit:
+            beyond = middle
+        else:
+            within = middle
+    return within
+
+
+def _next_valley(shares: Floats, best: int) -> int | None:
+    """The lowest local minimum beyond a ridge half as high as the highest share, if it is below that."""
+    ridge = (shares[best] + shares[np.isfinite(shares)].max()) / 2.0
+    high = np.flatnonzero(shares >= ridge)
+    left = high[high < best].max(initial=-1)
+    right = high[high > best].min(initial=len(shares))
+    padded = np.concatenate([[math.inf], shares, [math.inf]])
+    valleys = np.flatnonzero((shares < ridge) & (shares < padded[:-2]) & (shares <= padded[2:]))
+    others = [int(k) for k in valleys if not left < k < right]
+    return min(others, key=lambda k: shares[k], default=None)
