@@ -20,12 +20,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import xarray as xr
-
 from tpss.errors import Finding, ScenarioError, shortened, suggest
-from tpss.measured.quantities import QUANTITIES, UNITS, elements_of, nodes_at, units_of
+from tpss.measured.quantities import QUANTITIES, UNITS, elements_of, nodes_of, units_of
 from tpss.measured.table import Table
 from tpss.measured.times import COUNTED_S
+from tpss.results.result import Result
 from tpss.scenario.files import read_toml
 
 HEADING = r"(\w+)\s*:\s*(.+?)\s*\[\s*(.*?)\s*\]"
@@ -59,7 +58,7 @@ class Columns(NamedTuple):
     compared: list[Column]
 
 
-def find_columns(table: Table, map_file: Path | None, dataset: xr.Dataset) -> Columns:
+def find_columns(table: Table, map_file: Path | None, result: Result) -> Columns:
     """What the columns of a table are in a run.
 
     Raises
@@ -88,7 +87,7 @@ def find_columns(table: Table, map_file: Path | None, dataset: xr.Dataset) -> Co
                 continue
             entry = dict(zip(OF_A_COLUMN, match.groups(), strict=False))
             blamed = (str(table.path), f"{place}, ")
-        faults = list(_faults_of_column(entry, blamed, dataset))
+        faults = list(_faults_of_column(entry, blamed, result))
         findings += faults
         if not faults:
             factor = UNITS[entry["unit"]][1] * entry.get("factor", 1.0)
@@ -124,7 +123,7 @@ def _faults_of_all(table: Table, compared: list[Column], others: bool) -> Iterat
 
 
 def _faults_of_column(
-    entry: Mapping[str, Any], blamed: tuple[str, str], dataset: xr.Dataset
+    entry: Mapping[str, Any], blamed: tuple[str, str], result: Result
 ) -> Iterator[Finding]:
     """What is wrong with quantity, element, unit and factor of a column."""
     file, place = blamed
@@ -137,14 +136,14 @@ def _faults_of_column(
             str(entry.get("quantity", "")), QUANTITIES))  # fmt: skip
         return
     quantity = QUANTITIES[entry["quantity"]]
-    elements = elements_of(quantity, dataset)
+    elements = elements_of(quantity, result.dataset)
     if entry.get("element") not in elements:
         remedy = suggest(str(entry.get("element", "")), elements)
         yield fault("element", f"the run has no such {quantity.of}", remedy)
     elif entry["quantity"] == "station_voltage":
-        nodes = nodes_at(entry["element"], dataset)
+        nodes = nodes_of(entry["element"], result)
         if len(nodes) != 1:
-            problem = f"the station feeds {len(nodes)} parts, whose voltages differ"
+            problem = "its place does not tell which node it feeds"
             remedy = f"take node_voltage, and as its element one of: {'; '.join(nodes)}"
             yield fault("element", problem, remedy)
     if entry.get("unit") not in units_of(quantity):

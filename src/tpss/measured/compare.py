@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from tpss.errors import ResultError
 from tpss.measured.begin import Begin, begin_of
+from tpss.measured.columns import Column
 from tpss.measured.figures import Aligned, Figures, Window, durations_of, figures_of, windows_of
 from tpss.measured.held import Held
 from tpss.measured.load import Measured, Stamps, read_measured
@@ -192,13 +192,13 @@ def compare_with_measurements(
     _demand_positive("find_offset_min", find_offset_min)
     _demand_positive("step_min", step_min)
     data = result.dataset
-    measured = read_measured(place, map_file, stamps, data)
+    measured = read_measured(place, map_file, stamps, result)
     run_s = float(data.time[-1])
     begin = begin_of(
         measured, run_s, result.scenario.simulation.start_s, begins, find_offset_min is not None
     )
     pairs = {
-        column: (_moved(held, begin.seconds), _simulated(column.quantity, column.element, data))
+        column: (_moved(held, begin.seconds), _simulated(column, result))
         for column, held in measured.series.items()
     }
     run_step_s = float(data.attrs["time_step_s"])
@@ -247,15 +247,15 @@ def _moved(held: Held, by_s: float) -> Held:
     return Held(held.begin_s - by_s, held.end_s - by_s, held.values)
 
 
-def _simulated(quantity: str, element: str, data: xr.Dataset) -> Held:
-    instants_s = data.time.to_numpy().astype(float)
-    values = simulated_values(QUANTITIES[quantity], element, data)
+def _simulated(column: Column, result: Result) -> Held:
+    instants_s = result.dataset.time.to_numpy().astype(float)
+    values = simulated_values(QUANTITIES[column.quantity], column.element, result)
     return Held(instants_s[:-1], instants_s[1:], values)
 
 
 def _grid(
     measured: Measured,
-    pairs: Mapping[Any, tuple[Held, Held]],
+    pairs: Mapping[Column, tuple[Held, Held]],
     step_s: float,
     of_file: bool,
     begin: Begin,
@@ -287,7 +287,7 @@ def _grid(
 
 
 def _aligned(
-    measured: Measured, pairs: Mapping[Any, tuple[Held, Held]], grid: Grid
+    measured: Measured, pairs: Mapping[Column, tuple[Held, Held]], grid: Grid
 ) -> list[Aligned]:
     """Means of all series over the intervals of a grid.
 
@@ -330,7 +330,7 @@ def _notes(begin: Begin, offset: Offset | None, grid: Grid, series: list[Aligned
     for (left_out, unknown, absent), names in lacking.items():
         if left_out:
             notes.append(
-                f"{left_out} of {grid.intervals} intervals are left out of {', '.join(names)}: in {unknown} "
-                f"the measurement has a gap, in {absent} nothing is simulated"
+                f"{left_out} of {grid.intervals} intervals are left out of {', '.join(names)}: in "
+                f"{unknown} the measurement has a gap, in {absent} nothing is simulated"
             )
     return notes

@@ -60,9 +60,3 @@ def _stairs(parts: Floats) -> Floats:
     """Sums at the beginning and the end of each part, which are level between two parts."""
     after = np.cumsum(parts)
     return np.column_stack([after - parts, after]).ravel()
-
-
-def between(held: Held, begin_s: float, end_s: float) -> bool:
-    """Whether a known value holds at some time between two times."""
-    known = held.known
-    return bool(np.any((known.end_s > begin_s) & (known.begin_s < end_s)))

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from tpss.errors import Finding, ScenarioError
 from tpss.measured.columns import Column, find_columns
@@ -12,6 +11,7 @@ from tpss.measured.held import Held
 from tpss.measured.quantities import Floats
 from tpss.measured.table import numbers, read_table
 from tpss.measured.times import Times, read_times
+from tpss.results.result import Result
 
 Stamps = Literal["begin", "end"]
 """What the time of a value says: when the interval begins over which it holds, or when that ends."""
@@ -26,6 +26,7 @@ class Measured(NamedTuple):
     Attributes
     ----------
     path : Path
+    time_column : str
     times : Times
     step_s : float
         The usual distance of two times, their median. [s]
@@ -36,20 +37,19 @@ class Measured(NamedTuple):
     """
 
     path: Path
+    time_column: str
     times: Times
     step_s: float
     series: dict[Column, Held]
     notes: tuple[str, ...]
 
     def fault(self, problem: str, remedy: str, column: str = "", value: str = "") -> ScenarioError:
-        """An error about the file, or one of its columns."""
-        place = f"column {column!r}" if column else ""
+        """An error about a column of the file, by default that of the times."""
+        place = f"column {column or self.time_column!r}"
         return ScenarioError([Finding(str(self.path), place, value, problem, remedy)])
 
 
-def read_measured(
-    path: Path, map_file: Path | None, stamps: Stamps, dataset: xr.Dataset
-) -> Measured:
+def read_measured(path: Path, map_file: Path | None, stamps: Stamps, result: Result) -> Measured:
     """Measured series of a file.
 
     A value holds until the next time, or from the one before, whichever the stamps say; at a jump in
@@ -62,7 +62,7 @@ def read_measured(
         The file, or that which explains its columns, has faults.
     """
     table = read_table(path)
-    columns = find_columns(table, map_file, dataset)
+    columns = find_columns(table, map_file, result)
     times = read_times(table, columns.time, columns.time_unit)
     if len(times.seconds) < 2:
         problem, remedy = "a single time, of which no step follows", "give two rows at least"
@@ -78,7 +78,7 @@ def read_measured(
     if findings:
         raise ScenarioError(findings)
     notes = (*table.notes, *_gaps(path.name, times, begin_s, end_s, series))
-    return Measured(path, times, step_s, series, notes)
+    return Measured(path, columns.time, times, step_s, series, notes)
 
 
 def _intervals(seconds: Floats, stamps: Stamps) -> tuple[Floats, Floats, float]:

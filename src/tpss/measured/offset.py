@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tpss.measured.held import Held
+from tpss.measured.held import WHOLE, Held
 from tpss.measured.independent import correlation_time
 from tpss.measured.quantities import Floats
 
@@ -14,18 +14,16 @@ RESOLUTION_S = 0.01
 """An offset is told in hundredths of a second. [s]"""
 
 MOST_TRIED = 20_000
-"""Offsets that are tried at most before the best is refined."""
+"""Offsets on either side that are tried at most before the best is refined."""
 
 LEAST_SHARE = 0.5
 """Share of the most measured time that any offset lets compare: with less, an offset does not count."""
 
+INTERPOLATED = 0.1
+"""Share of the finer step by which the lowest point of a parabola between whole steps may be wrong."""
+
 LIKELY = 3.841
 """By how much twice the logarithm of the likelihood falls to the ends of an interval of 95 %."""
-
-HALVINGS = 40
-"""Steps of a search between two offsets."""
-
-GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
 class Offset(NamedTuple):
@@ -134,9 +132,12 @@ def find_offset(
 ) -> Offset | None:
     """Offset within a range at which the measured series fit best; None if none of them varies.
 
-    Half steps of the finer one over the whole range are tried, and the best one is refined between its
-    neighbours.  Means are compared over the intervals of the other one.  The ends of its interval are where the logarithm of what is unexplained has risen by 3.84 over the number
-    of independent values: a likelihood ratio for normal differences.
+    Whole finer steps are tried over the range, with means over the intervals of the longer step.  A
+    parabola through what is unexplained within half a longer step of the best one has the offset as its
+    lowest point.  Between whole finer steps the means would average more noise away, which would draw
+    the offset there.  The ends of its interval are where the logarithm of the parabola has risen by 3.84
+    over the number of independent values, a likelihood ratio for normal differences, and a tenth of the
+    finer step away at least.
 
     Parameters
     ----------
@@ -147,9 +148,12 @@ def find_offset(
     file_step_s, run_step_s : float
         Steps of the two. [s]
     """
-    misfit = Misfit(pairs, file_step_s >= run_step_s)
-    half = min(math.ceil(2.0 * range_s / min(file_step_s, run_step_s)), MOST_TRIED // 2)
-    tried_s = np.linspace(-range_s, range_s, 2 * half + 1)
+    near = [(_within(file, run, range_s), run) for file, run in pairs]
+    misfit = Misfit(near, file_step_s >= run_step_s)
+    finer_s, longer_s = sorted((file_step_s, run_step_s))
+    apart_s = finer_s * max(math.ceil(range_s / finer_s / MOST_TRIED), 1)
+    half = max(math.floor(range_s / apart_s + WHOLE), 1)
+    tried_s = apart_s * np.arange(-half, half + 1)
     found = [misfit.at(float(offset_s)) for offset_s in tried_s]
     counts = np.array([count for _, count in found])
     shares = np.array([share for share, _ in found])
@@ -158,61 +162,44 @@ def find_offset(
         return None
     # Of equally good ones that which is nearest to none.
     best = min(range(len(shares)), key=lambda k: (shares[k], abs(tried_s[k])))
-    apart_s = range_s / half
-    seconds = _refined(misfit, float(tried_s[best]), apart_s, range_s)
+    reach = max(round(max(longer_s / 2.0, apart_s) / finer_s), 1)
+    seconds, curvature = _lowest(misfit, float(tried_s[best]), finer_s, reach)
     unexplained, _ = misfit.at(seconds)
-    rise = math.exp(LIKELY / misfit.independent(seconds))
-    limit = max(unexplained, np.finfo(float).eps) * rise
-    low_s, high_s = (_end(misfit, tried_s, shares, best, seconds, limit, side) for side in (-1, 1))
+    rise = math.expm1(LIKELY / misfit.independent(float(tried_s[best])))
+    width_s = math.sqrt(unexplained * rise / curvature) if curvature > 0.0 else math.inf
+    width_s = math.hypot(width_s, INTERPOLATED * finer_s)
     other = _next_valley(shares, best)
     return Offset(
-        seconds, range_s, unexplained, low_s, high_s,
+        seconds, range_s, unexplained, seconds - width_s, seconds + width_s,
         math.nan if other is None else float(tried_s[other]),
         math.nan if other is None else float(shares[other]),
         best in (0, len(shares) - 1),
     )  # fmt: skip
 
 
-def _refined(misfit: Misfit, best_s: float, apart_s: float, range_s: float) -> float:
-    """The best offset between the neighbours of the best one that was tried, by golden sections."""
-    low, high = max(best_s - apart_s, -range_s), min(best_s + apart_s, range_s)
-    for _ in range(HALVINGS):
-        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        if misfit.at(left)[0] <= misfit.at(right)[0]:
-            high = right
-        else:
-            low = left
-    rounded = round((low + high) / 2.0 / RESOLUTION_S) * RESOLUTION_S
-    return rounded if misfit.at(rounded)[0] <= misfit.at(best_s)[0] else best_s
+def _within(file: Held, run: Held, range_s: float) -> Held:
+    """Those values of a file that some offset within the range brings into the run."""
+    begin_s, end_s = run.begin_s[0] - range_s, run.end_s[-1] + range_s
+    near = (file.end_s > begin_s) & (file.begin_s < end_s)
+    return Held(file.begin_s[near], file.end_s[near], file.values[near])
 
 
-def _end(
-    misfit: Misfit,
-    tried_s: Floats,
-    shares: Floats,
-    best: int,
-    seconds: float,
-    limit: float,
-    side: int,
-) -> float:
-    """Where the unexplained share first passes a limit beside the best offset; else the range's end."""
-    k = best
-    while 0 <= k + side < len(shares):
-        k += side
-        if shares[k] > limit:
-            break
-    else:
-        return float(tried_s[k])
-    within, beyond = seconds, float(tried_s[k])
-    if side * (float(tried_s[k - side]) - seconds) > 0.0:
-        within = float(tried_s[k - side])
-    for _ in range(HALVINGS):
-        middle = (within + beyond) / 2.0
-        if misfit.at(middle)[0] > limit:
-            beyond = middle
-        else:
-            within = middle
-    return within
+def _lowest(misfit: Misfit, best_s: float, finer_s: float, reach: int) -> tuple[float, float]:
+    """Lowest point of a parabola through the misfit around an offset [s], and its curvature [1/s²].
+
+    Where it has none within its reach, or does not open upwards, the offset itself.
+    """
+    away_s = finer_s * np.arange(-reach, reach + 1)
+    shares = np.array([misfit.at(best_s + float(each_s))[0] for each_s in away_s])
+    there = np.isfinite(shares)
+    if there.sum() < 3:
+        return best_s, 0.0
+    curvature, slope, _ = (float(each) for each in np.polyfit(away_s[there], shares[there], 2))
+    if curvature <= 0.0 or abs(slope / (2.0 * curvature)) > away_s[-1]:
+        return best_s, max(curvature, 0.0)
+    lowest_s = best_s - slope / (2.0 * curvature)
+    lowest_s = round(lowest_s / RESOLUTION_S) * RESOLUTION_S
+    return (lowest_s if misfit.at(lowest_s)[0] < shares[reach] else best_s), curvature
 
 
 def _next_valley(shares: Floats, best: int) -> int | None:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from tpss.results.places import lines_of
+from tpss.results.result import Result
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -105,34 +106,30 @@ def elements_of(quantity: Quantity, dataset: xr.Dataset) -> list[str]:
     return [str(name) for name in dataset[quantity.of].to_numpy()]
 
 
-def nodes_at(station: str, dataset: xr.Dataset) -> list[str]:
-    """Nodes of the contact line at a station: one, or one for each part that it feeds."""
+def nodes_of(station: str, result: Result) -> list[str]:
+    """Nodes that may be the busbar of a station: the one at its place, or several where that tells none.
+
+    With an outage, and for a station that names the lines it feeds, an open feed may part it from the
+    contact line at its place; then any node may be its own.
+    """
+    dataset, scenario = result.dataset, result.scenario
     number = elements_of(QUANTITIES["station_voltage"], dataset).index(station)
+    known = scenario.supply.stations[number].feeds is None and scenario.simulation.outage is None
     away_m = np.abs(dataset.node_position.to_numpy() - dataset.station_position.to_numpy()[number])
     on_it = lines_of(dataset, "node") == lines_of(dataset, "station")[number]
     there = on_it & (away_m < NEAR_M) & (dataset.node_kind.to_numpy() == CONTACT_LINE)
-    return [str(name) for name in dataset.node.to_numpy()[there]]
+    names = dataset.node.to_numpy()
+    return [str(name) for name in (names[there] if known else names)]
 
 
-def simulated_values(quantity: Quantity, element: str, dataset: xr.Dataset) -> Floats:
+def simulated_values(quantity: Quantity, element: str, result: Result) -> Floats:
     """Values of an element's quantity, each from an instant to the next, shape (steps,).
 
     They are in the unit of SI; NaN: a train is not there.
-
-    Raises
-    ------
-    KeyError
-        There is no such element, or a station with several voltages.
     """
-    name = element
+    name, dataset = element, result.dataset
     if quantity.of == "station" and quantity.variable == "node_voltage":
-        (name,) = _only(nodes_at(element, dataset))
+        (name,) = nodes_of(element, result)
     dimension = "node" if quantity.variable == "node_voltage" else quantity.of
     values = dataset[quantity.variable].sel({dimension: name}).to_numpy()
     return np.asarray(values[:-1], dtype=float)
-
-
-def _only(names: list[str]) -> list[str]:
-    if len(names) != 1:
-        raise KeyError(names)
-    return names

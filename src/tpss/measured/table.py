@@ -1,6 +1,8 @@
 """Tables of measured values: CSV as recorders and spreadsheets write it."""
 
+import csv
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -68,17 +70,20 @@ def read_table(path: Path) -> Table:
         remedy = "write a header, such as time [s],station_active_power:West [MW], and rows"
         raise ScenarioError([Finding(str(path), "line 1", "", problem, remedy)])
     separator = next((each for each in SEPARATORS if each in lines[skipped]), ",")
-    raw = _parsed(path, "\n".join(lines[skipped:]), separator, skipped)
-    rows = raw.iloc[1:]
-    filled = (rows.fillna("") != "").any(axis=1).to_numpy()
-    # What ends every line with a separator has a last column without anything.
-    columns = [c for c in raw.columns if not (raw[c].fillna("") == "").all()]
-    cells = rows.loc[filled, columns]
-    cells.columns = pd.Index([str(name) for name in raw.loc[0, columns]])
-    numbers = np.flatnonzero(filled) + skipped + 2
-    _demand_whole(path, cells, numbers)
+    (_, header), *rows = _rows("\n".join(lines[skipped:]), separator, skipped)
+    while (
+        len(header) > 1
+        and not header[-1]
+        and not any(any(row[len(header) - 1 :]) for _, row in rows)
+    ):
+        header = header[:-1]  # lines that end with a separator
+    findings = list(_faults(path, header, rows))
+    if findings:
+        raise ScenarioError(findings)
+    cells = pd.DataFrame([row[: len(header)] for _, row in rows], columns=header, dtype=str)
+    numbers = np.array([number for number, _ in rows], dtype=np.int64)
     decimal = "," if separator != "," and _has_decimal_commas(cells) else "."
-    return Table(path, cells.reset_index(drop=True), numbers, decimal, notes)
+    return Table(path, cells, numbers, decimal, notes)
 
 
 def _is_idle(line: str) -> bool:
@@ -100,44 +105,32 @@ def _text_of(path: Path) -> tuple[str, tuple[str, ...]]:
     return text.replace("\r\n", "\n").replace("\r", "\n"), tuple(notes)
 
 
-def _parsed(path: Path, text: str, separator: str, skipped: int) -> pd.DataFrame:
-    """Cells without white space around them, the header among them; NaN where a row ends early."""
-    try:
-        raw: pd.DataFrame = pd.read_csv(
-            io.StringIO(text), sep=separator, header=None, dtype=str, keep_default_na=False,
-            skip_blank_lines=False, skipinitialspace=True,
-        )  # fmt: skip
-    except pd.errors.ParserError as error:
-        problem = (
-            f"the rows do not fit the header: {str(error).removeprefix('Error tokenizing data. ')}"
-        )
-        remedy = (
-            "write one value for each column of the header, and texts with separators in quotes; "
-            f"lines are counted from the header, line {skipped + 1}"
-        )
-        raise ScenarioError([Finding(str(path), "", "", problem.strip(), remedy)]) from error
-    return pd.DataFrame({name: raw[name].str.strip() for name in raw.columns})
+def _rows(text: str, separator: str, skipped: int) -> list[tuple[int, list[str]]]:
+    """Rows with anything in them, and the numbers of their lines; no white space around the cells."""
+    reader = csv.reader(io.StringIO(text), delimiter=separator, skipinitialspace=True)
+    rows = [(skipped + reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    return [(number, row) for number, row in rows if any(row)]
 
 
-def _demand_whole(path: Path, cells: pd.DataFrame, lines: Indices) -> None:
-    """Raise a `ScenarioError` unless there are rows, and every one has a cell for each column."""
-    findings = []
-    names = list(cells.columns)
-    for name in dict.fromkeys(names):
-        if names.count(name) > 1:
+def _faults(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -> Iterator[Finding]:
+    """What is wrong with the form of a table."""
+    for name in dict.fromkeys(header):
+        if header.count(name) > 1:
             problem, remedy = "the column is there twice", "give each its own name"
-            findings.append(Finding(str(path), "header", name, problem, remedy))
-    if cells.empty:
+            yield Finding(str(path), "header", name, problem, remedy)
+    if not rows:
         remedy = "add rows of a time and values"
-        findings.append(Finding(str(path), "", "", "no rows follow the header", remedy))
-    short = cells.isna().any(axis=1).to_numpy()
-    for row in np.flatnonzero(short)[:MOST_FAULTS]:
-        value = ",".join(cells.iloc[row].dropna())
-        problem = f"{cells.iloc[row].notna().sum()} values, expected {len(names)}"
-        remedy = "write one for each column of the header; those that are not known are empty"
-        findings.append(Finding(str(path), f"line {lines[row]}", value, problem, remedy))
-    if findings:
-        raise ScenarioError(findings)
+        yield Finding(str(path), "", "", "no rows follow the header", remedy)
+    count = len(header)
+    odd = [(k, row) for k, row in rows if len(row) < count or any(row[count:])]
+    for number, row in odd[:MOST_FAULTS]:
+        value = shortened(",".join(row))
+        remedy = (
+            "write one for each column of the header; those that are not known are empty, and those "
+            "with separators stand in quotes"
+        )
+        problem = f"{len(row)} values, expected {count}"
+        yield Finding(str(path), f"line {number}", value, problem, remedy)
 
 
 def _has_decimal_commas(cells: pd.DataFrame) -> bool:

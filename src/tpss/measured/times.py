@@ -123,7 +123,7 @@ def _of_clock(texts: "pd.Series[str]") -> Times:
         3600.0 * parts[0].astype(float) + 60.0 * parts[1].astype(float) + seconds.astype(float)
     ).to_numpy()
     midnights = np.concatenate([[0.0], np.cumsum(np.diff(clock_s) < -DAY_S / 2)])
-    return Times("clock", np.asarray(clock_s + DAY_S * midnights, dtype=float))
+    return Times("clock", np.asarray(clock_s + DAY_S * midnights, dtype=np.float64))
 
 
 def _dated(table: Table, column: str) -> Times:
@@ -144,6 +144,7 @@ def _dated(table: Table, column: str) -> Times:
         raise ScenarioError([table.fault(row, column, texts.iloc[row], "no such date", FORMS)])
     shown = datetime.fromisoformat(f"{parts[0].iloc[0]}T{parts[1].iloc[0].replace(',', '.')}")
     midnight = shown.replace(hour=0, minute=0, second=0, microsecond=0)
-    since_s = (instants - instants.iloc[0]).dt.total_seconds().to_numpy()
+    since_s = (instants - instants.iloc[0]).dt.total_seconds().to_numpy(dtype=np.float64)
     zone = parts[2].iloc[0] if zoned.all() else ""
-    return Times("date", since_s + (shown - midnight).total_seconds(), f"{midnight:%Y-%m-%d}", zone)
+    seconds = np.asarray(since_s + (shown - midnight).total_seconds(), dtype=np.float64)
+    return Times("date", seconds, f"{midnight:%Y-%m-%d}", zone)
