@@ -291,7 +291,7 @@ def test_a_station_whose_node_is_not_told_by_its_place_asks_for_one(file):
         "simulation.time_step_min": 0.5, "simulation.duration_min": 3.0, "outages": [out],
         "simulation.outage": "out", "simulation.motion": None, "simulation.braking": None,
     })  # fmt: skip
-    with pytest.raises(tpss.ScenarioError, match=r"take node_voltage, .* contact line at 20 km;"):
+    with pytest.raises(tpss.ScenarioError, match=r"take node_voltage, .* contact line at 20 km"):
         compare(result, file(headed("station_voltage:East [kV]")))
     found = compare(result, file(headed("node_voltage:contact line at 20 km [kV]")))
     assert found.series[0].compared == 2
