@@ -132,7 +132,7 @@ def test_jumps_in_time_stay_gaps_and_are_told(result, file):
     lines = in_minutes({WEST: WEST_MW}).splitlines()
     found = compare(result, file("\n".join([*lines[:4], *lines[6:]])))
     assert only(found)["compared_min"] == 8.0
-    assert any("1 jump in time, which lack 2.00 min" in note for note in found.notes)
+    assert any("1 jump in time, 2.00 min in all" in note for note in found.notes)
 
 
 def test_an_interval_that_a_gap_touches_is_left_out_as_a_whole(result, file):

@@ -55,7 +55,7 @@ def test_measurements_belong_to_their_result(short, compared, tmp_path):
 def test_curves_are_the_aligned_means_and_gaps_interrupt_them(compared):
     (panel,) = measured_over_time(compared).panels
     measured, simulated = panel.items
-    assert panel.label == "West: active power [MW]"
+    assert panel.label == "West [MW]"
     np.testing.assert_array_equal(measured.y[:-1], compared.series[0].measured)
     np.testing.assert_array_equal(simulated.y[:-1], compared.series[0].simulated)
     np.testing.assert_allclose(np.diff(measured.x), 0.5)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Heading(NamedTuple):
-    """A column of numbers: its key, heading, what stands below, and decimals."""
+    """A column: its key, its heading, what stands below, and decimals of numbers."""
 
     key: str
     words: str
@@ -30,30 +30,29 @@ class Heading(NamedTuple):
 
 
 FIGURES = (
-    Heading("unit", "unit"),
-    Heading("measured_mean", "measured", "mean"),
-    Heading("simulated_mean", "simulated", "mean"),
-    Heading("bias", "bias"),
-    Heading("bias_low", "95 %", "from"),
-    Heading("bias_high", "95 %", "to"),
-    Heading("bias_percent", "bias", "%", 2),
-    Heading("rms_error", "RMS", "error"),
-    Heading("error_5", "error", "5 %"),
-    Heading("error_95", "error", "95 %"),
-    Heading("measured_energy", "measured", "energy"),
-    Heading("simulated_energy", "simulated", "energy"),
-    Heading("energy_unit", "unit", "energy"),
+    (
+        Heading("unit", "unit"),
+        Heading("measured_mean", "measured", "mean"),
+        Heading("simulated_mean", "simulated", "mean"),
+    ),
+    (
+        Heading("bias", "bias"),
+        Heading("bias_low", "95 %", "from"),
+        Heading("bias_high", "95 %", "to"),
+        Heading("bias_percent", "bias", "%", 2),
+    ),
+    (
+        Heading("rms_error", "RMS", "error"),
+        Heading("error_5", "error", "5 %"),
+        Heading("error_95", "error", "95 %"),
+    ),
+    (
+        Heading("measured_energy", "measured", "energy"),
+        Heading("simulated_energy", "simulated", "energy"),
+        Heading("energy_unit", "unit"),
+    ),
 )
-
-WINDOWS = (
-    Heading("unit", "unit"),
-    Heading("which", "mean"),
-    Heading("window_min", "window", "min", 0),
-    Heading("measured", "measured"),
-    Heading("measured_from_min", "from", "min", 2),
-    Heading("simulated", "simulated"),
-    Heading("simulated_from_min", "from", "min", 2),
-)
+"""Columns of the figures; those of a group stand beside each other in a narrow terminal too."""
 
 
 def compare_result(
@@ -143,16 +142,40 @@ def print_comparison(compared: "MeasuredComparison", console: Console) -> None:
     for sentence in sentences(compared):
         say(console, sentence)
     _print_table("Error: simulated less measured", FIGURES, compared.figures, console)
-    _print_table("Worst means over windows", WINDOWS, compared.windows, console)
+    _print_windows(compared.windows, console)
     for note in compared.notes:
         console.print(f"[yellow]Note:[/yellow] {escape(note)}", highlight=False, soft_wrap=True)
 
 
-def _print_table(title: str, headings: Sequence[Heading], frame: Any, console: Console) -> None:
+def _print_windows(windows: Any, console: Console) -> None:
+    """Print the worst means, a row for each series and two columns for each window."""
+    if windows.empty:
+        return
+    rows = windows.pivot(
+        index=["series", "unit", "which"], columns="window_min", values=["measured", "simulated"]
+    )
+    widths: list[float] = sorted(windows.window_min.unique())
+    groups = [
+        [
+            Heading(f"{whose} {width:g}", f"{width:g} min", whose)
+            for whose in ("measured", "simulated")
+        ]
+        for width in widths
+    ]
+    rows.columns = [f"{whose} {width:g}" for whose, width in rows.columns]
+    of_series = rows.loc[windows.series.unique()].reset_index()
+    first = [Heading("unit", "unit"), Heading("which", "mean"), *groups[0]]
+    _print_table("Worst means over windows", [first, *groups[1:]], of_series, console)
+
+
+def _print_table(
+    title: str, groups: Sequence[Sequence[Heading]], frame: Any, console: Console
+) -> None:
     rows: list[Mapping[str, Any]] = frame.to_dict("records")
 
-    def table_of(columns: Sequence[Heading]) -> Table:
-        table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
+    def table_of(shown: Sequence[Sequence[Heading]], more: str = "") -> Table:
+        columns = [column for group in shown for column in group]
+        table = Table(title=title + more, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
         table.add_column("series", no_wrap=True)
         for column in columns:
             heading = f"{column.words}\n[dim]{column.below}[/dim]"
@@ -162,8 +185,8 @@ def _print_table(title: str, headings: Sequence[Heading], frame: Any, console: C
             table.add_row(escape(row["series"]), *cells)
         return table
 
-    for part in parts_that_fit(headings, table_of, console):
-        console.print(table_of(part))
+    for k, part in enumerate(parts_that_fit(groups, table_of, console)):
+        console.print(table_of(part, ", continued" if k else ""))
 
 
 def _cell(value: Any, digits: int) -> str:

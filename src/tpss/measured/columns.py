@@ -83,7 +83,7 @@ def find_columns(table: Table, map_file: Path | None, result: Result) -> Columns
         else:
             match = re.fullmatch(HEADING, name)
             if match is None:
-                findings.append(_unexplained(table, place, name))
+                findings.append(_unexplained(table, place))
                 continue
             entry = dict(zip(OF_A_COLUMN, match.groups(), strict=False))
             blamed = (str(table.path), f"{place}, ")
@@ -99,10 +99,10 @@ def find_columns(table: Table, map_file: Path | None, result: Result) -> Columns
     return Columns(time, document.get("time_unit", match and match[2]), compared)
 
 
-def _unexplained(table: Table, place: str, name: str) -> Finding:
+def _unexplained(table: Table, place: str) -> Finding:
     problem = "the column maps to nothing of the run"
     remedy = f"name it {CONVENTION}, or explain it or list it in ignore in a file for --map"
-    return Finding(str(table.path), place, shortened(name), problem, remedy)
+    return Finding(str(table.path), place, "", problem, remedy)
 
 
 def _faults_of_all(table: Table, compared: list[Column], others: bool) -> Iterator[Finding]:

@@ -109,8 +109,8 @@ def _gaps(
         count = "1 jump" if len(jumps) == 1 else f"{len(jumps)} jumps"
         longest = int(jumps[np.argmax(lacking_s[jumps])])
         notes.append(
-            f"{name}: {count} in time, which lack {lacking_s[jumps].sum() / 60.0:.2f} min, the longest "
+            f"{name}: {count} in time, {lacking_s[jumps].sum() / 60.0:.2f} min in all, the longest "
             f"from {times.in_words(float(end_s[longest]))} to "
-            f"{times.in_words(float(begin_s[longest + 1]))}; they stay gaps"
+            f"{times.in_words(float(begin_s[longest + 1]))}, which stay gaps"
         )
     return notes

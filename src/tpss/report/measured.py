@@ -10,7 +10,7 @@ from tpss.report.drawings.measured import measured_durations, measured_over_time
 from tpss.report.render.interactive import render
 from tpss.report.tables import Cell, Table, cell
 
-PANEL_PX, AROUND_PX = 190, 110
+PANEL_PX, AROUND_PX = 210, 110
 """Height of a panel of a plot, and of what is around the panels. [px]"""
 
 FIGURES = {

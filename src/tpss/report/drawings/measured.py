@@ -64,10 +64,9 @@ def _chosen(comparison: MeasuredComparison, series: str | None) -> Sequence[Alig
 
 
 def _label(aligned: Aligned, several: bool) -> str:
-    """Label of an axis: of several panels, whose it is too."""
+    """Label of an axis: of several panels whose it is, as units tell powers and voltages apart."""
     words = aligned.quantity.removeprefix("station_").replace("_", " ")
-    whose = f"{aligned.element}: " if several else ""
-    return f"{whose}{words} [{aligned.shown.unit}]"
+    return f"{aligned.element if several else words} [{aligned.shown.unit}]"
 
 
 def _pair(edges_min: Floats, measured: Floats, simulated: Floats) -> list[Curve]:
