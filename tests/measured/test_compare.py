@@ -227,6 +227,20 @@ def test_lengths_of_time_are_positive(result, file, option, value):
         compare(result, file(in_minutes({WEST: WEST_MW})), **{option: value})
 
 
+def test_intervals_that_are_shorter_than_a_step_are_refused(result, file):
+    """Highest means over a minute of values of two would look like more than they are."""
+    path = file(in_minutes({WEST: [1.0, 5.0, 2.0, 3.5, 0.5]}, step=2.0))
+    with pytest.raises(tpss.ResultError, match="shorter than the steps of the file, of 2 min"):
+        compare(result, path, step_min=1.0)
+    with pytest.raises(tpss.ResultError, match="less than a step of 60 s"):
+        compare(result, path, find_offset_min=0.5)
+
+
+def test_stamps_are_at_the_beginning_or_at_the_end(result, file):
+    with pytest.raises(tpss.ResultError, match="choose from begin, end"):
+        compare(result, file(in_minutes({WEST: WEST_MW})), stamps="middle")
+
+
 def test_a_clock_that_is_wrong_is_found_in_a_finer_run_with_noise(file):
     """Made, not measured: steps of 3 s with noise, by a clock that is 17.3 s ahead; the run has 30 s."""
     fine = tpss.simulate(short_line({"simulation.time_step_min": 0.05}))

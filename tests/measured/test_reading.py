@@ -200,7 +200,7 @@ BAD = {
     "zones": (at(["2026-03-02T06:00Z", "2026-03-02T06:01"]), "line 3", "give all of them one"),
     "no date": (at(["2026-02-30T06:00", "2026-03-02T06:01"]), "no such date", "write HH:MM"),
     "overlap": (at(range(20, 30), "time [min]"), "minute 20 to minute 30", "--begins"),
-    "too short": (at([9.5, 9.8], "time [min]"), "no interval of 1 min", "--step"),
+    "too short": (at([9.5, 9.8], "time [min]"), "no interval of 1 min", "--begins"),
     "all gaps": (at(range(10), "time [min]", values=[""] * 10), "column 'station", "ignore"),
     "no clock": (at(clock()), "does not say what the clock shows", "--begins HH:MM:SS"),
 }  # fmt: skip

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,28 +14,13 @@ from tpss.errors import ResultError
 from tpss.measured.begin import Begin, begin_of
 from tpss.measured.columns import Column
 from tpss.measured.figures import Aligned, Figures, Window, durations_of, figures_of, windows_of
-from tpss.measured.held import Held
+from tpss.measured.grid import Grid, Pairs, aligned_means, common_grid
+from tpss.measured.held import WHOLE, Held
 from tpss.measured.load import Measured, Stamps, read_measured
 from tpss.measured.offset import Offset, find_offset
-from tpss.measured.quantities import QUANTITIES, SHOWN, Floats, simulated_values
+from tpss.measured.quantities import QUANTITIES, simulated_values
 from tpss.results.result import Result
 from tpss.scenario.clock import clock_at
-
-EDGE = 1e-6
-"""Share of an interval by which it may miss the end of what is shared."""
-
-
-class Grid(NamedTuple):
-    """Intervals of equal length, in the run's time."""
-
-    begin_s: float
-    step_s: float
-    intervals: int
-
-    @property
-    def edges_s(self) -> Floats:
-        """Their beginnings, and the end of the last one. [s]"""
-        return np.asarray(self.begin_s + self.step_s * np.arange(self.intervals + 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,44 +170,40 @@ def compare_with_measurements(
     ScenarioError
         The file or the one that explains its columns has faults, or shares no time with the run.
     ResultError
-        The audit of the result failed, or no step was simulated.
+        The audit of the result failed, no step was simulated, or a length of time does not fit.
     """
     _demand_usable(result)
-    place, map_file = Path(file), None if columns is None else Path(columns)
     _demand_positive("find_offset_min", find_offset_min)
     _demand_positive("step_min", step_min)
-    data = result.dataset
+    place, map_file = Path(file), None if columns is None else Path(columns)
     measured = read_measured(place, map_file, stamps, result)
-    run_s = float(data.time[-1])
+    run_step_s = float(result.dataset.attrs["time_step_s"])
+    step_s = _step_s(step_min, measured, run_step_s)
     begin = begin_of(
-        measured, run_s, result.scenario.simulation.start_s, begins, find_offset_min is not None
+        measured,
+        float(result.dataset.time[-1]),
+        result.scenario.simulation.start_s,
+        begins,
+        find_offset_min is not None,
     )
-    pairs = {
-        column: (_moved(held, begin.seconds), _simulated(column, result))
-        for column, held in measured.series.items()
-    }
-    run_step_s = float(data.attrs["time_step_s"])
-    offset = None
+    run = {column: _simulated(column, result) for column in measured.series}
+    zero_s, offset = begin.seconds, None
     if find_offset_min is not None:
-        range_s = 60.0 * find_offset_min
-        offset = find_offset([*pairs.values()], range_s, measured.step_s, run_step_s)
-        if offset is None:
-            raise measured.fault(
-                "no series varies in the time that it shares with the run, so no offset can be found",
-                "leave --find-offset out, give --begins closer to the run's begin, or a wider range",
-            )
-    offset_s = 0.0 if offset is None else offset.seconds
-    pairs = {column: (_moved(held, offset_s), run) for column, (held, run) in pairs.items()}
-    longer_s = max(run_step_s, measured.step_s)
-    step_s = longer_s if step_min is None else 60.0 * step_min
-    grid = _grid(measured, pairs, step_s, measured.step_s >= run_step_s, begin)
-    series = _aligned(measured, pairs, grid)
-    told = _notes(begin, offset, grid, series)
+        pairs = _pairs(measured, run, zero_s)
+        offset = _offset(measured, pairs, 60.0 * find_offset_min, run_step_s)
+        zero_s += offset.seconds
+    pairs = _pairs(measured, run, zero_s)
+    grid = common_grid(measured, pairs, zero_s, step_s, run_step_s)
+    series = aligned_means(measured, pairs, grid)
     return MeasuredComparison(
-        result, place, grid, tuple(series),
-        measured.times.in_words(round(begin.seconds + offset_s, 2)), offset,
-        (*measured.notes, *told),
-    )  # fmt: skip
+        result,
+        place,
+        grid,
+        tuple(series),
+        measured.times.in_words(round(zero_s, 2)),
+        offset,
+        (*measured.notes, *_notes(begin, offset, grid, series)),
+    )
 
 
 def _demand_usable(result: Result) -> None:
@@ -242,9 +223,18 @@ def _demand_positive(name: str, value: float | None) -> None:
         )
 
 
-def _moved(held: Held, by_s: float) -> Held:
-    """A series in a time that counts from later on."""
-    return Held(held.begin_s - by_s, held.end_s - by_s, held.values)
+def _step_s(step_min: float | None, measured: Measured, run_step_s: float) -> float:
+    """Length of the common intervals; shorter ones than the longer step would tell nothing new. [s]"""
+    longer_s = max(run_step_s, measured.step_s)
+    if step_min is None:
+        return longer_s
+    if 60.0 * step_min < longer_s * (1.0 - WHOLE):
+        whose = "file" if measured.step_s > run_step_s else "run"
+        raise ResultError(
+            f"intervals of {step_min:g} min are shorter than the steps of the {whose}, of "
+            f"{longer_s / 60.0:g} min; give --step at least these, or leave it out"
+        )
+    return 60.0 * step_min
 
 
 def _simulated(column: Column, result: Result) -> Held:
@@ -253,62 +243,28 @@ def _simulated(column: Column, result: Result) -> Held:
     return Held(instants_s[:-1], instants_s[1:], values)
 
 
-def _grid(
-    measured: Measured,
-    pairs: Mapping[Column, tuple[Held, Held]],
-    step_s: float,
-    of_file: bool,
-    begin: Begin,
-) -> Grid:
-    """Whole intervals in the time that both cover; one with the longer steps says where they begin."""
-    file, run = next(iter(pairs.values()))
-    first_s = max(float(file.begin_s[0]), float(run.begin_s[0]))
-    last_s = min(float(file.end_s[-1]), float(run.end_s[-1]))
-    begins_s = (file if of_file else run).begin_s
-    later_s = begins_s[begins_s >= first_s - EDGE * step_s]
-    begin_s = float(later_s[0]) if len(later_s) else math.inf
-    count = math.floor((last_s - begin_s) / step_s + EDGE) if begin_s < last_s else 0
-    if count < 1:
-        times = measured.times
-        zero_s = begin.seconds
-        run_words = " to ".join(
-            times.in_words(zero_s + float(at)) for at in (run.begin_s[0], run.end_s[-1])
+def _pairs(measured: Measured, run: Mapping[Column, Held], zero_s: float) -> Pairs:
+    """Measured and simulated series, both in the run's time, whose minute 0 is at a time of the file."""
+    return {
+        column: (Held(held.begin_s - zero_s, held.end_s - zero_s, held.values), run[column])
+        for column, held in measured.series.items()
+    }
+
+
+def _offset(measured: Measured, pairs: Pairs, range_s: float, run_step_s: float) -> Offset:
+    finer_s = min(measured.step_s, run_step_s)
+    if range_s < finer_s:
+        raise ResultError(
+            f"an offset cannot be looked for within ±{range_s:g} s, less than a step of {finer_s:g} s; "
+            "give --find-offset more minutes"
         )
-        file_words = " to ".join(
-            times.in_words(zero_s + float(at)) for at in (file.begin_s[0], file.end_s[-1])
-        )
+    offset = find_offset([*pairs.values()], range_s, measured.step_s, run_step_s)
+    if offset is None:
         raise measured.fault(
-            f"no interval of {step_s / 60.0:g} min lies in the file and in the run, which is there from "
-            f"{run_words}",
-            "give --begins with the time of the file at the run's minute 0, or a shorter --step",
-            value=file_words,
+            "no series varies in the time that it shares with the run, so no offset can be found",
+            "leave --find-offset out, give --begins closer to the run's begin, or a wider range",
         )
-    return Grid(begin_s, step_s, count)
-
-
-def _aligned(
-    measured: Measured, pairs: Mapping[Column, tuple[Held, Held]], grid: Grid
-) -> list[Aligned]:
-    """Means of all series over the intervals of a grid.
-
-    Raises
-    ------
-    ScenarioError
-        A series has no interval in which both are known.
-    """
-    edges_s, series = grid.edges_s, []
-    for column, (file, run) in pairs.items():
-        factor = SHOWN[QUANTITIES[column.quantity].unit].factor
-        means = [each.means(edges_s[:-1], edges_s[1:]) / factor for each in (file, run)]
-        series.append(Aligned(column.name, column.quantity, column.element, *means))
-        if not series[-1].compared:
-            raise measured.fault(
-                "there is no interval in which it is known all through and simulated too",
-                "leave the column out (ignore in a file for --map), give another --begins, or a shorter "
-                "--step",
-                column.name,
-            )
-    return series
+    return offset
 
 
 def _notes(begin: Begin, offset: Offset | None, grid: Grid, series: list[Aligned]) -> list[str]:

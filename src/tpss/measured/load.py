@@ -1,11 +1,11 @@
 """Measured series of a table, in units of SI, each value with the time for which it holds."""
 
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, ResultError, ScenarioError, suggest
 from tpss.measured.columns import Column, find_columns
 from tpss.measured.held import Held
 from tpss.measured.quantities import Floats
@@ -60,7 +60,11 @@ def read_measured(path: Path, map_file: Path | None, stamps: Stamps, result: Res
     ------
     ScenarioError
         The file, or that which explains its columns, has faults.
+    ResultError
+        There are no such stamps.
     """
+    if stamps not in (choices := get_args(Stamps)):
+        raise ResultError(f"there are no stamps {stamps!r}; {suggest(stamps, choices)}")
     table = read_table(path)
     columns = find_columns(table, map_file, result)
     times = read_times(table, columns.time, columns.time_unit)

@@ -144,7 +144,7 @@ def find_offset(
     pairs : sequence of (Held, Held)
         Measured series in the run's time at no offset, and the simulated ones.
     range_s : float
-        Offsets up to this on both sides are tried. [s]
+        Offsets up to this on both sides are tried, at least a finer step. [s]
     file_step_s, run_step_s : float
         Steps of the two. [s]
     """
@@ -152,7 +152,7 @@ def find_offset(
     misfit = Misfit(near, file_step_s >= run_step_s)
     finer_s, longer_s = sorted((file_step_s, run_step_s))
     apart_s = finer_s * max(math.ceil(range_s / finer_s / MOST_TRIED), 1)
-    half = max(math.floor(range_s / apart_s + WHOLE), 1)
+    half = math.floor(range_s / apart_s + WHOLE)
     tried_s = apart_s * np.arange(-half, half + 1)
     found = [misfit.at(float(offset_s)) for offset_s in tried_s]
     counts = np.array([count for _, count in found])
