@@ -20,18 +20,15 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tpss.errors import Finding, ScenarioError, shortened, suggest
+from tpss.errors import Finding, ScenarioError, suggest
+from tpss.measured.column_map import OF_A_COLUMN, faults_of_map
 from tpss.measured.quantities import QUANTITIES, UNITS, elements_of, nodes_of, units_of
 from tpss.measured.table import Table
-from tpss.measured.times import COUNTED_S
 from tpss.results.result import Result
 from tpss.scenario.files import read_toml
 
 HEADING = r"(\w+)\s*:\s*(.+?)\s*\[\s*(.*?)\s*\]"
 TIME_HEADING = r"(.*?)\s*\[\s*(\w+)\s*\]"
-
-KEYS = ("time", "time_unit", "ignore", "columns")
-OF_A_COLUMN = ("quantity", "element", "unit", "factor")
 
 CONVENTION = "QUANTITY:ELEMENT [UNIT], such as station_active_power:West [MW]"
 
@@ -68,7 +65,7 @@ def find_columns(table: Table, map_file: Path | None, result: Result) -> Columns
     """
     document = {} if map_file is None else read_toml(map_file)
     names = [str(name) for name in table.cells.columns]
-    findings = list(_faults_of_map(map_file, document, names))
+    findings = [] if map_file is None else list(faults_of_map(map_file, document, names))
     if findings:
         raise ScenarioError(findings)
     time = document.get("time", names[0])
@@ -131,7 +128,7 @@ def _faults_of_column(
     def fault(key: str, problem: str, remedy: str) -> Finding:
         return Finding(file, f"{place}{key}", repr(entry.get(key, "")), problem, remedy)
 
-    if entry.get("quantity") not in QUANTITIES:
+    if entry.get("quantity") not in list(QUANTITIES):
         yield fault("quantity", "no quantity that can be compared", suggest(
             str(entry.get("quantity", "")), QUANTITIES))  # fmt: skip
         return
@@ -159,46 +156,3 @@ def _faults_of_column(
 def _is_number(value: object) -> bool:
     is_one = isinstance(value, int | float) and not isinstance(value, bool)
     return is_one and math.isfinite(float(value))  # type: ignore[arg-type]
-
-
-def _faults_of_map(
-    file: Path | None, document: Mapping[str, Any], names: list[str]
-) -> Iterator[Finding]:
-    """What is wrong with the form of a file that explains columns."""
-
-    def fault(key: str, value: object, problem: str, remedy: str) -> Finding:
-        return Finding(str(file), key, shortened(repr(value)), problem, remedy)
-
-    for key, value in document.items():
-        if key not in KEYS:
-            yield fault(key, value, "no such key", suggest(key, KEYS))
-    unit = document.get("time_unit", "s")
-    if unit not in COUNTED_S:
-        yield fault("time_unit", unit, "not a unit of time", f"choose from {', '.join(COUNTED_S)}")
-    ignored, given = document.get("ignore", []), document.get("columns", {})
-    if not isinstance(ignored, list):
-        yield fault("ignore", ignored, "not a list", 'write a list of columns, ["remark"]')
-        ignored = []
-    if not isinstance(given, dict):
-        yield fault(
-            "columns", given, "not a table", 'write a table [columns."NAME"] for each column'
-        )
-        given = {}
-    for name, entry in given.items():
-        if not isinstance(entry, dict):
-            remedy = f"write quantity, element and unit below [columns.{name!r}]"
-            yield fault(f"columns.{name}", entry, "not a table", remedy)
-            continue
-        for key in entry:
-            if key not in OF_A_COLUMN:
-                yield fault(
-                    f"columns.{name}.{key}", entry[key], "no such key", suggest(key, OF_A_COLUMN)
-                )
-    time = document.get("time")
-    for key, name in [
-        *([("time", time)] if time is not None else []),
-        *(("ignore", each) for each in ignored),
-        *((f"columns.{each}", each) for each in given),
-    ]:
-        if name not in names:
-            yield fault(key, name, "the table has no such column", suggest(str(name), names))
