@@ -85,7 +85,7 @@ def test_another_station_takes_what_one_does_not():
 
 
 def test_a_station_at_its_highest_current_leaves_the_rest_to_the_other():
-    """Trains that start between both take more than 3.6 MVA of West; of 6 MVA it may give 60 %, 3.6 MVA at
+    """Trains that start between both take more than 3.6 MVA of West, which may give 60 % of 6 MVA at
     16.5 kV, and 2 % more current at most.  Its voltage falls, and East gives what it does not."""
     up = {"line__gradients__0__permille": 5.0, "line__stations__0__position_km": 15.0}
     one = {**STATIONS["West"], "converters": 1}
