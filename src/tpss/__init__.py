@@ -27,6 +27,7 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.errors import StudyError as StudyError
     from tpss.errors import TpssError as TpssError
     from tpss.many import simulate_many as simulate_many
+    from tpss.measured.compare import compare_with_measurements as compare_with_measurements
     from tpss.outages.run import compare_outages as compare_outages
     from tpss.planning.load import Plan as Plan
     from tpss.planning.load import load_plan as load_plan
@@ -66,6 +67,7 @@ _HOME = {
     "StudyError": "tpss.errors",
     "TpssError": "tpss.errors",
     "compare_outages": "tpss.outages.run",
+    "compare_with_measurements": "tpss.measured.compare",
     "load_approximator": "tpss.approximator.approximator",
     "load_plan": "tpss.planning.load",
     "load_result": "tpss.results.result",

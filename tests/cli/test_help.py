@@ -8,7 +8,7 @@ import pytest
 
 from conftest import EXAMPLES
 
-COMMANDS = ("run", "report", "check", "export", "new", "library", "schema")
+COMMANDS = ("run", "report", "compare", "check", "export", "new", "library", "schema")
 HEAVY = {"jinja2", "netCDF4", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from .bounds import with_bounds
 from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .given_tracks import give_tracks
@@ -22,6 +23,7 @@ from .neutral import with_neutral_section
 from .outages import outages
 from .ranges import numbers
 from .single_tracks import with_single_tracks
+from .spare_time import with_spare_time
 
 Draw = Any
 Document = dict[str, Any]
@@ -306,6 +308,10 @@ def sound_scenarios(draw: Draw) -> Document:
         with_neutral_section(draw, document)
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
         with_electric_brakes(draw, document)
+    if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
+        with_spare_time(draw, document)
+    if draw(st.integers(0, 7)) == 7:
+        with_bounds(draw, document)
     return document
 
 

@@ -6,11 +6,13 @@ import pytest
 
 import lines
 import tpss
+from tpss.measured.compare import MeasuredComparison
 from tpss.outages.report import outages_report
 from tpss.outages.run import Comparison
 from tpss.report.html import comparison, report
 
 from conftest import EXAMPLES
+from measured_files import in_minutes
 from scenarios import run, short_line
 
 
@@ -58,6 +60,19 @@ def compared(short: tpss.Result, collapsed: tpss.Result) -> str:
     """The short line beside one with more traffic, and beside one that collapsed."""
     dense = run({"traffic.0.headway_min": 5.0})
     return comparison({"every 10 min": short, "every 5 min": dense, "collapsed": collapsed})
+
+
+@pytest.fixture(scope="session")
+def beside(short: tpss.Result, tmp_path_factory: pytest.TempPathFactory) -> MeasuredComparison:
+    """The short line against its own power of West and 0.1 MW more, with a gap, over half minutes."""
+    watts = short.dataset.station_active_power.sel(station="West").to_numpy()[:-1]
+    whole = watts[: len(watts) // 10 * 10]
+    values = whole.reshape(-1, 10).mean(axis=1) / 1e6 + 0.1
+    cells = values.tolist()
+    cells[4] = None
+    path = tmp_path_factory.mktemp("measured") / "measured.csv"
+    path.write_text(in_minutes({"station_active_power:West [MW]": cells}, step=0.5), "utf-8")
+    return tpss.compare_with_measurements(short, path)
 
 
 OUTAGES = [

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from sweep.studies import study_with_stalls
-from tpss.report.html import report
+from tpss.report.html import report, write_report
 from tpss.sweep.report import write_study_report
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -87,6 +87,22 @@ def test_every_plot_is_drawn(opened):
     for plot in plots.all():
         assert plot.locator("svg.main-svg").count() > 0
         assert plot.locator(".trace, .hm").count() > 0
+
+
+def test_a_comparison_with_measurements_is_drawn_and_follows_the_time(
+    browser, short, beside, tmp_path
+):
+    file = write_report(short, tmp_path / "report.html", measured=beside)
+    opened = open_page(browser, file)
+    for plot in ("measured", "measured-durations"):
+        assert opened.tab.locator(f"#{plot} .trace").count() == 2
+    opened.tab.locator("#time").focus()
+    for _ in range(3):
+        opened.tab.keyboard.press("ArrowRight")
+    opened.wait_for("document.getElementById('measured').layout.shapes.at(-1).x0 > 0")
+    assert opened.cursor("measured") == opened.cursor("losses")
+    opened.tab.close()
+    assert opened.faults == []
 
 
 def test_nothing_offers_to_send_a_figure_away(opened):

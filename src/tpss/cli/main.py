@@ -128,6 +128,10 @@ app.command(
     "--label before --label after"
 )(result_commands.report)
 app.command(
+    epilog="Examples:  tpss compare results/thesis-160km-001 measured.csv --begins 06:00, then "
+    "tpss compare results/thesis-160km-001 measured.csv --find-offset 5 --out compared --report"
+)(result_commands.compare)
+app.command(
     epilog="Examples:  tpss plot results/thesis-160km-001, then tpss plot results/thesis-160km-001 "
     "--figure journey --train 'eastbound 3' --against time --out journey.pdf"
 )(result_commands.plot)

@@ -1,4 +1,4 @@
-"""The commands that show a result, or a study, in another form: report, figures, tables, profiles."""
+"""The commands that show a result, or a study, in another form, or beside measurements."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -20,6 +20,13 @@ from tpss.cli.arguments import (
 )
 from tpss.results.contents import FIGURE_NAMES
 from tpss.results.file_kinds import Kind
+
+
+class Stamps(StrEnum):
+    """What the time of a measured value says."""
+
+    BEGIN = "begin"
+    END = "end"
 
 
 class Against(StrEnum):
@@ -71,6 +78,87 @@ def report(
         report_study(results[0], out, force)
         return
     report_results(results, out, force, label or [], stations_of(corridor, from_, to))
+
+
+def compare(
+    result: OneResult,
+    measured: Annotated[
+        Path,
+        argument(
+            metavar="MEASURED.csv",
+            help="Measured series: a column of times, and columns QUANTITY:ELEMENT [UNIT], such as "
+            "'station_active_power:West [MW]'.",
+        ),
+    ],
+    map_: Annotated[
+        Path | None,
+        option(
+            "--map",
+            metavar="COLUMNS.toml",
+            help="What columns with other headings are: quantity, element, unit.",
+        ),
+    ] = None,
+    begins: Annotated[
+        str | None,
+        option(
+            metavar="TIME",
+            help="What the clock of the measurement shows at the run's minute 0, such as 05:30 or "
+            "2026-03-02T05:30; of times that are counted, their minute then. By default starts_at of "
+            "the scenario, or 0.",
+        ),
+    ] = None,
+    find_offset: Annotated[
+        float | None,
+        option(
+            metavar="MIN",
+            help="Look for the offset of the measurement's clock, up to so many minutes on both sides, "
+            "by least squares.",
+        ),
+    ] = None,
+    stamps: Annotated[
+        Stamps,
+        typer.Option(
+            metavar="WHICH",
+            help="begin or end: what the time of a value is of the interval over which it holds.",
+        ),
+    ] = Stamps.BEGIN,
+    step: Annotated[
+        float | None,
+        option(
+            metavar="MIN",
+            help="Length of the intervals over which means are compared; by default the longer step of "
+            "the two.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        option(help="Folder for tables (CSV) and figures (PNG); by default they are only printed."),
+    ] = None,
+    report: Annotated[
+        bool,
+        typer.Option(
+            "--report",
+            help="Also write the result's report with the comparison, report.html in --out or else in "
+            "the result folder.",
+        ),
+    ] = False,
+    force: Force = False,
+) -> None:
+    """Compare a result with measurements; tpss report compares results with each other.
+
+    Quantities are station_active_power, station_reactive_power and station_voltage of a station,
+    active_power, reactive_power and pantograph_voltage of a train, and node_voltage of a node. Means
+    over common intervals are compared; those that a gap touches are left out. Printed are means, the
+    error with the confidence of its mean, energies, and the worst means over 1, 5, 15 and 60 min.
+
+    Exit codes: 0 done, 2 the folder holds no result, its audit failed, the measurements have faults, or
+    files cannot be written.
+    """
+    from tpss.cli.compare import compare_result
+
+    compare_result(
+        result, measured, map_, begins, find_offset, stamps.value, step, out, report, force
+    )
 
 
 def plot(

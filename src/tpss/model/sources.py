@@ -13,6 +13,7 @@ from tpss.scenario.supply import (
     Station,
     TransformerStation,
 )
+from tpss.sources.bounded import WIDTH, Bounds
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.grid import GridLaw
 from tpss.sources.kinds import Source, SourceKind
@@ -24,7 +25,7 @@ def _converter_station(node: int, station: ConverterStation) -> Any:
     kind = station.type
     return Source.row(
         node=node,
-        kind=SourceKind.CONVERTER,
+        kind=SourceKind.BOUNDED if station.has_bounds else SourceKind.CONVERTER,
         installed=station.converters,
         controlled=station.control == "loading",
         rating_va=si(kind, "rating_mva"),
@@ -34,6 +35,18 @@ def _converter_station(node: int, station: ConverterStation) -> Any:
             grid_reactive_power_var=si(station, "grid_reactive_power_mvar"),
             grid_angle_rad=si(station, "grid_angle_deg"),
         ),
+        bounds=_bounds(station),
+    )
+
+
+def _bounds(station: ConverterStation) -> Any:
+    """Highest current of a converter, of that at rated power and no-load voltage; power back."""
+    kind = station.type
+    rated_a = si(kind, "rating_mva") / si(kind, "no_load_voltage_kv")
+    percent = kind.current_limit_percent
+    return Bounds.row(
+        highest_current_a=math.inf if percent is None else percent / 100.0 * rated_a,
+        blocked_from_w=WIDTH * si(kind, "rating_mva") if station.feedback == "none" else math.inf,
     )
 
 

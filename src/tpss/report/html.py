@@ -8,8 +8,10 @@ import tomli_w
 from plotly.graph_objects import Figure
 
 from tpss.audit.verdict import JUDGED, usual_limits
+from tpss.errors import ResultError
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
+from tpss.measured.compare import MeasuredComparison
 from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
@@ -22,6 +24,7 @@ from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
+from tpss.report.measured import MeasuredPart, measured_part
 from tpss.report.moving import network_moving
 from tpss.report.page import fill
 from tpss.report.render.interactive import render
@@ -58,6 +61,7 @@ def write_report(
     *,
     force: bool = False,
     corridor: Sequence[str] = (),
+    measured: MeasuredComparison | None = None,
 ) -> Path:
     """Write a report of one result, or a comparison of several, into one HTML file.
 
@@ -72,6 +76,8 @@ def write_report(
     corridor : sequence of str
         Stations of a network over which plots along a line are drawn, by default those on the way of the
         first service; or two stations of a single line.
+    measured : MeasuredComparison, optional
+        Comparison of a single result with measurements, which becomes a part of its report.
 
     Returns
     -------
@@ -81,12 +87,19 @@ def write_report(
     Raises
     ------
     ResultError
-        The file exists, or cannot be written; or there is no such corridor.
+        The file exists, or cannot be written; there is no such corridor; or measurements are given for
+        several results, or for another one.
     """
     place = Path(file)
     check_target(place, force)
+    if measured is not None and measured.result is not results:
+        raise ResultError(
+            "measurements belong into the report of the result they are compared with"
+        )
     text = (
-        report(results, corridor) if isinstance(results, Result) else comparison(results, corridor)
+        report(results, corridor, measured)
+        if isinstance(results, Result)
+        else comparison(results, corridor)
     )
     with explained(place):
         write_file(place, text.encode())
@@ -98,14 +111,17 @@ def check_target(file: Path, force: bool) -> None:
     refuse_to_replace(file, force, "a report", is_report)
 
 
-def report(result: Result, corridor: Sequence[str] = ()) -> str:
-    """Page about one result.
+def report(
+    result: Result, corridor: Sequence[str] = (), measured: MeasuredComparison | None = None
+) -> str:
+    """Page about one result, perhaps with its comparison with measurements.
 
     A result whose audit failed is shown without its figures: they cannot be trusted.
     """
     trusted, seen = bool(result.audit["passed"]), along(result, corridor)
     voltage = line_voltage(seen.dataset) if trusted else None
     figures, data = _figures(result, seen, voltage) if voltage else ({}, {})
+    part, drawn = (None, {}) if measured is None else measured_part(measured)
     shown = [
         tables.of_frame("trains", "Trains", result.trips),
         tables.of_frame("stops", "Times at stops", result.stops),
@@ -121,11 +137,12 @@ def report(result: Result, corridor: Sequence[str] = ()) -> str:
     return _page(
         title=result.scenario.name,
         results={"": result},
-        figures=figures,
+        figures={**figures, **drawn},
         data=data,
         tables=shown if trusted else [],
         key_figures=tables.of_figures({"value": result}) if trusted else None,
         notes=_notes(result, voltage, data),
+        measured=part,
     )
 
 
@@ -269,6 +286,7 @@ def _page(
     key_figures: tables.Table | None,
     notes: Sequence[str],
     differing: tables.Table | None = None,
+    measured: MeasuredPart | None = None,
 ) -> str:
     first = next(iter(results.values()))
     return fill(
@@ -283,6 +301,7 @@ def _page(
         tables=tables,
         key_figures=key_figures,
         differing=differing,
+        measured=measured,
         notes=notes,
         limits={label: _limits(result) for label, result in results.items()},
         judged=JUDGED,

@@ -205,7 +205,8 @@ def _least_in_step(outcome: Outcome, model: Model, stations: Sequence[str]) -> s
         reactive_var = (nodes.voltage_v * nodes.leaving_current_a.conj()).imag / running
         own_v = law.no_load_voltage_v - law.droop_v_per_var * reactive_var
         along = (own_v**2 + law.generator_reactance_ohm * reactive_var) / own_v**2
-    along[(sources.kind != SourceKind.CONVERTER) | np.isnan(along)] = np.inf
+    of_converters = np.isin(sources.kind, (SourceKind.CONVERTER, SourceKind.BOUNDED))
+    along[~of_converters | np.isnan(along)] = np.inf
     return stations[int(np.argmin(along))]
 
 

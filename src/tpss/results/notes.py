@@ -42,6 +42,7 @@ def notes(result: Result) -> list[str]:
         *_outage(result),
         *step_warnings(result.summary),
         *_stranded(result),
+        *_current_limits(result),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),
@@ -49,6 +50,16 @@ def notes(result: Result) -> list[str]:
         *_passing(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
+
+
+def _current_limits(result: Result) -> Iterator[str]:
+    """Stations that were at the highest current of their converters."""
+    for name, limit in result.summary.get("current_limits", {}).items():
+        if limit["time_min"] > 0.0:
+            yield (
+                f"{name} was at the highest current of its converters for {limit['time_min']:.1f} min: "
+                "its voltage fell, and others had to give more"
+            )
 
 
 def _outage(result: Result) -> Iterator[str]:

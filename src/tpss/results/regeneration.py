@@ -66,6 +66,8 @@ def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Any] | None:
     totals = regeneration(dataset).drop(columns=["train", "service"]).sum()
     given = np.maximum(-np.nan_to_num(step_values(dataset, "active_power")), 0.0).sum(axis=1)
     taken = np.maximum(-np.nan_to_num(step_values(dataset, "station_active_power")), 0.0)
+    # A station that takes nothing back takes a thousandth of its rating at most, for its angle.
+    taken[:, [station.feedback == "none" for station in scenario.supply.stations]] = 0.0
     to_stations = _no_more_than(given, taken)
     burns = np.array([station.feedback == "resistor" for station in scenario.supply.stations])
     by_station = over_time(to_stations, dataset) / J_PER_MWH

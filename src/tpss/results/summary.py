@@ -7,6 +7,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
+from tpss.results.current_limits import at_current_limit
 from tpss.results.explain import explain
 from tpss.results.key_figures import KeyFigures
 from tpss.run.run import Outcome
@@ -19,6 +20,8 @@ def summarise(
 ) -> dict[str, Any]:
     """Summary of a run, of plain types only."""
     lowest = figures.lowest_voltage
+    stations = [station.name for station in figures.stations]
+    limits = at_current_limit(outcome, model, stations)
     return {
         "name": scenario.name,
         "description": scenario.description,
@@ -34,6 +37,7 @@ def summarise(
         "lowest_voltage": None if lowest is None else lowest.as_dict(),
         "load_flow_passes": {"mean": figures.mean_passes, "most": figures.most_passes},
         "limited": figures.limited,
+        **({"current_limits": limits} if limits else {}),
         "audit": figures.audit.as_dict(),
     }
 

@@ -10,6 +10,7 @@ from enum import IntEnum
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import Pair, magnitude
 from tpss.record import Record
+from tpss.sources.bounded import Bounds, bounded_is_plausible, bounded_residual
 from tpss.sources.converter import (
     ConverterLaw,
     converter_is_plausible,
@@ -41,6 +42,8 @@ class SourceKind(IntEnum):
     CONVERTER = 0
     GRID = 1
     MIXED = 2
+    BOUNDED = 3
+    """A converter station with bounds."""
 
 
 class Source(Record):
@@ -59,6 +62,7 @@ class Source(Record):
     converter: ConverterLaw = ConverterLaw.row()
     grid: GridLaw = GridLaw.row()
     mixed: MixedLaw = MixedLaw.row()
+    bounds: Bounds = Bounds.row()
 
 
 @inlined
@@ -90,6 +94,8 @@ def residual(
         return grid_residual(voltage, current, running, source.grid)
     if source.kind == SourceKind.MIXED:
         return mixed_residual(voltage, current, source.mixed)
+    if source.kind == SourceKind.BOUNDED:
+        return bounded_residual(voltage, current, running, source.converter, source.bounds)
     return converter_residual(voltage, current, running, source.converter, derivatives)
 
 
@@ -100,13 +106,15 @@ def is_plausible(voltage: complex, current: complex, running: float, source: Sou
         return converter_is_plausible(voltage, current, running, source.converter)
     if source.kind == SourceKind.MIXED:
         return mixed_is_plausible(voltage, current, source.mixed)
+    if source.kind == SourceKind.BOUNDED:
+        return bounded_is_plausible(voltage, current, running, source.converter, source.bounds)
     return True
 
 
 @kernel
 def reserve(voltage: complex, current: complex, running: float, source: Source) -> float:
     """How far a source is from the end of what its law admits: 1 without load, 0 there. [1]"""
-    if source.kind == SourceKind.CONVERTER:
+    if source.kind in (SourceKind.CONVERTER, SourceKind.BOUNDED):
         return converter_reserve(voltage, current, running, source.converter)
     if source.kind == SourceKind.MIXED:
         return mixed_reserve(voltage, current, source.mixed)

@@ -9,6 +9,7 @@ from tpss.report.drawings import converter_losses as _converter_losses
 from tpss.report.drawings import effort as _effort
 from tpss.report.drawings import energy as _energy
 from tpss.report.drawings import journey as _journey
+from tpss.report.drawings import measured as _measured
 from tpss.report.drawings import network as _network
 from tpss.report.drawings import stations as _stations
 from tpss.report.drawings import time_distance as _time_distance
@@ -21,6 +22,8 @@ converter_losses = static(_converter_losses.converter_losses)
 effort = static(_effort.effort)
 energy_flow = static(_energy.energy_flow)
 journey = static(_journey.journey)
+measured_durations = static(_measured.measured_durations)
+measured_over_time = static(_measured.measured_over_time)
 network = static(_network.network)
 station_loading = static(_stations.station_loading)
 station_powers = static(_stations.station_powers)

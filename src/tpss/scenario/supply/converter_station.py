@@ -17,7 +17,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
-from tpss.scenario.supply.feedback import Feedback, feedback
+from tpss.scenario.supply.feedback import ConverterFeedback, converter_feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 from tpss.scenario.supply.losses import ConverterLosses
 
@@ -37,6 +37,13 @@ class ConverterType(Part):
     motor_reactance_pu: Real = Field(ge=0, le=10, description="q-axis reactance of the motor.")
     motor_base_mva: Real = Field(ge=0.1, le=1_000, description="Base of the motor's reactance.")
     base_voltage_kv: Real = Field(ge=1, le=100, description="Base of both, on the railway's side.")
+    current_limit_percent: Real | None = Field(
+        default=None,
+        ge=50,
+        le=1_000,
+        description="Highest current of a static converter, of that at rated power and no-load voltage: "
+        "beyond it the voltage falls, and other stations have to give more; leave it out: no limit.",
+    )
     losses: ConverterLosses | None = Field(
         default=None, description="What one converter loses; leave it out: not described."
     )
@@ -58,7 +65,7 @@ class ConverterStation(Part):
         default="all-on",
         description="Whether all converters run, or as many as the loading needs.",
     )
-    feedback: Feedback = feedback()
+    feedback: ConverterFeedback = converter_feedback()
     station_kw: Real | None = Field(
         default=None,
         ge=0,
@@ -81,6 +88,11 @@ class ConverterStation(Part):
         le=60,
         description="Angle of the 50 Hz grid, seen at the railway's frequency.",
     )
+
+    @property
+    def has_bounds(self) -> bool:
+        """Whether its law has bounds: a highest current, or no power back."""
+        return self.type.current_limit_percent is not None or self.feedback == "none"
 
     @property
     def least_reactive_mvar(self) -> float:

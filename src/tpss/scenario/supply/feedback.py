@@ -15,3 +15,16 @@ def feedback() -> Any:
         description="Where the power goes that it takes from the contact line: into the grid, or into a "
         "resistor of its own.",
     )
+
+
+ConverterFeedback = Literal["grid", "resistor", "none"]
+"""The same of a converter station, which may take no power."""
+
+
+def converter_feedback() -> Any:
+    """The field of a converter station."""
+    return Field(
+        default="grid",
+        description="Where the power goes that it takes from the contact line: into the grid, or into a "
+        "resistor of its own; `none`: it takes none, as its rectifier cannot turn round.",
+    )

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from tpss.scenario.fields import (
     FromLibrary,
@@ -31,6 +31,16 @@ class ConverterUnits(Part):
         description="Library name, a name of `supply.converter_types`, or a table of your own."
     )
     converters: Whole = Field(ge=1, le=100, description="Number of converters of this type.")
+
+    @field_validator("type")
+    @classmethod
+    def _has_no_limit(cls, kind: ConverterType) -> ConverterType:
+        if kind.current_limit_percent is not None:
+            raise fault(
+                "a station with several types has no current limits",
+                "leave current_limit_percent out of its types, or give each type a station of its own",
+            )
+        return kind
 
     @property
     def rated_mva(self) -> float:

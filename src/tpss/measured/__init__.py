@@ -1,0 +1,1 @@
+"""A result compared with measured series: read, aligned in time, judged."""
