@@ -17,6 +17,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.rating import Rating
 from tpss.scenario.supply.feedback import Feedback, feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 
@@ -36,6 +37,11 @@ class ConverterType(Part):
     motor_reactance_pu: Real = Field(ge=0, le=10, description="q-axis reactance of the motor.")
     motor_base_mva: Real = Field(ge=0.1, le=1_000, description="Base of the motor's reactance.")
     base_voltage_kv: Real = Field(ge=1, le=100, description="Base of both, on the railway's side.")
+    rating: Rating | None = Field(
+        default=None,
+        description="What it bears without getting too hot, of `rating_mva`; leave it out: it is not "
+        "judged.",
+    )
 
 
 class ConverterStation(Part):
