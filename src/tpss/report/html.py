@@ -19,6 +19,7 @@ from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
 from tpss.report.moving import network_moving
@@ -44,6 +45,7 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "powers": (station_powers, 440),
     "converters": (station_loading, 440),
     "losses": (losses, 260),
+    "thermal": (thermal, 440),
 }
 """Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
 
@@ -114,6 +116,11 @@ def report(result: Result, corridor: Sequence[str] = ()) -> str:
             else []
         ),
         tables.of_frame("stations", "Feeding stations", result.stations),
+        *(
+            [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
+            if len(result.thermal)
+            else []
+        ),
         *tables.of_standards(result),
     ]
     return _page(
@@ -176,7 +183,13 @@ def _figures(
 
 
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
-    return {key: render(describe(runs), height) for key, (describe, height) in OVER_TIME.items()}
+    rated = {label: run for label, run in runs.items() if run.equipment.elements}
+    shown = {key: rated if key == "thermal" else runs for key in OVER_TIME}
+    return {
+        key: render(describe(shown[key]), height)
+        for key, (describe, height) in OVER_TIME.items()
+        if shown[key]
+    }
 
 
 def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) -> dict[str, Any]:

@@ -31,6 +31,8 @@ TABLE_PLACES = {
     "stations": "stations",
     "regeneration": "regeneration",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
+    "thermal": "thermal",
+    "thermal_windows": "thermal_windows",
     "trains": "train_steps",
 }
 """Tables by the names of their files, or of their sheets, and where a `Result` has them."""
@@ -42,7 +44,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "energy",
+    "stations", "converters", "thermal", "energy",
     "effort",
 )  # fmt: skip
 

@@ -72,17 +72,14 @@ class CatenaryRating(Rating):
     @model_validator(mode="after")
     def _both_temperatures_in_order(self) -> Self:
         if (self.reference_c is None) != (self.ambient_c is None):
+            raise fault("reference_c and ambient_c belong together", "give both, or leave both out")
+        reference_c, ambient_c = self.reference_c, self.ambient_c
+        if reference_c is not None and ambient_c is not None and ambient_c >= reference_c:
             raise fault(
-                "reference_c and ambient_c belong together", "give both, or leave both out"
+                f"ambient_c ({ambient_c:g} °C) is not below reference_c ({reference_c:g} °C)",
+                "give the temperature of the air at which the continuous current heats the line to "
+                "reference_c",
             )
-        if self.reference_c is not None and self.ambient_c is not None:
-            if self.ambient_c >= self.reference_c:
-                raise fault(
-                    f"ambient_c ({self.ambient_c:g} °C) is not below reference_c "
-                    f"({self.reference_c:g} °C)",
-                    "give the temperature of the air at which the continuous current heats the line to "
-                    "reference_c",
-                )
         return self
 
 

@@ -122,3 +122,39 @@ def highest_mean_table(
             "from_min": np.array([begins for _, begins in highest]).T.ravel() * step_s / 60.0,
         }
     )
+
+
+def highest_means_between(values: Floats, instants: Floats, width: float) -> tuple[Floats, Floats]:
+    """Highest mean of each column over a moving window, of steps that need not be of one length.
+
+    Parameters
+    ----------
+    values : Floats, shape (steps, columns)
+        Values that hold from an instant to the next.
+    instants : Floats, shape (steps + 1,)
+        Ascending, in any unit of time.
+    width : float
+        Width of the window, in that unit.
+
+    Returns
+    -------
+    highest, begin : Floats, shape (columns,)
+        As of `highest_means`, in the unit of the instants.
+    """
+    columns = values.shape[1]
+    last = float(instants[-1] - width)
+    if len(values) == 0 or last < instants[0] - TOLERANCE * width:
+        return np.full(columns, np.nan), np.full(columns, np.nan)
+    begins = np.concatenate([instants, instants - width])
+    begins = np.clip(begins, instants[0], max(last, float(instants[0])))
+    # Both ends meet instants together where steps divide the window: each such place once.
+    begins = np.unique(np.round(begins / width, 9)) * width
+    integral = integrals(values * np.diff(instants)[:, None])
+
+    def until(times: Floats) -> Floats:
+        before = np.clip(np.searchsorted(instants, times, "right") - 1, 0, len(values) - 1)
+        return np.asarray(integral[before] + values[before] * (times - instants[before])[:, None])
+
+    areas = until(begins + width) - until(begins)
+    first = areas.argmax(axis=0)
+    return areas[first, np.arange(columns)] / width, begins[first]
