@@ -25,6 +25,9 @@ NORMAL_HOT_SPOT_C = 98.0
 DOUBLES_PER_K = 6.0
 """Rise of the hot spot that doubles the rate of ageing. [K]"""
 
+LARGEST_EXPONENT = 7.0
+"""Time constants that are summed up at once: beyond, roundings would grow. [1]"""
+
 
 class Cooling(NamedTuple):
     """Constants of a transformer in oil, by how it is cooled."""
@@ -65,15 +68,19 @@ COOLING = {
 """A large power transformer with fans, and a distribution transformer without, [IEC600767]_."""
 
 
-def follow(
-    towards: Floats, lasts_s: Floats, time_constant_s: Floats | float, start: Floats
-) -> Floats:
+def follow(towards: Floats, lasts_s: Floats, time_constant_s: float, start: Floats) -> Floats:
     r"""States of first-order bodies at all instants, shape (steps + 1, bodies).
 
     .. math:: \theta_{k+1} = u_k + (\theta_k - u_k) e^{-h_k / \tau}
 
-    The steps are joined two by two, then four by four and so on, which takes few operations on whole
-    arrays in place of one for each step.
+    Over a stretch of steps that begins at :math:`t_0` this is a sum, of which whole arrays are made at
+    once,
+
+    .. math::
+        \theta_{k+1} = e^{-(t_{k+1} - t_0) / \tau} \left[ \theta_0
+            + \sum_{i \le k} e^{(t_{i+1} - t_0) / \tau} (1 - e^{-h_i / \tau}) u_i \right] ,
+
+    and stretches are so short that the growing exponential costs no more than three digits.
 
     Parameters
     ----------
@@ -81,8 +88,8 @@ def follow(
         Where each state tends to in a step, u: of a body with one time constant K². Any unit.
     lasts_s : Floats, shape (steps,)
         Length of each step, positive. [s]
-    time_constant_s : Floats or float, shape (bodies,)
-        τ, positive. [s]
+    time_constant_s : float
+        τ of all bodies, positive. [s]
     start : Floats, shape (bodies,)
         States at the first instant.
 
@@ -90,14 +97,22 @@ def follow(
     ----------
     [IEC60255149]_, the thermal replica of one time constant.
     """
-    exponent = lasts_s[:, None] / np.broadcast_to(time_constant_s, start.shape)
-    kept = np.concatenate([np.zeros_like(start)[None], np.exp(-exponent)])
-    states = np.concatenate([start[None], -np.expm1(-exponent) * towards])
-    reach = 1
-    while reach < len(states):
-        states[reach:] = states[reach:] + kept[reach:] * states[:-reach]
-        kept[reach:] = kept[reach:] * kept[:-reach]
-        reach *= 2
+    states = np.empty((len(lasts_s) + 1, len(start)))
+    states[0] = start
+    exponent = lasts_s / time_constant_s
+    longest = float(exponent.max(initial=1e-9))
+    stretch = max(1, int(LARGEST_EXPONENT / longest))
+    for begin in range(0, len(lasts_s), stretch):
+        part = slice(begin, begin + stretch)
+        own = exponent[part]
+        if len(own) == 1:  # of any length, such as of many time constants
+            left = np.exp(-own)
+            states[begin + 1] = towards[begin] + (states[begin] - towards[begin]) * left
+            continue
+        passed = np.cumsum(own)
+        gains = np.exp(passed) * -np.expm1(-own)
+        sums = np.cumsum(gains[:, None] * towards[part], axis=0)
+        states[1:][part] = (states[begin] + sums) * np.exp(-passed)[:, None]
     return states
 
 

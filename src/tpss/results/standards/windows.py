@@ -124,37 +124,60 @@ def highest_mean_table(
     )
 
 
-def highest_means_between(values: Floats, instants: Floats, width: float) -> tuple[Floats, Floats]:
-    """Highest mean of each column over a moving window, of steps that need not be of one length.
+def highest_means_between(
+    values: Floats, instants: Floats, widths: Sequence[float]
+) -> list[tuple[Floats, Floats]]:
+    """Highest mean of each column over moving windows, of steps that need not be of one length.
 
     Parameters
     ----------
     values : Floats, shape (steps, columns)
-        Values that hold from an instant to the next.
+        Values that hold from an instant to the next; there is a step at least.
     instants : Floats, shape (steps + 1,)
         Ascending, in any unit of time.
-    width : float
-        Width of the window, in that unit.
+    widths : sequence of float
+        Widths of the windows, in that unit.
 
     Returns
     -------
-    highest, begin : Floats, shape (columns,)
-        As of `highest_means`, in the unit of the instants.
+    list of (highest, begin)
+        For each width as of `highest_means`, in the unit of the instants.
     """
-    columns = values.shape[1]
-    last = float(instants[-1] - width)
-    if len(values) == 0 or last < instants[0] - TOLERANCE * width:
-        return np.full(columns, np.nan), np.full(columns, np.nan)
-    begins = np.concatenate([instants, instants - width])
-    begins = np.clip(begins, instants[0], max(last, float(instants[0])))
-    # Both ends meet instants together where steps divide the window: each such place once.
-    begins = np.unique(np.round(begins / width, 9)) * width
     integral = integrals(values * np.diff(instants)[:, None])
+    return [_highest_mean_between(values, integral, instants, width) for width in widths]
 
-    def until(times: Floats) -> Floats:
-        before = np.clip(np.searchsorted(instants, times, "right") - 1, 0, len(values) - 1)
-        return np.asarray(integral[before] + values[before] * (times - instants[before])[:, None])
 
-    areas = until(begins + width) - until(begins)
+def _highest_mean_between(
+    values: Floats, integral: Floats, instants: Floats, width: float
+) -> tuple[Floats, Floats]:
+    """Highest means over windows of one width, and their beginnings.
+
+    Windows of which both ends meet instants are many, and differences of the integral; the others, few
+    if steps divide the window, are interpolated.
+    """
+    each = np.arange(values.shape[1])
+    rounding = TOLERANCE * width
+    if instants[-1] - instants[0] < width - rounding:
+        return np.full(len(each), np.nan), np.full(len(each), np.nan)
+    whole = min(max(1, round(width / float(instants[1] - instants[0]))), len(values))
+    meets = np.abs(instants[whole:] - instants[:-whole] - width) <= rounding
+    lone_begins = instants[np.append(~meets, np.ones(whole, dtype=bool))]
+    lone_ends = instants[np.append(np.ones(whole, dtype=bool), ~meets)]
+    lone = np.concatenate([lone_begins, lone_ends - width])
+    lone = lone[(lone >= instants[0]) & (lone + width <= instants[-1])]
+    areas = integral[whole:] - integral[:-whole]
+    begins = instants[:-whole]
+    if not meets.all():
+        areas, begins = areas[meets], begins[meets]
+    if len(lone):
+        areas = np.concatenate([areas, _until(lone + width, values, integral, instants)])
+        areas[-len(lone) :] -= _until(lone, values, integral, instants)
+        begins = np.concatenate([begins, lone])
     first = areas.argmax(axis=0)
-    return areas[first, np.arange(columns)] / width, begins[first]
+    return areas[first, each] / width, begins[first]
+
+
+def _until(times: Floats, values: Floats, integral: Floats, instants: Floats) -> Floats:
+    """An integral over time until some times, shape (times, columns)."""
+    before = np.clip(np.searchsorted(instants, times, "right") - 1, 0, len(values) - 1)
+    return np.asarray(integral[before] + values[before] * (times - instants[before])[:, None])

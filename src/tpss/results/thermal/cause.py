@@ -19,11 +19,12 @@ LEAST_SHARE = 0.05
 
 @dataclass(frozen=True)
 class Traffic:
-    """Trains of a run: where they are in each step, and their apparent powers. [m], [VA]"""
+    """Trains of a run: where they are in each step, and what they draw. [m], [W], [var]"""
 
     names: Sequence[str]
     position_m: Floats
-    power_va: Floats
+    active_w: Floats
+    reactive_var: Floats
     line: np.ndarray
     track: np.ndarray
     instants_s: Floats
@@ -31,13 +32,11 @@ class Traffic:
     @classmethod
     def of(cls, dataset: xr.Dataset) -> "Traffic":
         """Trains of a dataset."""
-        active, reactive = (
-            step_values(dataset, name) for name in ("active_power", "reactive_power")
-        )
         return cls(
             [str(name) for name in dataset.train.to_numpy()],
             dataset.position.to_numpy()[:-1],
-            np.nan_to_num(np.hypot(active, reactive)),
+            step_values(dataset, "active_power"),
+            step_values(dataset, "reactive_power"),
             train_lines(dataset)[:-1],
             train_tracks(dataset)[:-1],
             dataset.time.to_numpy(),
@@ -54,7 +53,8 @@ class Traffic:
         lasts_s = np.diff(np.clip(self.instants_s, from_s, to_s))
         first, last = np.flatnonzero(lasts_s > 0.0)[[0, -1]]
         steps = slice(first, last + 1)
-        power_va, lasts_s = self.power_va[steps], lasts_s[steps]
+        power_va = np.nan_to_num(np.hypot(self.active_w[steps], self.reactive_var[steps]))
+        lasts_s = lasts_s[steps]
         near = np.zeros(power_va.shape, dtype=bool)
         for reach in element.reach:
             near |= self._within(reach, steps)

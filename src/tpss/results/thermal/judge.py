@@ -130,10 +130,11 @@ class Thermal:
             for each in self.elements
         ]
         square = np.nan_to_num(self.load) ** 2
-        found = {
-            minutes: highest_means_between(square, self.instants_s, minutes * S_PER_MIN)
-            for minutes in sorted({minutes for own in own_min for minutes in own})
-        }
+        widths = sorted({minutes for own in own_min for minutes in own})
+        means = highest_means_between(
+            square, self.instants_s, [minutes * S_PER_MIN for minutes in widths]
+        )
+        found = dict(zip(widths, means, strict=True))
         return [
             [
                 Window(

@@ -9,7 +9,7 @@ from tpss.physics.thermal import Cooling, ageing_rate, follow, hot_spot_rise
 from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body
 
-LONGEST_PART_S = 60.0
+LONGEST_PART_S = 15.0
 """Longest part of a step at whose ends the hot spot of a transformer is found. [s]"""
 
 
@@ -21,7 +21,7 @@ class States(NamedTuple):
     start_load : Floats, shape (elements,)
         Load in whose steady state it begins. [1]
     state : Floats, shape (instants, elements)
-        Rise of the temperature over that of the rated load. [1]
+        Rise of the temperature over that of the rated load; NaN: it is not there. [1]
     highest : Floats, shape (elements,)
         Highest state, within steps too. [1]
     highest_at_s : Floats, shape (elements,)
@@ -47,11 +47,14 @@ def states_of(bodies: Sequence[Body], load: Floats, instants_s: Floats) -> State
     waits = ~np.logical_or.accumulate(there, axis=0)
     load = np.where(waits, start, np.sqrt(square))
     tau_s = np.array([body.time_constant_s for body in bodies])
-    state = follow(load**2, lasts_s, tau_s, start**2)
-    highest = state.max(axis=0)
-    found = States(
-        start, state, highest, instants_s[state.argmax(axis=0)], np.full(len(bodies), np.nan)
-    )
+    state = np.empty((len(instants_s), len(bodies)))
+    for each_s in np.unique(tau_s):
+        own = tau_s == each_s
+        state[:, own] = follow(load[:, own] ** 2, lasts_s, float(each_s), start[own] ** 2)
+    hottest = state.argmax(axis=0)
+    highest = state[hottest, np.arange(len(bodies))]
+    found = States(start, state, highest, instants_s[hottest], np.full(len(bodies), np.nan))
+    state[:-1][~there] = np.nan
     for cooling in dict.fromkeys(body.cooling for body in bodies if body.cooling is not None):
         own = np.array([body.cooling == cooling for body in bodies])
         ambient_c = np.array([body.ambient_c for body in bodies])[own]
@@ -77,18 +80,16 @@ def _replace(
 ) -> None:
     """Put the states of transformers with a cooling in the place of those of one time constant.
 
-    Steps are parted, as the hot spot may be highest within one.  The parts are even in number, so the
-    loss of life follows by Simpson's rule.
+    Steps are parted, as the hot spot may be highest within one, and as ageing is no straight line.
     """
     lasts_s = np.diff(instants_s)
-    parts = 2 * int(np.ceil(lasts_s.max() / LONGEST_PART_S))
+    parts = int(np.ceil(lasts_s.max() / LONGEST_PART_S - 1e-9))
     fine_s = np.repeat(lasts_s / parts, parts)
     rise_k = hot_spot_rise(np.repeat(load, parts, axis=0), fine_s, found.start_load[own], cooling)
     rate = ageing_rate(rise_k + ambient_c)
-    sums = rate[:-2:2] + 4.0 * rate[1:-1:2] + rate[2::2]
     times_s = instants_s[0] + np.concatenate([[0.0], np.cumsum(fine_s)])
     state = rise_k / cooling.rise_k
     found.state[:, own] = state[::parts]
     found.highest[own] = state.max(axis=0)
     found.highest_at_s[own] = times_s[state.argmax(axis=0)]
-    found.aged_s[own] = fine_s[::2] @ sums / 3.0
+    found.aged_s[own] = fine_s @ (rate[:-1] + rate[1:]) / 2.0
