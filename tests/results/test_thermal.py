@@ -33,7 +33,7 @@ def thermal(body: Body, load: Any, step_s: float = MIN, last_s: float | None = N
         time[-1] = time[-2] + last_s
     none = (("time", "train"), np.empty((steps + 1, 0)))
     dataset = xr.Dataset(
-        {name: none for name in ("position", "active_power", "reactive_power")},
+        dict.fromkeys(("position", "active_power", "reactive_power"), none),
         coords={"time": time, "train": np.empty(0, dtype=str)},
     )
     element = Element("it", "converter", 0, 0.0, body)
@@ -105,7 +105,7 @@ def test_windows_of_an_overload_by_hand():
 
 
 def test_the_overloads_that_are_allowed_are_within_after_the_rated_load():
-    """125 % for 60 min leads to 1.5625 - 0.5625 e^-2 = 148.6 % of the state, 150 % for 5 min to 119.2."""
+    """125 % for 60 min leads to 1.5625 - 0.5625 e^-2 = 148.6 %, 150 % for 5 min to 119.2 %."""
     body = rated(preload_percent=100.0)
     assert body.allowed_state == pytest.approx(1.5625 - 0.5625 * math.exp(-2.0))
     found = judged(body, [1.25] * 60)

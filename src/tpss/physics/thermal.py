@@ -52,12 +52,12 @@ class Cooling(NamedTuple):
 
     @property
     def rise_k(self) -> float:
-        """Rated rise of the hot spot over the ambient. [K]"""
+        """Rated rise of the hot spot over the ambient, [IEC600767]_. [K]"""
         return self.oil_rise_k + self.hot_spot_rise_k
 
     @property
     def memory_s(self) -> float:
-        """Time constant with which the top oil follows the load. [s]"""
+        """Time constant with which the top oil follows the load, k₁₁ τ_o, [IEC600767]_. [s]"""
         return self.k11 * self.oil_s
 
 
@@ -65,7 +65,8 @@ COOLING = {
     "ONAF": Cooling(52.0, 26.0, 150.0 * S_PER_MIN, 7.0 * S_PER_MIN, 6.0, 0.8, 1.3, 0.5, 2.0, 2.0),
     "ONAN": Cooling(55.0, 23.0, 180.0 * S_PER_MIN, 4.0 * S_PER_MIN, 5.0, 0.8, 1.6, 1.0, 1.0, 2.0),
 }
-"""A large power transformer with fans, and a distribution transformer without, [IEC600767]_."""
+"""A large power transformer with fans, and a distribution transformer without: constants of [IEC600767]_
+as open implementations of it print them; check your edition."""
 
 
 def follow(towards: Floats, lasts_s: Floats, time_constant_s: float, start: Floats) -> Floats:

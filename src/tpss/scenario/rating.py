@@ -7,6 +7,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from tpss.scenario.fields import Part, Real, fault
 
+AIR_C, HOT_SPOT_C = 20.0, 120.0
+"""Temperature of the air, and highest one of a transformer's hot spot, if they are not given. [°C]"""
+
 LONGEST_MIN = 10_000.0
 """Longest time constant, and longest time of an overload. [min]"""
 
@@ -97,15 +100,18 @@ class TransformerRating(Initial):
         le=LONGEST_MIN,
         description="Time constant of its temperature, in place of `cooling`.",
     )
-    ambient_c: Real = Field(
-        default=20.0, ge=-60, le=80, description="Temperature of the air, with `cooling`."
+    ambient_c: Real | None = Field(
+        default=None,
+        ge=-60,
+        le=80,
+        description="Temperature of the air, with `cooling`; leave it out: 20 °C.",
     )
-    highest_hot_spot_c: Real = Field(
-        default=120.0,
+    highest_hot_spot_c: Real | None = Field(
+        default=None,
         ge=50,
         le=250,
-        description="Highest temperature of the hot spot, with `cooling`; 120 °C is that of normal "
-        "cyclic loading in IEC 60076-7, check your edition.",
+        description="Highest temperature of the hot spot, with `cooling`; leave it out: 120 °C, that of "
+        "normal cyclic loading in IEC 60076-7, check your edition.",
     )
     overloads: Overloads = Field(
         default=(), description="Overloads that are allowed, the lowest and longest first."
@@ -118,20 +124,28 @@ class TransformerRating(Initial):
                 "give either cooling or time_constant_min",
                 "leave one of them out, or add the one that is missing",
             )
-        own = {"ambient_c", "highest_hot_spot_c"} & self.model_fields_set
+        own = [key for key in ("ambient_c", "highest_hot_spot_c") if getattr(self, key) is not None]
         if self.cooling is None and own:
             raise fault(
-                f"{' and '.join(sorted(own))} without cooling: no temperature follows from a time "
-                "constant alone",
+                f"{' and '.join(own)} without cooling: a time constant alone gives no temperature",
                 'leave it out, or give cooling = "ONAF" or "ONAN"',
             )
-        if self.cooling is not None and self.ambient_c >= self.highest_hot_spot_c:
+        if self.cooling is not None and self.air_c >= self.hottest_c:
             raise fault(
-                f"ambient_c ({self.ambient_c:g} °C) is not below highest_hot_spot_c "
-                f"({self.highest_hot_spot_c:g} °C)",
+                f"ambient_c ({self.air_c:g} °C) is not below highest_hot_spot_c ({self.hottest_c:g} °C)",
                 "give the temperature of the air as ambient_c",
             )
         return self
+
+    @property
+    def air_c(self) -> float:
+        """Temperature of the air. [°C]"""
+        return AIR_C if self.ambient_c is None else self.ambient_c
+
+    @property
+    def hottest_c(self) -> float:
+        """Highest temperature of the hot spot. [°C]"""
+        return HOT_SPOT_C if self.highest_hot_spot_c is None else self.highest_hot_spot_c
 
 
 class LineTransformerRating(TransformerRating):

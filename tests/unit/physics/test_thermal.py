@@ -86,7 +86,7 @@ def test_the_short_time_current_of_a_motor_gives_its_time_constant():
 
 
 def test_a_large_transformer_overloaded_by_half():
-    """K from 0.6 to 1.5 at 20 °C, ONAF: about 61 °C at first, 97, 127 and 141 after 10, 30 and 60 min."""
+    """K from 0.6 to 1.5 at 20 °C, ONAF: 61 °C at first, 97, 127 and 141 after 10, 30, 60 min."""
     load = np.full((60, 1), 1.5)
     rise = hot_spot_rise(load, np.full(60, MIN), np.array([0.6]), COOLING["ONAF"])[:, 0]
     np.testing.assert_allclose(20.0 + rise[[0, 10, 30, 60]], [61.0, 97.0, 127.0, 141.0], atol=0.6)

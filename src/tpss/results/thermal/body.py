@@ -61,9 +61,9 @@ def body_of(rating: Rating | TransformerRating | MotorRating) -> Body:
             cooling.memory_s,
             cooling,
             overloads,
-            allowed_state=(rating.highest_hot_spot_c - rating.ambient_c) / cooling.rise_k,
+            allowed_state=(rating.hottest_c - rating.air_c) / cooling.rise_k,
             preload=preload,
-            ambient_c=rating.ambient_c,
+            ambient_c=rating.air_c,
             rise_k=cooling.rise_k,
         )
     time_constant_s = si(rating, "time_constant_min")

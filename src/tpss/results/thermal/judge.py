@@ -125,6 +125,8 @@ class Thermal:
     @cached_property
     def _windows(self) -> list[list[Window]]:
         """Windows of each piece of equipment, its own overloads' too, in ascending order."""
+        if not self.elements:
+            return []
         own_min = [
             sorted({*WINDOWS_MIN, *(lasts_s / S_PER_MIN for _, lasts_s in each.body.overloads)})
             for each in self.elements
