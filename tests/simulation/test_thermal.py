@@ -141,8 +141,8 @@ def test_the_state_is_that_of_one_step_after_the_other(judged):
     for k in load:
         state.append(k * k + (state[-1] - k * k) * np.exp(-h / 5.0))
     row = judged.thermal.set_index("element").loc["contact line 0-30 km, start"]
-    assert row.state_percent == pytest.approx(100.0 * max(state), rel=1e-9)
-    assert row.temperature_c == pytest.approx(40.0 + 40.0 * max(state), rel=1e-9)
+    assert row.highest_state_percent == pytest.approx(100.0 * max(state), rel=1e-9)
+    assert row.highest_temperature_c == pytest.approx(40.0 + 40.0 * max(state), rel=1e-9)
     assert row.state_at_min == pytest.approx(int(np.argmax(state)) * h)
 
 
@@ -204,8 +204,8 @@ def test_a_transformer_station_is_judged_by_its_cooling():
     }  # fmt: skip
     result = run(found)
     row = result.thermal.iloc[0]
-    assert (row.element, row.allowed_c) == ("transformer of A", pytest.approx(120.0))
-    assert 30.0 < row.temperature_c < 120.0
+    assert (row.element, row.allowed_temperature_c) == ("transformer of A", pytest.approx(120.0))
+    assert 30.0 < row.highest_temperature_c < 120.0
     assert row.loss_of_life_min > 0.0
 
 

@@ -8,9 +8,10 @@ from tpss.report.drawings.parts import DOTTED, TIME, Curve, Drawing, Mark, Panel
 from tpss.report.palette import BLACK, COLOURS
 from tpss.report.trains import NothingToDrawError
 from tpss.results.result import Result
+from tpss.results.thermal.judge import Thermal
 
-MOST_CURVES = 6
-"""Pieces of equipment that are drawn of a run."""
+MOST_CURVES, MOST_OF_A_KIND = 6, 2
+"""Pieces of equipment that are drawn of a run, and those of a kind among them."""
 
 
 def thermal(runs: Mapping[str, Result]) -> Drawing:
@@ -31,7 +32,7 @@ def thermal(runs: Mapping[str, Result]) -> Drawing:
     states, temperatures = [], []
     for k, (label, result) in enumerate(runs.items()):
         own, minutes = result.equipment, result.dataset.time.to_numpy() / 60.0
-        for colour, e in enumerate(own.hottest[:MOST_CURVES]):
+        for colour, e in enumerate(_drawn(own)):
             element, state = own.elements[e], own.states.state[:, e]
             name = f"{element.name}, {label}" if label else element.name
             dash = k if len(runs) > 1 else colour
@@ -46,3 +47,13 @@ def thermal(runs: Mapping[str, Result]) -> Drawing:
     if temperatures:
         panels.append(Panel("temperature [°C]", temperatures))
     return Drawing(TIME, panels, panel_inch=2.0)
+
+
+def _drawn(own: Thermal) -> list[int]:
+    """Indices of the equipment that is drawn: the hottest, but few of a kind, as trains are many."""
+    chosen: list[int] = []
+    for e in own.hottest:
+        kind = own.elements[e].kind
+        if sum(own.elements[other].kind == kind for other in chosen) < MOST_OF_A_KIND:
+            chosen.append(e)
+    return chosen[:MOST_CURVES]

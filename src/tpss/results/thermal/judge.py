@@ -36,8 +36,8 @@ class Window(NamedTuple):
     element: str
     kind: str
     window_min: float
-    rms_percent: float
-    allowed_percent: float
+    highest_rms_percent: float
+    allowed_rms_percent: float
     """NaN: it is not judged over this window."""
     from_min: float
 
@@ -51,15 +51,15 @@ class Judged(NamedTuple):
     position_km: float
     start_load_percent: float
     start: str
-    state_percent: float
+    highest_state_percent: float
     allowed_state_percent: float
     state_at_min: float
-    temperature_c: float
-    allowed_c: float
+    highest_temperature_c: float
+    allowed_temperature_c: float
     loss_of_life_min: float
     window_min: float
-    rms_percent: float
-    allowed_percent: float
+    highest_rms_percent: float
+    allowed_rms_percent: float
     from_min: float
     verdict: str
     trains: str
@@ -171,15 +171,15 @@ class Thermal:
             position_km=element.position_km,
             start_load_percent=100.0 * float(states.start_load[k]),
             start=OF_THE_RUN if math.isnan(body.preload) else GIVEN,
-            state_percent=100.0 * state,
+            highest_state_percent=100.0 * state,
             allowed_state_percent=100.0 * body.allowed_state,
             state_at_min=at_s / S_PER_MIN,
-            temperature_c=body.ambient_c + body.rise_k * state,
-            allowed_c=body.ambient_c + body.rise_k * body.allowed_state,
+            highest_temperature_c=body.ambient_c + body.rise_k * state,
+            allowed_temperature_c=body.ambient_c + body.rise_k * body.allowed_state,
             loss_of_life_min=float(states.aged_s[k]) / S_PER_MIN,
             window_min=worst.window_min,
-            rms_percent=worst.rms_percent,
-            allowed_percent=worst.allowed_percent,
+            highest_rms_percent=worst.highest_rms_percent,
+            allowed_rms_percent=worst.allowed_rms_percent,
             from_min=worst.from_min,
             verdict=OVER if is_over else WITHIN,
             trains=traffic.cause(element, from_s, to_s),
@@ -197,12 +197,12 @@ class Thermal:
 
 def use_of(judged: Judged) -> float:
     """What equipment has of what it bears: above 1 it is over. [1]"""
-    return max(judged.state_percent / judged.allowed_state_percent, _share(judged))
+    return max(judged.highest_state_percent / judged.allowed_state_percent, _share(judged))
 
 
 def _share(worst: Window | Judged) -> float:
     """Highest r.m.s. load over a window, over the one that is allowed; 0 where none is judged. [1]"""
-    share = worst.rms_percent / worst.allowed_percent
+    share = worst.highest_rms_percent / worst.allowed_rms_percent
     return 0.0 if math.isnan(share) else share
 
 

@@ -18,7 +18,7 @@ def thermal_in_words(figures: Mapping[str, Any] | None) -> list[str]:
     if not over:
         name, hottest = items[0]
         return [
-            f"Thermal: {count}, all within what they bear; closest to it {name}: {_of(hottest)}"
+            f"Thermal: {count}, all within what they bear; closest to it is {name}: {_of(hottest)}"
         ]
     listed = items[: min(over, MOST_LISTED)]
     more = f", and {over - len(listed)} more" if over > len(listed) else ""
@@ -28,20 +28,20 @@ def thermal_in_words(figures: Mapping[str, Any] | None) -> list[str]:
 
 def _of(judged: Mapping[str, Any]) -> str:
     """What decides over a piece of equipment, when, by which trains, and from which start."""
-    by_state = judged["state_percent"] / judged["allowed_state_percent"]
-    by_load = judged.get("rms_percent", 0.0) / judged.get("allowed_percent", 1.0)
+    by_state = judged["highest_state_percent"] / judged["allowed_state_percent"]
+    by_load = judged.get("highest_rms_percent", 0.0) / judged.get("allowed_rms_percent", 1.0)
     if by_load > by_state:
         text = (
-            f"{judged['rms_percent']:.1f} % r.m.s. over {judged['window_min']:g} min from "
-            f"{judged['from_min']:.2f} min, {judged['allowed_percent']:.1f} % allowed"
+            f"{judged['highest_rms_percent']:.1f} % r.m.s. over {judged['window_min']:g} min from "
+            f"{judged['from_min']:.2f} min, {judged['allowed_rms_percent']:.1f} % allowed"
         )
     else:
         text = (
-            f"thermal state {judged['state_percent']:.1f} % at {judged['state_at_min']:.2f} min, "
-            f"{judged['allowed_state_percent']:.1f} % allowed"
+            f"thermal state {judged['highest_state_percent']:.1f} % at "
+            f"{judged['state_at_min']:.2f} min, {judged['allowed_state_percent']:.1f} % allowed"
         )
-        if "temperature_c" in judged:
-            text = f"{judged['temperature_c']:.0f} °C, {text}"
+        if "highest_temperature_c" in judged:
+            text = f"{judged['highest_temperature_c']:.0f} °C, {text}"
     if "trains" in judged:
         text += f", by {judged['trains']}"
     before = "the r.m.s. load of the run" if judged["start"] == OF_THE_RUN else "a preload"
