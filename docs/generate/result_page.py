@@ -100,7 +100,8 @@ THERMAL = {
     "highest_state_percent": "highest thermal state",
     "allowed_state_percent": "... and the highest one that is allowed",
     "state_at_min": "... and when it is highest",
-    "highest_temperature_c": "highest temperature, of a transformer of its hot spot; NaN where not known",
+    "highest_temperature_c": "highest temperature, of a transformer that of its hot spot; NaN where "
+    "none is known",
     "allowed_temperature_c": "... and the highest one that is allowed",
     "loss_of_life_min": "life that the paper of a transformer with `cooling` lost",
     "window_min": "window in which its r.m.s. load comes closest to what is allowed; NaN without one",
@@ -149,8 +150,8 @@ SUMMARY = {
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
     "thermal": "only where something has a [rating](../how-to/thermal.md): how many pieces of equipment "
-    "are `judged`, how many are `over`, and the figures of the table `thermal` for each (`elements`), the "
-    "one that comes closest to what it bears, or is beyond it, first",
+    "are `judged`, how many are `over`, and the figures of the table `thermal` for each (`elements`), "
+    "the one that comes closest to what it bears, or is beyond it, first",
 }
 EARLY_END = {
     "problem": "only after an early end: when and where it came, in words",

@@ -14,7 +14,13 @@ from tpss.report.trains import NothingToDrawError
 
 from scenarios import run, short_line, stops
 
+RATED = {
+    "r_ohm_per_km": 0.21,
+    "x_ohm_per_km": 0.2,
+    "rating": {"continuous_a": 467.0, "time_constant_min": 4.7},
+}
 HILLY = {
+    "supply.catenary": RATED,
     "line.gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 5.0, "permille": -1.0}],
     "traffic.0.headway_min": 10.0,
 }
