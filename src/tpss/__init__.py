@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.results.result import load_result as load_result
     from tpss.results.standards.evidence import Evidence as Evidence
     from tpss.run.run import Progress as Progress
+    from tpss.savings.table import spare_time_savings as spare_time_savings
     from tpss.scenario import Scenario as Scenario
     from tpss.scenario import load_scenario as load_scenario
     from tpss.sweep.campaign import run_study as run_study
@@ -76,6 +77,7 @@ _HOME = {
     "run_study": "tpss.sweep.campaign",
     "simulate": "tpss.api",
     "simulate_many": "tpss.many",
+    "spare_time_savings": "tpss.savings.table",
     "train_approximator": "tpss.approximator.train",
     "write_plan_report": "tpss.planning.report",
     "write_report": "tpss.report.html",

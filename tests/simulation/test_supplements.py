@@ -13,7 +13,8 @@ import tpss
 from faults import faults_of, finding_at
 from tpss.driving.data import Profile
 from tpss.model.build import build_model
-from tpss.model.supplements import Stretch, Supplement, capped, held_speed, with_supplements
+from tpss.model.held_limits import Held, capped
+from tpss.model.supplements import NO_TIME, Stretch, Wanted, held_speed, with_supplements
 from tpss.model.traffic import build_services
 
 from scenarios import short_line
@@ -108,7 +109,10 @@ def test_without_a_supplement_the_model_is_as_it_was():
     model, _ = build_model(scenario)
     services = build_services(scenario, model)
     assert with_supplements(scenario, model, services) == (model, services)
-    assert held_speed(model, Stretch(0, 0.0, 1e4, Supplement(0.0, 0.0)), 0) == math.inf
+    assert (
+        held_speed(model, Stretch(0, 0.0, 1e4, Wanted(0.0, 0.0, NO_TIME, "held-speed")), 0)
+        == math.inf
+    )
 
 
 def test_a_train_that_comes_to_no_end_has_no_speed_to_hold():
@@ -118,13 +122,17 @@ def test_a_train_that_comes_to_no_end_has_no_speed_to_hold():
         "trains.freight.mass_t": 150.0,
     }
     model, _ = build_model(short_line({**CLOSED_FORM, **steep}))
-    assert held_speed(model, Stretch(0, 0.0, 1e4, Supplement(0.1, 0.0)), 0) == math.inf
+    assert (
+        held_speed(model, Stretch(0, 0.0, 1e4, Wanted(0.1, 0.0, NO_TIME, "held-speed")), 0)
+        == math.inf
+    )
 
 
 def test_limits_are_capped_between_two_stops():
     """Of 30 and 10 m/s from 0 and 400 m; 20 m/s are held from 100 to 300 m, 15 from there to 500 m."""
     limits = Profile(np.array([0.0, 400.0, np.inf]), np.array([30.0, 10.0, 10.0]))
-    lower = capped(limits, [(100.0, 300.0, 20.0), (300.0, 500.0, 15.0)])
+    held = [Held(100.0, 300.0, 20.0, 300.0), Held(300.0, 500.0, 15.0, 500.0)]
+    lower = capped(limits, held)
     assert lower.from_m.tolist() == [0.0, 100.0, 300.0, 400.0]
     assert lower.value.tolist() == [30.0, 20.0, 15.0, 10.0]
 

@@ -35,6 +35,14 @@ MOST_LISTED = 8
 """Longer lists are shown by their first and last item and their length."""
 
 
+SPARE_TIME = {
+    "held-speed": "a lower held speed",
+    "coasting": "coasting before stops",
+    "least-energy": "coasting and a held speed, at the least energy",
+}
+"""How trains use it, in words."""
+
+
 def check_scenario(file: Path, assignments: list[str]) -> None:
     """Validate a scenario, build its model, and print what it describes.
 
@@ -214,6 +222,8 @@ def _service(entry: Traffic, start_s: float | None) -> str:
         given = {key: getattr(entry, key) for key in keys if getattr(entry, key) > 0.0}
         shares = [f"{value:g} {units.label(key)}" for key, value in given.items()]
         texts.append(f"supplement {' and '.join(shares)}")
+    if entry.spare_time is not None:
+        texts.append(f"spare time by {SPARE_TIME[entry.spare_time]}")
     if entry.delays is not None:
         share, mean_min = 100.0 * entry.delays.share, entry.delays.mean_min
         texts.append(f"{share:g} % delayed by {mean_min:g} min on average")

@@ -278,6 +278,40 @@ def outages(
     raise typer.Exit(run_outages(file, n_1, set_ or [], jobs, out, force, quiet, report))
 
 
+@app.command(
+    name="spare-time",
+    epilog="Examples:  tpss spare-time examples/emu_25kv.toml, then tpss run examples/emu_25kv.toml "
+    "--set traffic.0.supplement_percent=5 --set traffic.0.spare_time=least-energy",
+)
+def spare_time(
+    file: ScenarioFile,
+    percent: Annotated[
+        list[float] | None,
+        option(
+            min=0,
+            max=200,
+            help="Time to spare, in percent of the technical running time; repeatable. By default 2, "
+            "5, 10, 15 and 20.",
+        ),
+    ] = None,
+    set_: Assignments = None,
+    out: Annotated[Path | None, option(help="CSV file to write.")] = None,
+    plot: Annotated[
+        Path | None, option(help="Picture to write, of which the end says the kind: png, svg, pdf.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Print how much energy trains save by using time that they have to spare.
+
+    A train that has more time from stop to stop than it needs can hold a lower speed, coast before it
+    brakes, or do both with the least energy. Each service is tried alone and at nominal voltage; the
+    key `spare_time` of a service lets its trains drive so in a run.
+    """
+    from tpss.cli.spare_time import print_savings
+
+    print_savings(file, percent or [], set_ or [], out, plot, force)
+
+
 @app.command(epilog="Example:  tpss new my-line")
 def new(
     folder: Annotated[Path, argument(help="Folder to write; existing files are kept.")],

@@ -81,6 +81,14 @@ def _demand_use(figure: str, train: str | None, against: str, of_a_train: Sequen
         raise ResultError(f"{figure} is not a {JOURNEY}; leave --against out")
 
 
+def demand_format(file: Path) -> None:
+    """Raise a `ResultError` if figures cannot be written as files of that name."""
+    if file.suffix.removeprefix(".").lower() not in FORMATS:
+        raise ResultError(
+            f"{file} has an unknown format; use a name that ends in .{', .'.join(FORMATS)}"
+        )
+
+
 def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str, str]]:
     """Folder to write into, and files in it by the names of their figures."""
     if figure == ALL:
@@ -90,10 +98,7 @@ def _target(folder: Path, figure: str, out: Path | None) -> tuple[Path, dict[str
             )
         return out or folder / FIGURES, {name: f"{name}.png" for name in FIGURE_NAMES}
     file = out or folder / FIGURES / f"{figure}.png"
-    if file.suffix.removeprefix(".").lower() not in FORMATS:
-        raise ResultError(
-            f"{file} has an unknown format; use a name that ends in .{', .'.join(FORMATS)}"
-        )
+    demand_format(file)
     if not file.parent.is_dir() and out is not None:
         raise ResultError(f"{file} cannot be written: there is no folder {file.parent}")
     return file.parent, {figure: file.name}

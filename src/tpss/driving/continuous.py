@@ -11,6 +11,7 @@ off by the square of that), that the train reaches its limit within the step, or
 it, the step becomes a passage, and is solved again.
 """
 
+from tpss.driving.coasting import has_coasting, may_coast
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.motion import force_to_target, move_uniformly, set_target
@@ -129,6 +130,8 @@ def look_ahead(
         train.demand.terms_speed_m_s = -1.0  # a passage leaves the terms of one of its phases
     decision.course = Course.PASSAGE
     if has_neutral(data) and may_lack_power(motion, kind, data):
+        return
+    if has_coasting(data) and may_coast(motion, kind, data):
         return
     if motion.phase == Phase.DWELLING and motion.wait_s > h:
         decision.course = Course.UNIFORM

@@ -109,6 +109,8 @@ class DrivingData(NamedTuple):
     """Speed limits, as trains of each length have to keep them. [m/s]"""
     neutral: Profiles
     """In neutral sections how long power stays off behind them, else `WITH_POWER`. [s]"""
+    coasting: Profiles
+    """Speed down to which trains coast; infinite: they do not. [m/s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]

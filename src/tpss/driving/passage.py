@@ -10,6 +10,7 @@ It ends
 
 Without voltage a train has no force and draws nothing.  It coasts and brakes, and once it stands it
 stays, also on a gradient.  So it does in neutral sections (`neutral`), where phases begin and end.
+Where its driver saves energy (`coasting`) it has no force either, but draws what its auxiliaries need.
 
 The voltage is tried several times a step.  Where neither forces nor powers follow it, as of a train
 that brakes, or of a machine that gives its force at any voltage, the first passage stays.
@@ -20,6 +21,7 @@ slopes over it are found by a second passage at a voltage close by; else those o
 
 import math
 
+from tpss.driving.coasting import coast, has_coasting, without_force
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.electric_brakes import brake_electrically, rails_pass_on
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
@@ -275,8 +277,15 @@ def _drive(
     aim = _aim(here, square, target_m, target_m_s, passage, kind, data)
     if has_neutral(data):
         aim = _with_power_unchanged(until_s, aim, motion, kind, data)
-    # 2. What the machine gives.
-    pull, end = _choose_pull(voltage_v, until_s, aim, passage, train, kind, data, points, scratch)
+    asked_v, coasts = voltage_v, False
+    if has_coasting(data):
+        aim, coasts = coast(aim, passage, train, kind, data, points, scratch)
+        if coasts:
+            asked_v = 0.0
+    # 2. What the machine gives, if it is asked.
+    pull, end = _choose_pull(asked_v, until_s, aim, passage, train, kind, data, points, scratch)
+    if coasts:
+        pull = without_force(pull)
     _add_phase(voltage_v, pull, passage, train, kind, points, scratch)
     if regenerates(kind) and pull.braking_n > 0.0 and voltage_v > 0.0:
         brake_electrically(pull, passage, kind, data, points)

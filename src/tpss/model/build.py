@@ -11,6 +11,7 @@ from tpss.kernel import switch
 from tpss.model.feed_back import demand_room_to_feed_back
 from tpss.model.gates import build_gates, no_gates
 from tpss.model.halts import build_halts
+from tpss.model.held_limits import without_coasting
 from tpss.model.legs import build_legs
 from tpss.model.neutral import build_neutral
 from tpss.model.outages import layout_of, service_of
@@ -64,6 +65,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         gradients=gradients,
         limits=limits,
         neutral=build_neutral(scenario, rows_seen(running)),
+        coasting=without_coasting(len(rows_seen(running))),
         stops=_stops(scenario, routes, si(scenario.simulation, "time_step_min")),
         types=types,
         points=points,

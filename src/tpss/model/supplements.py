@@ -6,7 +6,9 @@ and a time q for each length of way L,
 .. math:: T' = T (1 + p) + q L.
 
 Here the highest speed that is held between two stops is lowered, until a lone train at nominal voltage
-takes T'.  Each such row of limits has a type of train of its own.
+takes T'; or the train uses the time in another way, see `model.spare_time`.  Without a supplement T' is
+what its schedule leaves it, if its service asks for that.  Each such row of limits has a type of train
+of its own.
 """
 
 from collections.abc import Sequence
@@ -15,32 +17,44 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from tpss.driving.data import Profile, Profiles, Stop
-from tpss.model.profiles import filled
+from tpss.driving.data import Stop
+from tpss.model.held_limits import Held, with_types
+from tpss.model.spare_time import Leg, Manner, way_that_takes
 from tpss.run.lone import EmptyLine
 from tpss.run.services import Service
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import Traffic
 from tpss.step.model import Model
 from tpss.units import si
-from tpss.vehicle.train_type import TrainType
 
 CLOSE = 1e-4
 """A running time this close to the wanted one is taken, as a share of it."""
+
+NO_TIME = -1.0
+"""In place of a scheduled running time where there is none; equal to itself, as keys have to be. [s]"""
 
 NARROW_M_S = 1e-6
 """Speeds that are closer to each other are the same. [m/s]"""
 
 
-class Supplement(NamedTuple):
-    """What a service takes longer than it might."""
+class Wanted(NamedTuple):
+    """What a service asks of a stretch."""
 
     share: float
-    """Of the technical running time. [1]"""
+    """Supplement as a share of the technical running time. [1]"""
     s_per_m: float
-    """Time for each length of way. [s/m]"""
+    """Supplement for each length of way. [s/m]"""
+    scheduled_s: float
+    """Scheduled running time in place of both; `NO_TIME`: none. [s]"""
+    manner: Manner
+    """How its trains use the time."""
+
+    def time_s(self, technical_s: float, length_m: float) -> float:
+        """Time that the stretch is to take. [s]"""
+        if self.scheduled_s != NO_TIME:
+            return max(technical_s, self.scheduled_s)
+        return technical_s * (1.0 + self.share) + length_m * self.s_per_m
 
 
 class Stretch(NamedTuple):
@@ -49,45 +63,53 @@ class Stretch(NamedTuple):
     train_type: int
     from_m: float
     to_m: float
-    supplement: Supplement
-
-
-Held = tuple[float, float, float]
-"""Beginning and end of a stretch [m], and the highest speed that is held on it [m/s]."""
+    wanted: Wanted
 
 
 def with_supplements(
     scenario: Scenario, model: Model, services: Sequence[Service]
 ) -> tuple[Model, list[Service]]:
-    """A model whose trains take their supplements, and its services; as they are without any."""
-    speeds: dict[Stretch, float] = {}
+    """A model whose trains use their spare time, and its services; as they are without any."""
+    held: dict[Stretch, Held] = {}
     rows: dict[tuple[Stretch, ...], int] = {}
     changed = []
     for service, entry in zip(services, scenario.traffic, strict=True):
-        supplement = _supplement(entry)
-        if supplement is None:
+        if not entry.uses_spare_time:
             changed.append(service)
             continue
-        stands_m = (service.start_m, *service.stops_m)
-        stretches = tuple(
-            Stretch(service.train_type, *ends_m, supplement) for ends_m in pairwise(stands_m)
-        )
+        stretches = stretches_of(service, entry)
         for stretch in stretches:
-            if stretch not in speeds:
-                speeds[stretch] = held_speed(model, stretch, service.route)
+            if stretch not in held:
+                held[stretch] = held_on(model, stretch, service.route)
         number = rows.setdefault(stretches, len(rows))
         changed.append(replace(service, train_type=model.types.size + number))
-    profiles = [
-        (stretches[0].train_type, [(s.from_m, s.to_m, speeds[s]) for s in stretches])
-        for stretches in rows
-    ]
+    profiles = [(stretches[0].train_type, [held[s] for s in stretches]) for stretches in rows]
     return (with_types(model, profiles) if profiles else model), changed
 
 
-def _supplement(entry: Traffic) -> Supplement | None:
+def stretches_of(service: Service, entry: Traffic) -> tuple[Stretch, ...]:
+    """The way of a service from stop to stop, and what it asks of each part."""
+    share, s_per_m = si(entry, "supplement_percent"), si(entry, "supplement_min_per_100km")
+    manner = entry.spare_time or "held-speed"
+    times_s = [NO_TIME] * (len(entry.stops) + 1)
     if not entry.has_supplement:
-        return None
-    return Supplement(si(entry, "supplement_percent"), si(entry, "supplement_min_per_100km"))
+        times_s = [NO_TIME if m is None else 60.0 * m for m in entry.scheduled_running_min]
+    stands_m = (service.start_m, *service.stops_m)
+    return tuple(
+        Stretch(service.train_type, *ends_m, Wanted(share, s_per_m, time_s, manner))
+        for ends_m, time_s in zip(pairwise(stands_m), times_s, strict=True)
+    )
+
+
+def held_on(model: Model, stretch: Stretch, route: int) -> Held:
+    """Speed that a train holds on a stretch, and where it begins to coast."""
+    ends_m, wanted = (stretch.from_m, stretch.to_m), stretch.wanted
+    if wanted.manner == "held-speed":
+        return Held(*ends_m, held_speed(model, stretch, route), stretch.to_m)
+    leg = Leg(model, stretch.train_type, *ends_m)
+    wanted_s = wanted.time_s(leg.way().time_s, stretch.to_m - stretch.from_m)
+    way = way_that_takes(leg, wanted_s, wanted.manner)
+    return Held(*ends_m, way.speed_m_s, way.coasts_from_m)
 
 
 def held_speed(model: Model, stretch: Stretch, route: int) -> float:
@@ -99,9 +121,7 @@ def held_speed(model: Model, stretch: Stretch, route: int) -> float:
     length_m = stretch.to_m - stretch.from_m
     fastest = min(float(model.limits.value[kind.profile].max()), float(kind.highest_speed_m_s))
     technical_s = running_time(model, stretch, route, np.inf)
-    wanted_s = (
-        technical_s * (1.0 + stretch.supplement.share) + length_m * stretch.supplement.s_per_m
-    )
+    wanted_s = stretch.wanted.time_s(technical_s, length_m)
     if not wanted_s > technical_s:
         return np.inf
     low, high = length_m / wanted_s, fastest
@@ -116,7 +136,8 @@ def held_speed(model: Model, stretch: Stretch, route: int) -> float:
 
 def running_time(model: Model, stretch: Stretch, route: int, speed_m_s: float) -> float:
     """Time of a lone train at nominal voltage that holds no more than a speed; NaN: no end. [s]"""
-    trial = with_types(model, [(stretch.train_type, [(stretch.from_m, stretch.to_m, speed_m_s)])])
+    held = Held(stretch.from_m, stretch.to_m, speed_m_s, stretch.to_m)
+    trial = with_types(model, [(stretch.train_type, [held])])
     stops: Any = Stop.blank(1, 1)
     stops[0, 0] = (stretch.to_m, 0, 0.0, 0.0, True)
     trial = trial._replace(stops=stops, legs=trial.legs[route : route + 1])
@@ -132,46 +153,3 @@ def running_time(model: Model, stretch: Stretch, route: int, speed_m_s: float) -
     lone = line.train_of(alone)
     line.advance_to_end(lone)
     return line.arrival_s(lone)
-
-
-def with_types(model: Model, rows: Sequence[tuple[int, Sequence[Held]]]) -> Model:
-    """A model with more types of trains: each like one of its own, with other limits."""
-    before, like = model.types.size, [number for number, _ in rows]
-    types: Any = TrainType.blank(before + len(rows))
-    types[:before], types[before:] = model.types, model.types[np.array(like)]
-    types["profile"][before:] = len(model.limits.value) + np.arange(len(rows))
-    own = model.types["profile"][like]
-    seen = [
-        capped(Profile(*(values[row] for values in model.limits)), held)
-        for row, (_, held) in zip(own, rows, strict=True)
-    ]
-    limits = [*(Profile(*row) for row in zip(*model.limits, strict=True)), *seen]
-    most = max(each.from_m.size for each in limits)
-    return model._replace(
-        types=types,
-        gradients=_repeated(model.gradients, own),
-        neutral=_repeated(model.neutral, own),
-        limits=Profiles(
-            from_m=np.array([filled(each.from_m, most, np.inf) for each in limits]),
-            value=np.array([filled(each.value, most, each.value[-1]) for each in limits]),
-        ),
-    )
-
-
-def _repeated(profiles: Profiles, rows: npt.NDArray[np.int64]) -> Profiles:
-    """Profiles with some of their rows once more."""
-    return Profiles(*(np.concatenate([each, each[rows]]) for each in profiles))
-
-
-def capped(limits: Profile, held: Sequence[Held]) -> Profile:
-    """Limits that are no higher than a speed on each stretch. [m/s]"""
-    known = np.isfinite(limits.from_m)
-    ends_m = [end_m for stretch in held for end_m in stretch[:2]]
-    from_m = np.unique(np.append(limits.from_m[known], ends_m))
-    stair = np.searchsorted(limits.from_m[known], from_m, side="right") - 1
-    value = limits.value[np.maximum(stair, 0)]
-    for begin_m, end_m, speed_m_s in held:
-        there = (from_m >= begin_m) & (from_m < end_m)
-        value[there] = np.minimum(value[there], speed_m_s)
-    changes = np.append(True, np.diff(value) != 0.0)
-    return Profile(from_m[changes], value[changes])

@@ -48,6 +48,8 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
                 ),
                 already_running=entry.already_running,
                 delays=_delays(entry),
+                origin=entry.origin,
+                starts_apart_s=scenario.signalling.starts_apart_s,
                 **_departures(entry),
             )
         )

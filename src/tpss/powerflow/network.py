@@ -4,6 +4,7 @@ Constant parts stand in a `Network`, what a solution finds in a `Flow`.  Records
 one node or section together; to compiled code an array of them is one argument.
 """
 
+import math
 from collections.abc import Sequence
 from enum import IntEnum
 from functools import lru_cache
@@ -292,7 +293,8 @@ def loads_alone(trains: Records[Train], types: Records[TrainType]) -> Loads:
         slope_change=SLOPE_CHANGE,
     )
     profiles, neutral = Profiles(nowhere, value), Profiles(nowhere, np.array([[WITH_POWER]]))
-    driving = DrivingData(options, profiles, profiles, neutral, Stop.blank(1, 1), types)
+    coasting = Profiles(nowhere, np.array([[math.inf]]))
+    driving = DrivingData(options, profiles, profiles, neutral, coasting, Stop.blank(1, 1), types)
     return Loads(trains, types, np.zeros(SCRATCH_SHAPE), driving, CurvePoint.blank(1))
 
 

@@ -32,6 +32,10 @@ class Service:
     is_one_train: bool = False
     """Whether it is a single train, which has its name."""
     delays: Delays | None = None
+    origin: str = ""
+    """Station where its trains begin."""
+    starts_apart_s: float = 0.0
+    """Least time between two trains that begin there. [s]"""
     already_running: bool = False
     initial: tuple[tuple[float, float], ...] = ()
     """Position [m] and speed [m/s] of each train on the line at the start."""
@@ -111,26 +115,43 @@ def departing_trains(
 ) -> list[ScheduledTrain]:
     """Trains that depart in steps `first` to `last` - 1, by time and, at the same time, by service."""
     trains = []
-    for service in services:
-        for number, time_s in enumerate(service.departure_times_s(last * options.step_s), 1):
-            delay_s = service.delay_s(number)
-            step, wait_s = departure(time_s + delay_s, options)
-            if first <= step < last:
-                if service.departs_by_schedule and options.motion == MotionModel.STEPPED:
-                    delay_s = step * options.step_s - time_s
-                trains.append(
-                    ScheduledTrain(
-                        name=service.name_of(number),
-                        service=service.name,
-                        train_type=service.train_type,
-                        route=service.route,
-                        departure_step=step,
-                        departure_wait_s=wait_s,
-                        delay_s=delay_s,
-                        position_m=service.start_m,
-                    )
+    for service, number, time_s, delay_s in _departures(services, last * options.step_s):
+        step, wait_s = departure(time_s + delay_s, options)
+        if first <= step < last:
+            if service.departs_by_schedule and options.motion == MotionModel.STEPPED:
+                delay_s = step * options.step_s - time_s
+            trains.append(
+                ScheduledTrain(
+                    name=service.name_of(number),
+                    service=service.name,
+                    train_type=service.train_type,
+                    route=service.route,
+                    departure_step=step,
+                    departure_wait_s=wait_s,
+                    delay_s=delay_s if service.departs_by_schedule else 0.0,
+                    position_m=service.start_m,
                 )
+            )
     return sorted(trains, key=lambda train: (train.departure_step, train.departure_wait_s))
+
+
+def _departures(
+    services: list[Service], until_s: float
+) -> Iterator[tuple[Service, int, float, float]]:
+    """Departures scheduled before a time: service, number of the train, time and delay. [s]"""
+    every = [
+        (service, number, time_s, service.delay_s(number))
+        for service in services
+        for number, time_s in enumerate(service.departure_times_s(until_s), 1)
+    ]
+    if not any(service.starts_apart_s for service in services):
+        yield from every
+        return
+    free_s: dict[str, float] = {}
+    for service, number, time_s, delay_s in sorted(every, key=lambda each: each[2] + each[3]):
+        starts_s = max(time_s + delay_s, free_s.get(service.origin, -math.inf))
+        free_s[service.origin] = starts_s + service.starts_apart_s
+        yield service, number, time_s, starts_s - time_s
 
 
 def placed_trains(service: Service) -> list[ScheduledTrain]:

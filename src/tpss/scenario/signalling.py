@@ -34,6 +34,13 @@ class Signalling(Part):
         le=10_000,
         description="Distance that is kept from the train or block ahead.",
     )
+    starts_apart_s: Real = Field(
+        default=0.0,
+        ge=0,
+        le=3_600,
+        description="Least time between two trains that begin at the same station: those that would "
+        "begin sooner wait, so that their starts do not add up in the supply.",
+    )
     block_m: Real | None = Field(
         default=None,
         ge=50,

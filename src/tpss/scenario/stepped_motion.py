@@ -55,6 +55,16 @@ def _neutral_sections(document: Mapping[str, Any]) -> Iterator[Asked]:
         yield "supply.neutral_sections", "", problem, ""
 
 
+def _coasting(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Trains that coast: it knows no driving without force for a part of a step."""
+    for key in ("traffic", "timetables"):
+        entries = document.get(key)
+        for number, entry in enumerate(entries if isinstance(entries, list) else ()):
+            wanted = entry.get("spare_time") if isinstance(entry, Mapping) else None
+            if wanted in ("coasting", "least-energy"):
+                yield f"{key}.{number}.spare_time", repr(wanted), "does not go with {}", ""
+
+
 def _trains(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for name, train in table(document, "trains").items():
         if isinstance(train, Mapping):
@@ -66,5 +76,6 @@ UNKNOWN: tuple[Callable[[Mapping[str, Any]], Iterator[Asked]], ...] = (
     _separation,
     _neutral_sections,
     _electric_brakes,
+    _coasting,
 )
 """What is looked for, in the order of the findings."""

@@ -17,7 +17,7 @@ from tpss.errors import Finding
 from tpss.scenario.clock import minute_of
 from tpss.scenario.fields import Name, Part, Real
 from tpss.scenario.timetable_rows import DURATIONS, KIND_OF_PLACE, Row, read_rows
-from tpss.scenario.traffic import Delays, Supplement
+from tpss.scenario.traffic import Delays, SpareTime, Supplement, spare_time
 
 Location = tuple[int | str, ...]
 
@@ -47,6 +47,7 @@ class Timetable(Part):
         default=0.0, description="As of a service in the traffic, of all its trains."
     )
     supplement_min_per_100km: Supplement = Field(default=0.0, description="Likewise.")
+    spare_time: SpareTime | None = spare_time()
     density: Real = Field(
         default=1.0,
         ge=0.01,
@@ -56,7 +57,7 @@ class Timetable(Part):
     )
 
 
-OF_ALL_TRAINS = ("delays", "supplement_percent", "supplement_min_per_100km")
+OF_ALL_TRAINS = ("delays", "supplement_percent", "supplement_min_per_100km", "spare_time")
 """Keys that a timetable gives for each of its trains."""
 
 

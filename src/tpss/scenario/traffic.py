@@ -1,7 +1,7 @@
 """The traffic: which trains run from where to where, and when."""
 
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -30,6 +30,21 @@ Times = Annotated[
 
 Supplement = Annotated[Real, Field(ge=0, le=200)]
 """A supplement to running times."""
+
+SpareTime = Literal["held-speed", "coasting", "least-energy"]
+"""How trains use the time that they have to spare."""
+
+
+def spare_time() -> Any:
+    """The field of a service, or of a timetable."""
+    return Field(
+        default=None,
+        description="How trains use the time between two stops that their supplement leaves them, or "
+        "without one their scheduled times: by a lower `held-speed`, by `coasting` before the stop, or "
+        "by both, with the `least-energy`. Leave it out: supplements by a held speed, and scheduled "
+        "times by waiting at the stops.",
+    )
+
 
 DEPARTURES = ("headway_min", "departures_min", "departure_min")
 """Keys that say when trains depart, of which a service has one."""
@@ -179,6 +194,7 @@ class Traffic(Part):
     supplement_min_per_100km: Supplement = Field(
         default=0.0, description="Supplement for each 100 km, alone or in addition."
     )
+    spare_time: SpareTime | None = spare_time()
     initial_trains: tuple[InitialTrain, ...] = Field(
         default=(), description="Trains on the line at the start."
     )
@@ -212,6 +228,26 @@ class Traffic(Part):
     def has_supplement(self) -> bool:
         """Whether its trains take longer than they might."""
         return self.supplement_percent > 0.0 or self.supplement_min_per_100km > 0.0
+
+    @property
+    def uses_spare_time(self) -> bool:
+        """Whether its trains take longer than they might, from stop to stop."""
+        return self.has_supplement or self.spare_time is not None
+
+    @property
+    def scheduled_running_min(self) -> tuple[float | None, ...]:
+        """Scheduled time from each stop to the next one; None where it is not known. [min]"""
+        arrivals = [*(stop.arrive_after_min for stop in self.stops), self.arrive_after_min]
+        departures: list[float | None] = [0.0]
+        for stop in self.stops:
+            departure, arrival = stop.depart_after_min, stop.arrive_after_min
+            if departure is None and arrival is not None:
+                departure = arrival + max(stop.dwell_min, stop.turn_min or 0.0)
+            departures.append(departure)
+        return tuple(
+            None if begin is None or end is None else end - begin
+            for begin, end in zip(departures, arrivals, strict=True)
+        )
 
     @property
     def is_scheduled(self) -> bool:
@@ -249,10 +285,16 @@ class Traffic(Part):
                 "already_running needs headway_min, and replaces initial_trains",
                 "leave already_running out, or use it with headway_min alone",
             )
-        if self.has_supplement and self.initial_trains:
+        if self.uses_spare_time and self.initial_trains:
             raise fault(
                 "initial_trains may be faster than trains that take a supplement hold",
-                "leave initial_trains out, or the supplement",
+                "leave initial_trains out, or the supplement and spare_time",
+            )
+        known = self.has_supplement or any(m is not None for m in self.scheduled_running_min)
+        if self.spare_time is not None and not known:
+            raise fault(
+                "spare_time, but no time to spare is known",
+                "give a supplement, or scheduled times of departure and arrival",
             )
         if self.headway_min is None and self.first_departure_min:
             raise fault(

@@ -34,6 +34,8 @@ class Model(NamedTuple):
     """Speed limits, as trains of each length have to keep them. [m/s]"""
     neutral: Profiles
     """In neutral sections how long power stays off behind them; see `driving.neutral`. [s]"""
+    coasting: Profiles
+    """Speed down to which trains coast; infinite: they do not.  See `driving.coasting`. [m/s]"""
     stops: Records[Stop]
     """Shape (routes, most stops)."""
     types: Records[TrainType]
@@ -68,6 +70,7 @@ def with_step(model: Model, step_s: float) -> Model:
         model.gradients,
         model.limits,
         model.neutral,
+        model.coasting,
         model.stops,
         model.types,
         model.points,
@@ -83,5 +86,11 @@ def with_step(model: Model, step_s: float) -> Model:
 def driving_data(model: Model) -> DrivingData:
     """The part of a model that drivers know."""
     return DrivingData(
-        model.options, model.gradients, model.limits, model.neutral, model.stops, model.types
+        model.options,
+        model.gradients,
+        model.limits,
+        model.neutral,
+        model.coasting,
+        model.stops,
+        model.types,
     )

@@ -1,0 +1,96 @@
+"""The command ``tpss spare-time``: energy that trains save against the minutes that they use."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tpss.cli.plot import demand_format, figure_bytes
+from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.errors import ResultError
+from tpss.files import whole
+from tpss.files.refusals import explained, refuse_to_replace
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PROGRESS = "{task.completed}/{task.total} services"
+
+
+def print_savings(
+    file: Path,
+    percents: Sequence[float],
+    assignments: Sequence[str],
+    out: Path | None,
+    plot: Path | None,
+    force: bool,
+) -> None:
+    """Print, and write if asked, what the trains of a scenario save with time to spare.
+
+    Raises
+    ------
+    ScenarioError
+        The scenario has faults.
+    ResultError
+        No train reaches its destination, or a file cannot be written.
+    """
+    from tpss.savings.table import PERCENTS, spare_time_savings
+    from tpss.scenario import load_scenario
+    from tpss.scenario.override import parse_assignment
+
+    scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
+    for target in (out, plot):
+        if target is not None:
+            refuse_to_replace(target, force, "a file", Path.is_file)
+    if plot is not None:
+        demand_format(plot)
+    console = Console(stderr=True)
+    announce_compilation(console)
+    with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
+        table = spare_time_savings(scenario, percents or PERCENTS, progress)
+    if table.empty:
+        raise ResultError(
+            f"{file}: no train reaches its destination at nominal voltage; see the notes of tpss check"
+        )
+    _print(table, Console())
+    if out is not None:
+        _write(out, table.to_csv(index=False).encode())
+    if plot is not None:
+        _write(plot, _drawn(table, plot))
+
+
+def _progress(done: int, services: int) -> dict[str, Any]:
+    return {"completed": done, "total": services}
+
+
+def _print(table: "pd.DataFrame", console: Console) -> None:
+    manners = list(dict.fromkeys(table.manner))
+    for service, rows in table.groupby("service", sort=False):
+        alike = int(rows.alike.iloc[0])
+        more = f" and {alike - 1} more" if alike > 1 else ""
+        title = escape(f"{service}{more} ({rows.train.iloc[0]})")
+        named = Table(title=title, title_justify="left", box=None, pad_edge=False)
+        for heading in ("to spare\n%", "used\nmin", *(f"{manner}\n%" for manner in manners)):
+            named.add_column(heading, justify="right")
+        for percent, own in rows.groupby("spare_percent", sort=False):
+            saved = [f"{-each:+.1f}" for each in own.saved_percent]
+            named.add_row(f"{percent:g}", f"{own.spare_min.max():.1f}", *saved)
+        console.print(named)
+    say(console, "Energy of a lone train at nominal voltage, against one as fast as it can be.")
+
+
+def _drawn(table: "pd.DataFrame", file: Path) -> bytes:
+    from tpss.report.render.static import render
+    from tpss.savings.drawing import savings_drawing
+
+    return figure_bytes(render(savings_drawing(table)), file.suffix.removeprefix("."))
+
+
+def _write(file: Path, content: bytes) -> None:
+    with explained(file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        whole.write_file(file, content)
+    print(f"Wrote {file}")
