@@ -230,6 +230,18 @@ def test_what_is_not_there_yet_begins_when_it_comes():
     np.testing.assert_allclose(state[10:], 1.0 - 0.75 * np.exp(-np.arange(31) / 30.0), rtol=1e-12)
 
 
+def test_what_begins_hottest_is_hottest_when_it_comes():
+    """A load of 90 % before, 50 % from the tenth minute on: 81 % then, and not before."""
+    found = judged(rated(preload_percent=90.0), [math.nan] * 10 + [0.5] * 30)
+    assert (found.highest_state_percent, found.state_at_min) == (pytest.approx(81.0), 10.0)
+
+
+def test_what_has_left_is_no_longer_judged():
+    state = thermal(rated(), [1.0] * 10 + [math.nan] * 10).states.state[:, 0]
+    assert np.isfinite(state[:11]).all()
+    assert np.isnan(state[11:]).all()
+
+
 def test_the_mean_of_what_comes_later_is_that_of_its_own_time():
     found = judged(rated(), [math.nan] * 30 + [0.6] * 30)
     assert found.start_load_percent == pytest.approx(60.0)

@@ -94,7 +94,7 @@ def rated_elements(dataset: xr.Dataset, scenario: Scenario) -> list[Loaded]:
     """Everything in a run that has a rating, with its load in each step."""
     laid = layout_of(scenario, scenario.outage)
     where = _Feeding.of(laid.supply, layouts_of(scenario.lines_by_name))
-    current_a = step_values(dataset, "branch_current")
+    current_a = np.nan_to_num(step_values(dataset, "branch_current"))
     return [
         *_stations(dataset, scenario, where),
         *_transformers(current_a, laid.plan, where),
@@ -223,7 +223,7 @@ def _motors(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Loaded]:
     names = zip(dataset.train.to_numpy(), dataset.service.to_numpy(), strict=True)
     for i, (name, service) in enumerate(names):
         train = trains[str(service)]
-        if train.motor_rating is None:
+        if train.motor_rating is None or not np.isfinite(current_a[:, i]).any():
             continue
         motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
         body = body_of(train.motor_rating)

@@ -38,7 +38,7 @@ class States(NamedTuple):
 
 
 def states_of(bodies: Sequence[Body], load: Floats, instants_s: Floats) -> States:
-    """States of bodies under loads, shape (steps, bodies); NaN: it is not there, or no longer."""
+    """States of bodies under loads, shape (steps, bodies); NaN: it is not there, but once it is."""
     lasts_s = np.diff(instants_s)
     there = np.isfinite(load)
     square = np.nan_to_num(load) ** 2
@@ -51,10 +51,13 @@ def states_of(bodies: Sequence[Body], load: Floats, instants_s: Floats) -> State
     for each_s in np.unique(tau_s):
         own = tau_s == each_s
         state[:, own] = follow(load[:, own] ** 2, lasts_s, float(each_s), start[own] ** 2)
-    hottest = state.argmax(axis=0)
+    seen = np.zeros(state.shape, dtype=bool)
+    seen[:-1] |= there
+    seen[1:] |= there
+    state[~seen] = np.nan
+    hottest = np.nanargmax(state, axis=0)
     highest = state[hottest, np.arange(len(bodies))]
     found = States(start, state, highest, instants_s[hottest], np.full(len(bodies), np.nan))
-    state[:-1][~there] = np.nan
     for cooling in dict.fromkeys(body.cooling for body in bodies if body.cooling is not None):
         own = np.array([body.cooling == cooling for body in bodies])
         ambient_c = np.array([body.ambient_c for body in bodies])[own]
