@@ -20,7 +20,8 @@ def test_all_figures_go_into_a_folder_of_the_result(tpss_command, demo):
     assert (said.code, said.err) == (0, "")
     assert said.out.startswith("Wrote into demo/figures: network.png, time-distance.png, journey")
     written = {file.name for file in (demo / "figures").iterdir()}
-    assert written == {f"{name}.png" for name in FIGURES} - {"converter-losses.png"}
+    assert written == {f"{name}.png" for name in FIGURES} - {"converter-losses.png", "thermal.png"}
+    assert "Left out thermal: no equipment has a rating" in said.out
 
 
 def test_losses_of_converters_are_drawn_where_they_are_described(tpss_command, short_file):
