@@ -68,6 +68,8 @@ class Outcome:
     """Times of the instants, one more than steps. [s]"""
     recording: Recording
     state: State
+    trips: tuple[Trip, ...] = ()
+    """Stations that tripped, in the order of time."""
 
 
 Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
@@ -305,4 +307,5 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         instants_s=run.instants_s,
         recording=recording,
         state=run.state,
+        trips=run.trips,
     )
