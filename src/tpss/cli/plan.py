@@ -20,6 +20,7 @@ from tpss.errors import AuditError, NoPlanError
 if TYPE_CHECKING:
     from tpss.planning.cases import CaseList
     from tpss.planning.load import Plan
+    from tpss.planning.prove import Round
     from tpss.sweep.progress import Advance
 
 GAP_LEFT = 5
@@ -124,14 +125,18 @@ def run_plan(
     scheduler: str | None,
     gap: float,
     time_limit_s: float | None,
+    simulate_all: bool,
     quiet: bool,
 ) -> int:
     """Simulate the cases of a plan, solve it and write the answer; return the exit code."""
     demand_packages()
     from tpss.planning.load import load_plan
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.run import run_plan as run
 
     plan = load_plan(file)
+    if simulate_all:
+        plan = plan.with_({"evaluate.by": SIMULATION})
     console = Console(stderr=True, quiet=quiet)
     announce_compilation(console)
     try:
@@ -139,6 +144,7 @@ def run_plan(
             answered = run(
                 plan, out, threads=workers, scheduler=scheduler, gap=gap,
                 time_limit_s=time_limit_s, report=report,
+                tell=lambda each: say(console, _round_in_words(each)),
             )  # fmt: skip
     except KeyboardInterrupt:
         print(
@@ -159,6 +165,16 @@ def exit_code_of(error: AuditError | NoPlanError) -> int:
     if isinstance(error, AuditError):
         return AUDIT_FAILED
     return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
+
+
+def _round_in_words(each: "Round") -> str:
+    """How far a proof by bounds has come."""
+    from tpss.planning.sentence import money
+
+    best = f"the best so far {money(each.upper)}" if math.isfinite(each.upper) else "none known yet"
+    return (
+        f"{each.simulated:,} cases simulated: no plan costs less than {money(each.lower)}, {best}"
+    )
 
 
 def _progress(state: "Advance") -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from tpss.planning.lazily import ALL
 from tpss.planning.solve import Model
 from tpss.scenario.scenario import Scenario
 
@@ -38,3 +39,13 @@ def _converter_losses(scenarios: Sequence[Scenario]) -> Iterator[str]:
         )
     if any(losses.origin == "estimate" for losses in known):
         yield "Losses of converters are by estimate."
+
+
+def unknown(model: Model) -> Iterator[str]:
+    """What a plan that is proved by bounds leaves open, and what would tell it."""
+    if model.has_bounds:
+        yield (
+            "What costs at least so much was not simulated as a whole, and may cost more. Where the "
+            "first decision turns is not known, nor regrets and further plans that take more cases: "
+            f"{ALL} simulates them all."
+        )
