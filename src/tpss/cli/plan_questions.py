@@ -30,6 +30,10 @@ def price_plan(
 
     try:
         model = read_model(folder, dict(parse_assignment(text) for text in assignments))
+        if sweeps and model.has_bounds:
+            raise PlanError(
+                f"where the first decision turns is told if all cases were simulated: {ALL}"
+            )
         answer = answer_of(model, Effort(gap, time_limit_s or math.inf))
     except (AuditError, NoPlanError) as error:
         print(str(error), file=sys.stderr)
@@ -43,8 +47,6 @@ def price_plan(
     for line in unknown(model):
         say(console, line)
     ranges = [_range_of(text) for text in sweeps]
-    if ranges and model.has_bounds:
-        raise PlanError(f"where the first decision turns is known of all cases only: {ALL}")
     known = {each.key: each for each in varied(model)} if ranges else {}
     turns = []
     for key, low, high in ranges:

@@ -220,8 +220,9 @@ def refuse_bounds(model: Model, policy: Indices, what: str) -> None:
         area, g, c = sorted(units)[0]
         first = f"{model.areas[area].configurations[c].name} with {model.served[area].traffic[g]}"
         raise PlanError(
-            f"{what} uses {len(units):,} configurations with a traffic that were not simulated, such as "
-            f"{first}; change the plan file and run it again, which adds them, or simulate all: {ALL}"
+            f"{what} may be another one: it takes cases that were not simulated ({len(units):,}, such "
+            f"as {first}); write what has changed into the plan file and run it again, which adds "
+            f"them, or simulate all: {ALL}"
         )
 
 
