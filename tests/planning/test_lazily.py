@@ -57,6 +57,43 @@ VARIED = {
 }  # fmt: skip
 
 
+def two_lines():
+    """The four stations on each of two lines, of which one has less traffic, with a budget for both."""
+    measures = {
+        f"measures/{area}.S{n}": {**station(n), "cost": cost + 10.0 * n}
+        for n in range(4)
+        for area, cost in (("north", 150.0), ("south", 190.0))
+    }
+    futures = {
+        f"scenarios/{name}": {
+            "probability": share,
+            f"north.{HEADWAY}": [20.0, north],
+            f"south.{HEADWAY}": [20.0, south],
+        }
+        for name, share, north, south in (("low", 0.6, 20.0, 10.0), ("high", 0.4, 7.5, 10.0))
+    }
+    lines = {name: {"scenario": "line.toml"} for name in ("north", "south")}
+    without = dict.fromkeys(("scenario", *(key for key in FOUR if key.startswith("measures"))))
+    return {
+        **without,
+        **measures,
+        **futures,
+        "areas": lines,
+        "budget": {"per_stage": [400.0, 500.0]},
+    }
+
+
+def levels():
+    """Two stations of one to three converters each, beside the two others."""
+    found = {}
+    for n in range(2):
+        measure = station(n)
+        measure["add"]["supply.converter_stations"]["converters"] = "{level}"
+        costs = [150.0, 190.0, 210.0 + n]
+        found[f"measures/S{n}"] = {**measure, "levels": [1, 2, 3], "cost": costs}
+    return found
+
+
 class Handed:
     """Outcomes that are handed out when they are asked for."""
 
@@ -86,9 +123,10 @@ def whole(folder, changes, table=None):
     return answer_of(model_of(listed, outcomes(listed) if table is None else table))
 
 
-@pytest.mark.parametrize("name", VARIED)
+@pytest.mark.parametrize("name", [*VARIED, "two lines", "levels"])
 def test_the_plan_is_that_of_all_cases_from_fewer_of_them(name, tmp_path):
-    changes = {**FOUR, **VARIED[name]}
+    built = {"two lines": two_lines, "levels": levels}
+    changes = {**FOUR, **(VARIED[name] if name in VARIED else built[name]())}
     every, answer = whole(tmp_path, changes), bounded(tmp_path, changes)[0]
     assert answer.best.cost == every.best.cost
     assert np.array_equal(answer.best.policy, every.best.policy)

@@ -95,6 +95,7 @@ def _without_source(plan: "Plan") -> list[str]:
 def _print_time(case_list: "CaseList", console: Console) -> None:
     """How many cases there are, and how long they take, from a few of them."""
     from tpss.planning.cases import distinct
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.rows import row_of
 
     cases = distinct(case_list.cases)
@@ -110,11 +111,12 @@ def _print_time(case_list: "CaseList", console: Console) -> None:
             break
     case_s = (time.perf_counter() - started) / done
     cores = os.cpu_count() or 1
+    most = "" if evaluation.by == SIMULATION else "At most "
     whole_s = math.ceil(len(cases) * case_s / cores)
     say(
         console,
-        f"{len(cases):,} cases, {1e3 * case_s:.0f} ms each, about {whole_s:,} s on {cores} core(s).  "
-        "Nothing was written.",
+        f"{most}{len(cases):,} cases, {1e3 * case_s:.0f} ms each, about {whole_s:,} s on "
+        f"{cores} core(s).  Nothing was written.",
     )
 
 
