@@ -5,7 +5,7 @@ import os
 import random
 import sys
 import time
-from collections.abc import Sized
+from collections.abc import Callable, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -146,7 +146,7 @@ def run_plan(
             answered = run(
                 plan, out, threads=workers, scheduler=scheduler, gap=gap,
                 time_limit_s=time_limit_s, report=report,
-                tell=lambda each: say(console, _round_in_words(each)),
+                tell=_rounds(console),
             )  # fmt: skip
     except KeyboardInterrupt:
         print(
@@ -167,6 +167,19 @@ def exit_code_of(error: AuditError | NoPlanError) -> int:
     if isinstance(error, AuditError):
         return AUDIT_FAILED
     return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
+
+
+def _rounds(console: Console) -> Callable[["Round"], None]:
+    """Prints rounds of a proof by bounds in which a better plan was found, and those that close it."""
+    best = math.nan
+
+    def tell(each: "Round") -> None:
+        nonlocal best
+        if each.upper != best or each.lower >= each.upper:
+            say(console, _round_in_words(each))
+        best = each.upper
+
+    return tell
 
 
 def _round_in_words(each: "Round") -> str:

@@ -10,7 +10,6 @@ that was simulated (`tpss.planning.lazily`).
 import numpy as np
 
 from tpss.planning.cases import AreaCases
-from tpss.planning.configurations import Configuration
 from tpss.planning.money import Array
 from tpss.planning.tree import Indices
 
@@ -18,15 +17,12 @@ from tpss.planning.tree import Indices
 def strongest(area: AreaCases) -> Indices:
     """Configurations of an area to which nothing can be added: no other has all that they have."""
     levels = np.array([each.levels for each in area.configurations])
-    return np.array(
-        [c for c, each in enumerate(area.configurations) if _is_maximal(each, levels)],
-        dtype=np.int64,
-    )
-
-
-def _is_maximal(configuration: Configuration, levels: Array) -> bool:
-    own = np.asarray(configuration.levels)
-    return int((levels >= own).all(axis=1).sum()) == 1
+    found: list[int] = []
+    for c in np.argsort(-levels.sum(axis=1), kind="stable").tolist():
+        # What has more comes before, and lies below one of those found, or is one.
+        if not (levels[found] >= levels[c]).all(axis=1).any():
+            found.append(c)
+    return np.array(sorted(found), dtype=np.int64)
 
 
 def bound_of(operation: Array, margin: float, drawn: int, given_back: int | None) -> Array:
