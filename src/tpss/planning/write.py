@@ -20,7 +20,7 @@ from tpss.planning.load import plan_of
 from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
 from tpss.planning.turning import Turn
-from tpss.planning.uncounted import uncounted
+from tpss.planning.uncounted import estimated, uncounted
 from tpss.sweep.folder import REMEDY
 from tpss.sweep.versions import versions
 
@@ -65,6 +65,7 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         "name": model.plan.file.name,
         "answer": sentences(answer, turns),
         "claim": answer.claim,
+        "by_estimate": list(estimated(model)),
         "not_counted": list(uncounted(model)),
         "currency": economics.currency,
         "price_year": economics.price_year,

@@ -16,6 +16,7 @@ from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import ALONG, along, gradients_along, is_corridor
+from tpss.report.drawings.braking import braking
 from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
@@ -28,7 +29,7 @@ from tpss.report.measured import MeasuredPart, measured_part
 from tpss.report.moving import network_moving
 from tpss.report.page import fill
 from tpss.report.render.interactive import render
-from tpss.report.trains import chosen_train, seen_trains
+from tpss.report.trains import NothingToDrawError, chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import is_report
 from tpss.results.notes import notes
@@ -132,6 +133,7 @@ def report(
         ),
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_converter_losses(result),
+        *tables.of_regeneration(result),
         *tables.of_standards(result),
     ]
     return _page(
@@ -198,7 +200,17 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     over_time = dict(OVER_TIME)
     if any(len(result.converter_losses) for result in runs.values()):
         over_time["converter-losses"] = (converter_losses, 440)
-    return {key: render(describe(runs), height) for key, (describe, height) in over_time.items()}
+    drawn = {key: render(describe(runs), height) for key, (describe, height) in over_time.items()}
+    return {**drawn, **_braked(runs)}
+
+
+def _braked(runs: Mapping[str, Result]) -> dict[str, Figure]:
+    """Where braked energy goes, as high as its bars; nothing without electric brakes."""
+    try:
+        drawing = braking(runs)
+    except NothingToDrawError:
+        return {}
+    return {"braking": render(drawing, 170 + 44 * len(drawing.panels[0].rows))}
 
 
 def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) -> dict[str, Any]:

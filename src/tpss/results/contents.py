@@ -43,7 +43,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "energy",
+    "stations", "converters", "converter-losses", "braking", "energy",
     "effort",
 )  # fmt: skip
 
