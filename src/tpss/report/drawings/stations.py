@@ -16,8 +16,8 @@ VISIBLE_MW = 0.01
 def station_powers(runs: Mapping[str, Result]) -> Drawing:
     """Active and reactive power that each feeding station feeds into the railway, over time.
 
-    A colour is a station, a line style for each run.  Where a station takes power back, a line at 0 parts
-    what it feeds, above, from that, below.
+    A colour is a station, a line style for each run.  Where a station takes power back, a line marks 0:
+    what is below it goes to the station.
 
     Parameters
     ----------
