@@ -22,7 +22,7 @@ LOSING = {"supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)"}
 def telling(rows: int = 600) -> pd.DataFrame:
     """Made-up lines on which a converter loses 0.2 MWh and 4 % of what it feeds.
 
-    Trains feed back 3 % of what they draw for each per mille of the gradients' deviation, and 1 % of all:
+    Trains feed back 1 % of what they draw, and 3 % more for each per mille of the gradients' deviation:
     half of it reaches the grid.
     """
     table = made_up_table(rows)

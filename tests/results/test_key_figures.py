@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 import tpss
 from tpss.many import key_figures
 from tpss.results.key_figures import KeyFigures
+from tpss.results.regeneration import fed_back
 
 from conftest import EXAMPLE_SCENARIOS, SHARED
 from properties.judge import is_long
@@ -62,6 +63,8 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
     assert close(found.losses_mwh, summary["losses_mwh"])
     converters = summary.get("converter_losses")
     assert close(found.converter_losses_mwh, converters and converters["losses_mwh"])
+    braking = fed_back(result.dataset, result.scenario) or {}
+    assert found.braking == pytest.approx(braking, rel=1e-9)
     lowest = found.lowest_voltage
     assert (lowest and lowest.as_dict()) == summary["lowest_voltage"]
     useful = summary["standards"]["mean_useful_voltage"]

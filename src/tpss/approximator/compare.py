@@ -73,8 +73,8 @@ def cases_inside(model: Approximator, table: pd.DataFrame) -> tuple[Cases, int]:
     absent = [name for name in names if name not in table or finished[name].isna().any()]
     if absent:
         raise ApproximatorError(
-            f"the table has no column {', '.join(absent)}, or not in all cases: its lines differ in kind "
-            "from those that the approximator was trained on"
+            f"the table has no column {', '.join(absent)}, or not in all cases: its lines differ in "
+            "kind from those that the approximator was trained on"
         )
     given = given_by(model, table)
     inside = np.array(
