@@ -91,6 +91,34 @@ STATIONS = {
     "peak_loading": "highest of these loadings",
     "mean_converters": "mean number of units running",
 }
+THERMAL = {
+    "element": "name",
+    "kind": "`contact line`, `converter`, `transformer` or `motors`",
+    "position_km": "position on the line; NaN of motors",
+    "start_load_percent": "load in whose steady state it begins",
+    "start": "where that comes from: `r.m.s. load of the run` or `preload_percent`",
+    "highest_state_percent": "highest thermal state",
+    "allowed_state_percent": "... and the highest one that is allowed",
+    "state_at_min": "... and when it is highest",
+    "highest_temperature_c": "highest temperature, of a transformer that of its hot spot; NaN where "
+    "none is known",
+    "allowed_temperature_c": "... and the highest one that is allowed",
+    "loss_of_life_min": "life that the paper of a transformer with `cooling` lost",
+    "window_min": "window in which its r.m.s. load comes closest to what is allowed; NaN without one",
+    "highest_rms_percent": "highest r.m.s. load over that window",
+    "allowed_rms_percent": "... and the one that is allowed",
+    "from_min": "... and when the window begins",
+    "verdict": "`within` or `over` what it bears",
+    "trains": "trains that drew the most near it at that time",
+}
+THERMAL_WINDOWS = {
+    "element": "name",
+    "kind": "as above",
+    "window_min": "length of the window: 1, 5, 15, 30, 60 or 120 min, or that of an overload",
+    "highest_rms_percent": "highest r.m.s. load over it; NaN where the run is shorter",
+    "allowed_rms_percent": "the one that is allowed; NaN where none is judged",
+    "from_min": "when the window begins",
+}
 TRAIN_STEPS = {
     "train": "name",
     "service": "traffic entry that the train belongs to",
@@ -121,6 +149,9 @@ SUMMARY = {
     "simulation_s": "computing time of the simulation",
     "standards": "key figures of the [evidence for standards](evidence.md)",
     "provenance": "versions, platform and time of the run",
+    "thermal": "only where something has a [rating](../how-to/thermal.md): how many pieces of equipment "
+    "are `judged`, how many are `over`, and the figures of the table `thermal` for each (`elements`), "
+    "the one that comes closest to what it bears, or is beyond it, first",
 }
 OF_LOSSES = {
     "converter_losses": "only where types of converters describe what they lose: totals of the table of "
@@ -210,7 +241,12 @@ does not close; it is reported but not judged."""
 
 def page() -> str:
     """Text of the page."""
-    changes = {"simulation.until": None, "simulation.duration_min": 5.0}
+    rating = {"continuous_a": 467.0, "time_constant_min": 4.7}
+    changes = {
+        "simulation.until": None,
+        "simulation.duration_min": 5.0,
+        "supply.catenary": {"r_ohm_per_km": 0.21, "x_ohm_per_km": 0.2, "rating": rating},
+    }
     result = tpss.simulate(tpss.load_scenario(EXAMPLE, changes), step_check=True)
     check = result.summary["step_check"]
     provenance = dict.fromkeys(result.summary["provenance"], "as in the summary's `provenance`")
@@ -233,6 +269,10 @@ def page() -> str:
         described(STATIONS, result.stations, "column"),
         "### `converter_losses`, a row a converter station that describes losses",
         described(CONVERTER_LOSSES, result.converter_losses, "column"),
+        "### `thermal`, a row a piece of equipment with a [rating](../how-to/thermal.md)",
+        described(THERMAL, result.thermal, "column"),
+        "### `thermal_windows`, a row a piece of equipment with a rating and window",
+        described(THERMAL_WINDOWS, result.thermal_windows, "column"),
         "### `train_steps`, a row a train and instant",
         described(TRAIN_STEPS, result.train_steps, "column"),
         "## Summary",

@@ -20,7 +20,8 @@ from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
 from tpss.run.interrupt import interruptible
 from tpss.run.kernels import make_ready
-from tpss.run.run import Clock, Progress, Run, advance_to_end, outcome_of, run_of
+from tpss.run.protection import run_to_end
+from tpss.run.run import Clock, Progress, Run, outcome_of
 from tpss.run.start import Start
 from tpss.run.stiff import LostTime, lost_to_voltage
 from tpss.scenario.open_step import LADDER_MIN, with_step
@@ -146,9 +147,8 @@ class Prepared:
             As of `simulate`.
         """
         start = self.start
-        run = run_of(start, self.clock)
         started = time.perf_counter()
-        status = advance_to_end(run, start, progress, interrupted)
+        run, status = run_to_end(start, self.clock, report=progress, interrupted=interrupted)
         elapsed_s = time.perf_counter() - started
         outcome, model = outcome_of(run, status, start.studied), run.model
         key_figures = key_figures_of(run, status, start, self.frame)

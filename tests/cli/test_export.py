@@ -38,7 +38,7 @@ def test_existing_files_need_force(tpss_command, demo):
     tpss_command("export", "demo")
     said = tpss_command("export", "demo")
     assert (said.code, said.out) == (2, "")
-    assert "demo/tables/trips.csv (and 19 more) exists already" in said.err
+    assert "demo/tables/trips.csv (and 21 more) exists already" in said.err
     assert tpss_command("export", "demo", "--force").code == 0
 
 

@@ -90,8 +90,11 @@ COMPUTE_NO_EQUATION = {
     "physics": {"bridge_outside_training"},
     "sources": {
         "residual", "is_plausible", "losses", "reserve",
-        "unloaded", "unloaded_converter", "unloaded_grid",
-        "set_unloaded", "set_unloaded_converter", "set_unloaded_grid",
+        "unloaded", "unloaded_converter", "unloaded_grid", "unloaded_mixed",
+        "set_unloaded", "set_unloaded_converter", "set_unloaded_grid", "set_unloaded_mixed",
+        "rounded",
+        # Of several types of converters each is asked.
+        "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",
     },
     "vehicle": {
         # Which law holds, and what is evaluated when.

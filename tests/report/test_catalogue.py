@@ -15,8 +15,15 @@ from tpss.report.trains import NothingToDrawError
 from scenarios import run, short_line, stops
 
 LOSSES = {"supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)"}
+RATED = {
+    "r_ohm_per_km": 0.21,
+    "x_ohm_per_km": 0.2,
+    "rating": {"continuous_a": 467.0, "time_constant_min": 4.7},
+}
+MOTOR = {"continuous_a": 1250.0, "short_time_a": 2080.0, "short_time_min": 6.0}
 HILLY = {
     **LOSSES,
+    "supply.catenary": RATED,
     "line.gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 5.0, "permille": -1.0}],
     "traffic.0.headway_min": 10.0,
 }
@@ -147,7 +154,7 @@ def test_the_machine_s_limit_follows_a_current_limitation():
 
 
 def test_a_run_that_collapsed_says_so_in_every_title():
-    weak = {**LOSSES, "supply.catenary": {"r_ohm_per_km": 0.3, "x_ohm_per_km": 0.35},
+    weak = {**LOSSES, "supply.catenary": {**RATED, "r_ohm_per_km": 0.3, "x_ohm_per_km": 0.35},
             "line.speed_limits": [{"from_km": 0.0, "speed_kmh": 100.0}],
             "line.gradients": [{"from_km": 0.0, "permille": 5.0}],
             "supply.converter_stations": [
@@ -179,7 +186,8 @@ def test_without_trains_the_stations_are_drawn_and_the_trains_are_not():
 
 def test_names_that_are_formulas_to_matplotlib_are_drawn_as_they_are(tmp_path):
     names = {**LOSSES, "traffic.0.name": "$1 to $2", "line.stations.1.name": "a$_{$",
-             "supply.converter_stations.0.name": "A$_{$"}  # fmt: skip
+             "supply.converter_stations.0.name": "A$_{$",
+             "trains.freight.motor_rating": MOTOR}  # fmt: skip
     result = run({**names, "simulation.duration_min": 3.0})
     for name in FIGURES:
         draw(name, result).savefig(tmp_path / "figure.svg")

@@ -34,3 +34,12 @@ def test_force_and_power_depend_on_the_voltage_or_do_not():
 
 def test_the_method_is_told_of_every_run():
     assert "No transients" in said(LIMITS)
+
+
+def test_motors_with_a_rating_are_monitored_and_judged_once_a_run_has_ended():
+    motor = {"continuous_a": 1250.0, "short_time_a": 2080.0, "short_time_min": 6.0}
+    assert "not monitored" in said({})
+    assert "judged once a run has ended" not in said({})
+    rated = said({"trains.freight.motor_rating": motor})
+    assert "not monitored" not in rated
+    assert "judged once a run has ended" in rated

@@ -278,6 +278,8 @@ ABSENT = [
                  id="radii"),
     pytest.param({"line.elevation_m": []}, "line.elevation_m", "altitudes", "give gradients",
                  id="altitudes"),
+    pytest.param({"supply.thermal_limits": True}, "supply.thermal_limits", "a thermal limit",
+                 "write rating of a catenary", id="thermal limits"),
     pytest.param({"traffic_signals": True}, "traffic_signals", "signals", "leave it out", id="signals"),
 ]  # fmt: skip
 

@@ -16,10 +16,11 @@ from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back, in_words
-from tpss.results.result import Result
+from tpss.results.result import THERMAL, Result
 from tpss.results.step_words import step_lines
 from tpss.results.stops import punctuality
 from tpss.results.tables import train_steps
+from tpss.results.thermal.words import thermal_in_words
 from tpss.results.waits import waits_in_words
 from tpss.step.recorded import RECORDED
 from tpss.units import on_line
@@ -220,6 +221,7 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
+    lines += thermal_in_words(summary.get(THERMAL))
     lines += step_lines(summary)
     lines.append(_audit(summary["audit"]))
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")

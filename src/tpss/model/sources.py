@@ -86,7 +86,7 @@ def mixed_law(units: Sequence[ConverterUnits], grid_angle_rad: float = 0.0) -> A
             grid_reactive_power_var=0.0,
             grid_angle_rad=grid_angle_rad,
         )
-        fields[f"{name}_units"] = float(each.converters)
+        fields[f"{name}_units"] = each.converters
         fields[f"{name}_share"] = each.rated_mva / whole_mva
     return MixedLaw.row(**fields)
 

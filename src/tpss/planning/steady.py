@@ -19,7 +19,8 @@ from tpss.model.traffic import build_services
 from tpss.planning.period import period_of
 from tpss.planning.plan import Evaluation
 from tpss.run.clocks import clock_of
-from tpss.run.run import Run, advance_to_end, arrivals_s, run_of
+from tpss.run.protection import run_on
+from tpss.run.run import Run, arrivals_s, run_of
 from tpss.run.start import Start, foreseen_steps
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
@@ -86,7 +87,7 @@ def run_steadily(
     start = start_of(_lasting(scenario, until_s), model)
     run = run_of(start, clock_of(scenario.simulation.load_flow, scenario.source), memory)
     while True:
-        status = advance_to_end(run, start)
+        run, status = run_on(run, start, memory)
         window = rule.window(run, start) if status == FINISHED else None
         if window is not None or status != FINISHED or until_s >= rule.longest_s:
             break

@@ -6,6 +6,8 @@ shapes in which they are two.  While they are one, all is joined to one of them,
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from tpss.kernel import at, kernel
 from tpss.numerics.pairs import squared
 from tpss.powerflow.in_service import places_of_blocks
@@ -13,6 +15,12 @@ from tpss.powerflow.network import UNFED, Flow, Network
 
 FOLLOWS = -3
 """In `Network.source_of_node`: this, or less by the number of a node, is one that follows that node."""
+
+
+def leaders_of(network: Network) -> dict[int, int]:
+    """Nodes of a network that follow others, and these."""
+    codes = network.source_of_node
+    return {int(n): FOLLOWS - int(codes[n]) for n in np.flatnonzero(codes <= FOLLOWS)}
 
 
 def following(network: Network, leader: Mapping[int, int]) -> Network:

@@ -23,6 +23,7 @@ from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
 from tpss.report.measured import MeasuredPart, measured_part
@@ -49,6 +50,8 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "powers": (station_powers, 440),
     "converters": (station_loading, 440),
     "losses": (losses, 260),
+    "converter-losses": (converter_losses, 440),
+    "thermal": (thermal, 440),
 }
 """Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
 
@@ -134,6 +137,11 @@ def report(
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_converter_losses(result),
         *tables.of_regeneration(result),
+        *(
+            [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
+            if len(result.thermal)
+            else []
+        ),
         *tables.of_standards(result),
     ]
     return _page(
@@ -197,10 +205,14 @@ def _figures(
 
 
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
-    over_time = dict(OVER_TIME)
-    if any(len(result.converter_losses) for result in runs.values()):
-        over_time["converter-losses"] = (converter_losses, 440)
-    drawn = {key: render(describe(runs), height) for key, (describe, height) in over_time.items()}
+    rated = {label: run for label, run in runs.items() if run.equipment.elements}
+    lossy = {label: run for label, run in runs.items() if len(run.converter_losses)}
+    shown = {"thermal": rated, "converter-losses": lossy}
+    drawn = {
+        key: render(describe(own), height)
+        for key, (describe, height) in OVER_TIME.items()
+        if (own := shown.get(key, runs))
+    }
     return {**drawn, **_braked(runs)}
 
 

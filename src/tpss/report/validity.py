@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from tpss.results.thermal.elements import has_ratings
 from tpss.scenario.machine import EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.scenario import Scenario
@@ -20,6 +21,11 @@ SUPPLY = (
     "line's capacitance. Voltages are judged at the pantograph.",
 )
 
+OF_RATINGS = (
+    "Equipment with a rating is judged once a run has ended: what is too hot has carried its load all "
+    "the same. How warm it was before is an assumption, which the table of thermal states tells."
+)
+
 
 def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
@@ -31,7 +37,8 @@ def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
         for name in dict.fromkeys(entry.train for entry in scenario.traffic)
         for sentence in _of_train(name, scenario.trains[name])
     ]
-    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY]
+    rated = [OF_RATINGS] if any(has_ratings(scenario) for scenario in told) else []
+    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *rated]
 
 
 def _of_traffic(scenario: Scenario) -> str:
@@ -68,10 +75,16 @@ def _of_train(name: str, train: Train) -> Iterator[str]:
             f"details of its machine{'' if falls else ', and does not depend on the voltage'}."
         )
     else:
+        monitored = train.motor_rating is not None
         yield (
             "Machine curves of the Rc4 locomotive hold at 10.5 to 16.5 kV; steps outside are counted "
-            "in the notes above. Its motors may carry their highest current for a limited time only, "
-            "which is not monitored."
+            "in the notes above."
+            + (
+                ""
+                if monitored
+                else " Its motors may carry their highest current for a limited time only, which is not "
+                "monitored without a motor_rating."
+            )
         )
     if train.current_limitation is not None:
         yield (

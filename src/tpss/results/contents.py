@@ -32,6 +32,8 @@ TABLE_PLACES = {
     "regeneration": "regeneration",
     "converter_losses": "converter_losses",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
+    "thermal": "thermal",
+    "thermal_windows": "thermal_windows",
     "trains": "train_steps",
 }
 """Tables by the names of their files, or of their sheets, and where a `Result` has them."""
@@ -43,7 +45,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "braking", "energy",
+    "stations", "converters", "converter-losses", "braking", "thermal", "energy",
     "effort",
 )  # fmt: skip
 

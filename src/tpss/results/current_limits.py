@@ -30,10 +30,11 @@ def at_current_limit(
     rows = outcome.recording.stations[: outcome.steps]
     nodes = outcome.recording.nodes[: outcome.steps][:, sources["node"]]
     size_va = np.hypot(rows["station_active_power"], rows["station_reactive_power"])
-    each_va = np.maximum(rows["active_converters"], 1) * np.hypot(
-        nodes["node_real"], nodes["node_imag"]
-    )
-    share = size_va / each_va / limit_a
+    voltage_v = np.hypot(nodes["node_real"], nodes["node_imag"])
+    running = np.maximum(rows["active_converters"], 1)
+    # A station that is out has no voltage.
+    current_a = np.divide(size_va, voltage_v, out=np.zeros_like(size_va), where=voltage_v > 0.0)
+    share = current_a / running / limit_a
     lasted_s = np.diff(outcome.instants_s)
     return {
         name: {

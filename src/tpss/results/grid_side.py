@@ -99,7 +99,7 @@ class StationSide:
         Power of its auxiliaries; None: not described. [W]
     burns : bool
         Whether a resistor takes what the railway feeds back beyond the losses, so that nothing reaches
-        the grid.
+        the grid; of one that takes nothing back too, whose law takes a trace for its angle.
     """
 
     name: str
@@ -191,7 +191,7 @@ def sides_of(scenario: Scenario) -> tuple[StationSide, ...]:
 
 def _side_of(station: Station) -> StationSide:
     if isinstance(station, TransformerStation):
-        return StationSide(station.name, burns=station.feedback == "resistor")
+        return StationSide(station.name, burns=station.feedback != "grid")
     if not isinstance(station, ConverterStation | MixedStation):
         return StationSide(station.name)
     mixed = None
@@ -205,7 +205,7 @@ def _side_of(station: Station) -> StationSide:
         units=units,
         mixed=mixed,
         auxiliaries_w=None if station.station_kw is None else si(station, "station_kw"),
-        burns=station.feedback == "resistor",
+        burns=station.feedback != "grid",
     )
 
 

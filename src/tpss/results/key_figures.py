@@ -20,7 +20,8 @@ from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
-from tpss.run.run import Clock, Progress, Run, advance_to_end, arrivals_s, run_of
+from tpss.run.protection import run_to_end
+from tpss.run.run import Clock, Progress, Run, arrivals_s
 from tpss.run.start import Start
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
@@ -218,8 +219,7 @@ def run_for_figures(
     TooLargeError
         The recording would not fit into memory.
     """
-    run = run_of(start, clock, memory)
-    status = advance_to_end(run, start, report, interrupted)
+    run, status = run_to_end(start, clock, memory, report, interrupted)
     return key_figures_of(run, status, start, frame)
 
 

@@ -37,9 +37,15 @@ FEW = 3
 def notes(result: Result) -> list[str]:
     """Sentences on a run that ended, each a sign that something may not be as it was meant."""
     if result.dataset.sizes["time"] < 2:
-        return [*_outage(result), *step_warnings(result.summary), *warnings(result.summary)]
+        return [
+            *_outage(result),
+            *_trips(result),
+            *step_warnings(result.summary),
+            *warnings(result.summary),
+        ]
     return [
         *_outage(result),
+        *_trips(result),
         *step_warnings(result.summary),
         *_stranded(result),
         *_current_limits(result),
@@ -50,6 +56,16 @@ def notes(result: Result) -> list[str]:
         *_passing(result),
         *warnings(result.summary, but=[EFFORT]),
     ]
+
+
+def _trips(result: Result) -> Iterator[str]:
+    """Stations that tripped, in the order of time."""
+    for number, trip in enumerate(result.summary.get("trips", []), 1):
+        yield (
+            f"protection, {number}: {trip['station']} tripped at {trip['time_min']:.2f} min, loaded to "
+            f"{trip['load_percent']:.0f} % over {trip['window_min']:g} min, "
+            f"{trip['allowed_percent']:.0f} % allowed; the run went on without it"
+        )
 
 
 def _current_limits(result: Result) -> Iterator[str]:

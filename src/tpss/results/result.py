@@ -14,11 +14,15 @@ from tpss.results.converter_losses import converter_losses
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
+from tpss.results.thermal.judge import Thermal, thermal_of
 from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
 
 STANDARDS = "standards"
 """Part of the summary that takes as long as all else, and is computed on demand."""
+
+THERMAL = "thermal"
+"""Part of the summary of a run in which something has a rating, likewise."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +45,13 @@ class Result:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """Key figures, the audit, the run's provenance, and figures of `standards`."""
+        """Key figures, the audit, the run's provenance, and figures of `standards` and `thermal`."""
         if STANDARDS in self.figures:
             return self.figures
-        return {**self.figures, STANDARDS: self.standards.as_dict()}
+        figures = {**self.figures, STANDARDS: self.standards.as_dict()}
+        if self.equipment.elements:
+            figures[THERMAL] = self.equipment.as_dict()
+        return figures
 
     @property
     def status(self) -> str:
@@ -89,6 +96,21 @@ class Result:
         return converter_losses(self.dataset, self.scenario)
 
     @cached_property
+    def equipment(self) -> Thermal:
+        """Judgement of the equipment that has a rating, with its thermal state at every instant."""
+        return thermal_of(self.dataset, self.scenario)
+
+    @cached_property
+    def thermal(self) -> pd.DataFrame:
+        """One row per piece of equipment with a rating: how hot it gets, and whether it bears that."""
+        return self.equipment.table
+
+    @cached_property
+    def thermal_windows(self) -> pd.DataFrame:
+        """One row per piece of equipment with a rating and window: its highest r.m.s. load."""
+        return self.equipment.windows
+
+    @cached_property
     def train_steps(self) -> pd.DataFrame:
         """One row per train and instant: motion, forces, voltage, powers."""
         return tables.train_steps(self.dataset)
@@ -113,7 +135,8 @@ class Result:
             The changed scenario has faults.
         """
         paths = {f"standards.{path}": value for path, value in changes.items()}
-        others = {key: value for key, value in self.figures.items() if key != STANDARDS}
+        on_demand = {STANDARDS, THERMAL}
+        others = {key: value for key, value in self.figures.items() if key not in on_demand}
         return replace(self, scenario=self.scenario.with_(paths), figures=others)
 
     def save(self, folder: str | Path | None = None, *, force: bool = False) -> Path:

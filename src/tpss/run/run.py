@@ -15,6 +15,7 @@ from tpss.kernel import plain
 from tpss.powerflow.network import Network
 from tpss.record import Records, copy_of_records
 from tpss.run.limits import LONGEST_RUN_S, demand_room, has_room
+from tpss.run.relays import Trip
 from tpss.run.services import ScheduledTrain, departing_trains, train_records
 from tpss.run.start import Start
 from tpss.run.switching import Switching, take_over
@@ -67,6 +68,8 @@ class Outcome:
     """Times of the instants, one more than steps. [s]"""
     recording: Recording
     state: State
+    trips: tuple[Trip, ...] = ()
+    """Stations that tripped, in the order of time."""
 
 
 Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
@@ -99,6 +102,8 @@ class Run:
         self.recording = new_recording(model, capacity, len(trains), memory)
         self.networks = [(0, model.network)]
         """Steps from which networks hold, and these."""
+        self.trips: tuple[Trip, ...] = ()
+        """Stations that tripped, in the order of time."""
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""
@@ -302,4 +307,5 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         instants_s=run.instants_s,
         recording=recording,
         state=run.state,
+        trips=run.trips,
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from tpss.record import Records
 from tpss.run.already_running import trains_on_line
 from tpss.run.limits import demand_room
+from tpss.run.relays import Relay
 from tpss.run.services import ScheduledTrain, Service, departing_trains, train_records
 from tpss.run.switching import Switching
 from tpss.step.model import Model, RunControl
@@ -46,6 +47,8 @@ class Start:
     """Networks that take the place of the model's, in the order of time."""
     turns: Records[Turn] | None = None
     """Planned order at gates, if trains keep one."""
+    relays: tuple[Relay, ...] = ()
+    """What stations bear that trip otherwise; none: they do not."""
 
 
 def begin(

@@ -96,6 +96,11 @@ ABSENCES = (
         "a key for it here",
         "list what is out of service in [[outages]]",
     ),
+    Absence(
+        r"thermal|ampacity",
+        "a thermal limit at this place",
+        "write rating of a catenary, a converter type or a transformer, or motor_rating of a train",
+    ),
     Absence(r"storage|battery|accumulator", "stores of energy"),
     Absence(
         r"harmonics?|earth|rail_potential|return_(current|line)", "harmonics and the return circuit"

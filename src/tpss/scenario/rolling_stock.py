@@ -15,6 +15,7 @@ from tpss.scenario.machine import (
     RetardationOverSpeed,
     TractiveEffort,
 )
+from tpss.scenario.rating import MotorRating
 from tpss.scenario.regeneration import Regeneration
 
 LARGEST_SHARE = 0.5
@@ -173,6 +174,12 @@ class Train(Part):
         description="Electric brakes that feed back, with continuous motion; leave it out: none.",
     )
 
+    motor_rating: MotorRating | None = Field(
+        default=None,
+        description="Currents that a motor bears without getting too hot; leave it out: it is not "
+        "judged.",
+    )
+
     @field_validator("rotating_mass_factor", "rotating_mass_share", mode="before")
     @classmethod
     def _share_not_factor(cls, value: Any) -> Any:
@@ -231,6 +238,22 @@ class Train(Part):
             raise fault(
                 "base_speed_kmh and max_motor_voltage_v belong together",
                 "give both, or leave both out",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _current_of_rated_motors_is_known(self) -> Self:
+        if self.motor_rating is None:
+            return self
+        if self.base_speed_kmh is None:
+            raise fault(
+                "motor_rating judges the motors' current, which is not known without their voltage",
+                "give base_speed_kmh and max_motor_voltage_v, or leave out motor_rating",
+            )
+        if self.regeneration is not None:
+            raise fault(
+                "motor_rating judges the motors' current, which is not recorded while they brake",
+                "leave out motor_rating, or regeneration",
             )
         return self
 

@@ -17,6 +17,7 @@ from tpss.scenario.line import Line
 from tpss.scenario.outage_faults import outage_faults
 from tpss.scenario.outages import Outage, Outages
 from tpss.scenario.override import copy_of, override
+from tpss.scenario.protection import Protection
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
 from tpss.scenario.simulation import Simulation
@@ -73,6 +74,11 @@ class Scenario(Part):
     )
     standards: Standards = Field(
         default={}, validate_default=True, description="Criteria by which the result is judged."
+    )
+    protection: Protection = Field(
+        default={},
+        validate_default=True,
+        description="What is disconnected when it passes what it may carry.",
     )
     outages: Outages = Field(
         default=(),

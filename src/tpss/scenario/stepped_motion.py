@@ -65,6 +65,13 @@ def _coasting(document: Mapping[str, Any]) -> Iterator[Asked]:
                 yield f"{key}.{number}.spare_time", repr(wanted), "does not go with {}", ""
 
 
+def _protection(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Stations that trip: trains may be left without power, and stand anywhere."""
+    if table(document, "protection").get("trip") is True:
+        problem = "may leave trains without power, which {} does not know"
+        yield "protection.trip", "true", problem, ""
+
+
 def _trains(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for name, train in table(document, "trains").items():
         if isinstance(train, Mapping):
@@ -77,5 +84,6 @@ UNKNOWN: tuple[Callable[[Mapping[str, Any]], Iterator[Asked]], ...] = (
     _neutral_sections,
     _electric_brakes,
     _coasting,
+    _protection,
 )
 """What is looked for, in the order of the findings."""

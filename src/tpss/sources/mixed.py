@@ -44,19 +44,23 @@ class MixedLaw(Record):
     second: ConverterLaw = ConverterLaw.row()
     third: ConverterLaw = ConverterLaw.row()
     first_share: float = 1.0
-    """Rated power of all converters of the type, over that of the station. [1]"""
+    """Rated power of all converters of the first type, over that of the station. [1]"""
     second_share: float = 0.0
+    """That of the second type. [1]"""
     third_share: float = 0.0
-    first_units: float = 0.0
-    """Number of converters of the type; 0: there is none."""
-    second_units: float = 0.0
-    third_units: float = 0.0
+    """That of the third type. [1]"""
+    first_units: int = 0
+    """Number of converters of the first type."""
+    second_units: int = 0
+    """Of the second type; 0: there is none."""
+    third_units: int = 0
+    """Of the third type; 0: there is none."""
 
 
 @kernel
-def _of_type(power: complex, units: float, law: ConverterLaw) -> tuple[complex, complex, complex]:
+def _of_type(power: complex, units: int, law: ConverterLaw) -> tuple[complex, complex, complex]:
     """Voltage of a type, and the inverse of its derivative over the power, as a pair; 0 of none."""
-    if units == 0.0:
+    if units == 0:
         return 0j, 0j, 0j
     # At 1 V the current is the conjugate of the power.
     off, _, by_current = converter_residual(1.0 + 0j, power.conjugate(), units, law, True)
@@ -84,6 +88,10 @@ def split(power: complex, law: MixedLaw) -> tuple[complex, Pair, Split]:
         Its derivative over the power. [V/VA]
     powers : tuple of complex
         Of the types. [VA]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1)-(2.4), of each type.
     """
     a, b, c = law.first_share * power, law.second_share * power, law.third_share * power
     voltage, by_power = 0j, (0j, 0j)
@@ -93,8 +101,8 @@ def split(power: complex, law: MixedLaw) -> tuple[complex, Pair, Split]:
         of_c, p_c, q_c = _of_type(c, law.third_units, law.third)
         by_power = inverse(p_a + p_b + p_c, q_a + q_b + q_c)
         # Voltages against that of the first type, which loses no digits.
-        less_b = of_b - of_a if law.second_units > 0.0 else 0j
-        less_c = of_c - of_a if law.third_units > 0.0 else 0j
+        less_b = of_b - of_a if law.second_units > 0 else 0j
+        less_c = of_c - of_a if law.third_units > 0 else 0j
         missing = power - (a + b + c) + apply(p_b, q_b, less_b) + apply(p_c, q_c, less_c)
         raised = apply(by_power[0], by_power[1], missing)
         voltage = of_a + raised
@@ -129,6 +137,10 @@ def mixed_residual(voltage: complex, current: complex, law: MixedLaw) -> tuple[c
 
     Parameters are those of `sources.kinds.residual`; the derivatives follow from that over the power as
     those of `converter_residual`.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.1)-(2.4), of each type.
     """
     asked, (s1, s2), _ = split(voltage * current.conjugate(), law)
     by_voltage = (1.0 - s1 * current.conjugate(), -(s2 * current))
@@ -146,8 +158,8 @@ def mixed_is_plausible(voltage: complex, current: complex, law: MixedLaw) -> boo
 
 
 @kernel
-def _is_plausible(power: complex, units: float, law: ConverterLaw) -> bool:
-    return units == 0.0 or converter_is_plausible(1.0 + 0j, power.conjugate(), units, law)
+def _is_plausible(power: complex, units: int, law: ConverterLaw) -> bool:
+    return units == 0 or converter_is_plausible(1.0 + 0j, power.conjugate(), units, law)
 
 
 @kernel
@@ -160,8 +172,8 @@ def mixed_reserve(voltage: complex, current: complex, law: MixedLaw) -> float:
 
 
 @kernel
-def _reserve(power: complex, units: float, law: ConverterLaw) -> float:
-    if units == 0.0:
+def _reserve(power: complex, units: int, law: ConverterLaw) -> float:
+    if units == 0:
         return 1.0
     return converter_reserve(1.0 + 0j, power.conjugate(), units, law)
 

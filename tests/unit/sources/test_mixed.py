@@ -36,13 +36,13 @@ def station(*types):
     return MixedLaw.array([MixedLaw.row(**fields)])[0]
 
 
-ALIKE = station((converter(), 2.0, 10e6), (converter(25e-6, X_G / 2, X_M / 2), 1.0, 20e6))
+ALIKE = station((converter(), 2, 10e6), (converter(25e-6, X_G / 2, X_M / 2), 1, 20e6))
 """As four of 10 MVA: the second is as two of the first."""
 
 MIXED = station(
-    (converter(), 2.0, 10e6),
-    (converter(20e-6, 5.0, 6.0), 1.0, 15e6),
-    (converter(80e-6, 20.0, 30.0), 3.0, 5.0e6),
+    (converter(), 2, 10e6),
+    (converter(20e-6, 5.0, 6.0), 1, 15e6),
+    (converter(80e-6, 20.0, 30.0), 3, 5.0e6),
 )
 STATE = 15.8e3 - 2.1e3j, 900.0 - 420.0j
 
@@ -77,7 +77,7 @@ def test_derivatives_are_those_of_differences(as_run):
 
 
 def test_one_type_is_a_station_of_converters(as_run):
-    alone = station((converter(), 3.0, 10e6))
+    alone = station((converter(), 3, 10e6))
     law = ConverterLaw.array([converter()])[0]
     found = as_run(mixed_residual)(*STATE, alone)
     asked = as_run(converter_residual)(*STATE, 3.0, law, True)
@@ -89,11 +89,11 @@ def test_one_type_is_a_station_of_converters(as_run):
 def test_it_is_as_far_from_falling_out_of_step_as_its_weakest_machines(as_run):
     assert as_run(mixed_is_plausible)(*STATE, MIXED)
     assert as_run(mixed_reserve)(*STATE, MIXED) > 0.0
-    assert not as_run(mixed_is_plausible)(1e4 + 0j, -330e3j, station((converter(), 1.0, 10e6)))
+    assert not as_run(mixed_is_plausible)(1e4 + 0j, -330e3j, station((converter(), 1, 10e6)))
 
 
 def test_without_load_it_has_the_voltage_that_is_set(as_run):
-    own = station((converter(), 2.0, 10e6), (converter(20e-6), 1.0, 10e6))
+    own = station((converter(), 2, 10e6), (converter(20e-6), 1, 10e6))
     assert as_run(unloaded_mixed)(own) == (16_500.0, 0.1)
     as_run(set_unloaded_mixed)(16_000.0, 0.0, own)
     voltage, _, _ = as_run(split)(0j, own)

@@ -15,6 +15,7 @@ from tpss.report.drawings.journey import journey
 from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import voltage_along_line, voltage_envelope
 from tpss.report.palette import COLOURS
@@ -37,6 +38,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
     "braking": ("run", lambda run, *_: braking({"": run})),
+    "thermal": ("run", lambda run, *_: thermal({"": run})),
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }

@@ -122,3 +122,62 @@ def highest_mean_table(
             "from_min": np.array([begins for _, begins in highest]).T.ravel() * step_s / 60.0,
         }
     )
+
+
+def highest_means_between(
+    values: Floats, instants: Floats, widths: Sequence[float]
+) -> list[tuple[Floats, Floats]]:
+    """Highest mean of each column over moving windows, of steps that need not be of one length.
+
+    Parameters
+    ----------
+    values : Floats, shape (steps, columns)
+        Values that hold from an instant to the next; there is a step at least.
+    instants : Floats, shape (steps + 1,)
+        Ascending, in any unit of time.
+    widths : sequence of float
+        Widths of the windows, in that unit.
+
+    Returns
+    -------
+    list of (highest, begin)
+        For each width as of `highest_means`, in the unit of the instants.
+    """
+    integral = integrals(values * np.diff(instants)[:, None])
+    return [_highest_mean_between(values, integral, instants, width) for width in widths]
+
+
+def _highest_mean_between(
+    values: Floats, integral: Floats, instants: Floats, width: float
+) -> tuple[Floats, Floats]:
+    """Highest means over windows of one width, and their beginnings.
+
+    Windows of which both ends meet instants are many, and differences of the integral; the others, few
+    if steps divide the window, are interpolated.
+    """
+    each = np.arange(values.shape[1])
+    rounding = TOLERANCE * width
+    if instants[-1] - instants[0] < width - rounding:
+        return np.full(len(each), np.nan), np.full(len(each), np.nan)
+    whole = min(max(1, round(width / float(instants[1] - instants[0]))), len(values))
+    meets = np.abs(instants[whole:] - instants[:-whole] - width) <= rounding
+    lone_begins = instants[np.append(~meets, np.ones(whole, dtype=bool))]
+    lone_ends = instants[np.append(np.ones(whole, dtype=bool), ~meets)]
+    lone = np.concatenate([lone_begins, lone_ends - width])
+    lone = lone[(lone >= instants[0]) & (lone + width <= instants[-1])]
+    areas = integral[whole:] - integral[:-whole]
+    begins = instants[:-whole]
+    if not meets.all():
+        areas, begins = areas[meets], begins[meets]
+    if len(lone):
+        areas = np.concatenate([areas, _until(lone + width, values, integral, instants)])
+        areas[-len(lone) :] -= _until(lone, values, integral, instants)
+        begins = np.concatenate([begins, lone])
+    first = areas.argmax(axis=0)
+    return areas[first, each] / width, begins[first]
+
+
+def _until(times: Floats, values: Floats, integral: Floats, instants: Floats) -> Floats:
+    """An integral over time until some times, shape (times, columns)."""
+    before = np.clip(np.searchsorted(instants, times, "right") - 1, 0, len(values) - 1)
+    return np.asarray(integral[before] + values[before] * (times - instants[before])[:, None])

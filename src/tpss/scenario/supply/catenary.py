@@ -5,6 +5,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from tpss.scenario.fields import Part, Real, fault
+from tpss.scenario.rating import CatenaryRating
 
 SMALLEST_OHM = 0.0001
 """Lumped impedances smaller than this are lost in the rounding of voltages. [Ω]"""
@@ -35,6 +36,10 @@ class Catenary(Part):
     )
     connection_x_ohm: Real = Field(
         default=0.0, ge=0, le=100, description="Reactance between a feeding point and the line."
+    )
+    rating: CatenaryRating | None = Field(
+        default=None,
+        description="What it bears without getting too hot; leave it out: it is not judged.",
     )
 
     @model_validator(mode="after")

@@ -17,6 +17,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.rating import Rating
 from tpss.scenario.supply.feedback import ConverterFeedback, converter_feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 from tpss.scenario.supply.losses import ConverterLosses
@@ -46,6 +47,11 @@ class ConverterType(Part):
     )
     losses: ConverterLosses | None = Field(
         default=None, description="What one converter loses; leave it out: not described."
+    )
+    rating: Rating | None = Field(
+        default=None,
+        description="What it bears without getting too hot, of `rating_mva`; leave it out: it is not "
+        "judged.",
     )
 
 

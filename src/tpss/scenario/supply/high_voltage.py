@@ -16,6 +16,7 @@ from tpss.scenario.fields import (
     name_of_line,
     one_of,
 )
+from tpss.scenario.rating import LineTransformerRating
 from tpss.scenario.supply.catenary import SMALLEST_OHM
 
 
@@ -27,6 +28,10 @@ class Transformer(Part):
     )
     x_ohm: Real = Field(
         ge=SMALLEST_OHM, le=100, description="Reactance on the contact line's side."
+    )
+    rating: LineTransformerRating | None = Field(
+        default=None,
+        description="What it bears without getting too hot; leave it out: it is not judged.",
     )
 
 

@@ -14,6 +14,7 @@ from tpss.scenario.fields import (
     name_of_line,
     station_at,
 )
+from tpss.scenario.rating import TransformerRating
 from tpss.scenario.supply.feedback import Feedback, feedback
 from tpss.scenario.supply.feeds import Feeds, feeds
 
@@ -27,6 +28,11 @@ class StationTransformer(Part):
     )
     load_loss_kw: Real = Field(
         default=0.0, ge=0, le=10_000, description="Losses at rated power, without those at no load."
+    )
+    rating: TransformerRating | None = Field(
+        default=None,
+        description="What it bears without getting too hot, of `rated_mva`; leave it out: it is not "
+        "judged.",
     )
 
     @property

@@ -1,0 +1,231 @@
+"""The equipment of a scenario that has a rating, and the load of each over a run."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tpss.model.contact_line import LineLayout, stretches_of
+from tpss.model.feeding import feedings_of
+from tpss.model.outages import layout_of
+from tpss.model.supply import (
+    CONTACT_LINE,
+    NOTHING_PARTED,
+    TRANSFORMER,
+    SupplyPlan,
+    layouts_of,
+    system_of,
+)
+from tpss.results.standards.windows import Floats, step_values
+from tpss.results.thermal.body import Body, body_of
+from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import ConverterStation, Supply, TransformerStation
+from tpss.scenario.supply.transformers import feeding_positions_km
+from tpss.units import si
+
+FORMER_MOTORS = 4.0
+"""Motors whose currents the former model adds up."""
+
+
+class Reach(NamedTuple):
+    """A part of a line, or of one of its tracks, whose trains load a piece of equipment."""
+
+    line: int
+    from_m: float
+    to_m: float
+    track: int | None = None
+    """None: all of them."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """A piece of equipment with a rating.
+
+    Attributes
+    ----------
+    name, kind : str
+    line : int
+        Index of its line; -1: it is on a train.
+    position_km : float
+        NaN: it is on a train.
+    body : Body
+    reach : tuple of Reach
+        Where the trains are that load it.
+    train : int
+        Index of the train that it is on; -1: none.
+    """
+
+    name: str
+    kind: str
+    line: int
+    position_km: float
+    body: Body
+    reach: tuple[Reach, ...] = ()
+    train: int = -1
+
+
+Loaded = tuple[Element, Floats]
+"""A piece of equipment, and its load in each step, NaN where it is not there. [1]"""
+
+RATED_STATIONS: dict[type, tuple[str, Callable[[Any], Any]]] = {
+    ConverterStation: ("converter", lambda station: station.type.rating),
+    TransformerStation: ("transformer", lambda station: station.transformer.rating),
+}
+"""What a station's units are, and where their rating stands."""
+
+
+def has_ratings(scenario: Scenario) -> bool:
+    """Whether anything in a scenario has a rating."""
+    supply = scenario.supply
+    high_voltage = supply.high_voltage_line
+    given: list[Any] = [supply.catenary.rating]
+    given += [each.catenary.rating for each in supply.contact_lines if each.catenary is not None]
+    given += [_rating_of_station(station) for station in supply.stations]
+    given += [train.motor_rating for train in scenario.trains.values()]
+    if high_voltage is not None:
+        given += [high_voltage.line_transformer.rating, high_voltage.station_transformer.rating]
+    return any(each is not None for each in given)
+
+
+def rated_elements(dataset: xr.Dataset, scenario: Scenario) -> list[Loaded]:
+    """Everything in a run that has a rating, with its load in each step."""
+    laid = layout_of(scenario, scenario.outage)
+    where = _Feeding.of(laid.supply, layouts_of(scenario.lines_by_name))
+    current_a = np.nan_to_num(step_values(dataset, "branch_current"))
+    return [
+        *_stations(dataset, scenario, where),
+        *_transformers(current_a, laid.plan, where),
+        *_contact_lines(current_a, laid.plan, where),
+        *_motors(dataset, scenario),
+    ]
+
+
+class _Feeding(NamedTuple):
+    """A supply with the places where it feeds the lines."""
+
+    supply: Supply
+    lines: tuple[LineLayout, ...]
+    stations_km: list[dict[str, float]]
+    """Of each line: its feeding stations and their places on it."""
+    feeds_km: list[list[float]]
+    """Of each line: places where it is fed, and its ends, in order."""
+
+    @classmethod
+    def of(cls, supply: Supply, lines: tuple[LineLayout, ...]) -> "_Feeding":
+        feedings = feedings_of(supply, lines, NOTHING_PARTED)
+        stations = [
+            {f.station.name: f.places_km[line.name] for f in feedings if line.name in f.places_km}
+            for line in lines
+        ]
+        high_voltage = supply.high_voltage_line
+        feeds_km = []
+        for line, own in zip(lines, stations, strict=True):
+            places = {line.begin_km, line.end_km, *own.values()}
+            if high_voltage is not None and line.holds(high_voltage.line):
+                places.update(feeding_positions_km(supply))
+            feeds_km.append(sorted(places))
+        return cls(supply, lines, stations, feeds_km)
+
+    def around(self, line: int, from_km: float, to_km: float, track: int | None = None) -> Reach:
+        """What lies between the feeding points that are next to a part of a line, or at its ends."""
+        places = self.feeds_km[line]
+        touching = [
+            (one, other) for one, other in pairwise(places) if one <= from_km and to_km <= other
+        ]
+        begin_km = min((one for one, _ in touching), default=from_km)
+        end_km = max((other for _, other in touching), default=to_km)
+        return Reach(line, begin_km * 1e3, end_km * 1e3, track)
+
+
+def _rating_of_station(station: Any) -> Any:
+    """Rating of the units of a station; None where they have none."""
+    _, rating = RATED_STATIONS.get(type(station), ("", lambda _: None))
+    return rating(station)
+
+
+def _stations(dataset: xr.Dataset, scenario: Scenario, where: _Feeding) -> Iterator[Loaded]:
+    """Units of feeding stations: those that run share the load, and one that runs is judged."""
+    loading = np.nan_to_num(step_values(dataset, "converter_loading"))
+    for s, station in enumerate(scenario.supply.stations):
+        if (rating := _rating_of_station(station)) is None:
+            continue
+        kind, _ = RATED_STATIONS[type(station)]
+        home = next(line.number for line in where.lines if line.holds(station.line))
+        reach = tuple(
+            where.around(line, own[station.name], own[station.name])
+            for line, own in enumerate(where.stations_km)
+            if station.name in own
+        )
+        element = Element(
+            f"{kind} of {station.name}", kind, home, station.position_km, body_of(rating), reach
+        )
+        yield element, loading[:, s]
+
+
+def _transformers(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
+    """Transformers of the high-voltage line, whose rated current is at the system's base voltage."""
+    high_voltage = where.supply.high_voltage_line
+    if high_voltage is None:
+        return
+    base_v = system_of(where.supply).base_voltage_v
+    for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True)):
+        if kind != TRANSFORMER:
+            continue
+        line, km = plan.node_line[branch.end_node], plan.node_km[branch.end_node]
+        at_station = km in where.stations_km[line].values()
+        unit = high_voltage.station_transformer if at_station else high_voltage.line_transformer
+        if unit.rating is None:
+            continue
+        load = current_a[:, b] * base_v / si(unit.rating, "rating_mva")
+        reach = (where.around(line, km, km),)
+        yield Element(plan.branch_names[b], kind, line, km, body_of(unit.rating), reach), load
+
+
+def _contact_lines(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
+    """Both ends of each section of contact line: there the currents of all its trains add up.
+
+    Tracks that are tied everywhere share the current alike.
+    """
+    first = len(plan.branches)
+    for line in where.lines:
+        stretches = stretches_of(line, where.supply)
+        for s, track in _sections_of(plan, line.number):
+            section, name = plan.sections[s], plan.section_names[s]
+            ends_km = section.start_m / 1e3, section.end_m / 1e3
+            middle_km = sum(ends_km) / 2.0
+            stretch = next(each for each in stretches if each.begin_km <= middle_km < each.end_km)
+            rating = stretch.catenary.rating
+            if rating is None:
+                continue
+            rated_a = rating.continuous_a * stretch.tracks / stretch.conductors
+            reach = (where.around(line.number, *ends_km, track),)
+            for k, (km, end) in enumerate(zip(ends_km, ("start", "end"), strict=True)):
+                element = Element(
+                    f"{name}, {end}", CONTACT_LINE, line.number, km, body_of(rating), reach
+                )
+                yield element, current_a[:, first + 2 * s + k] / rated_a
+
+
+def _sections_of(plan: SupplyPlan, line: int) -> Iterator[tuple[int, int | None]]:
+    """Sections of a line, with the track of each, None where they are of all tracks."""
+    for run in plan.runs[line]:
+        for conductor, bounds in enumerate(run.sections):
+            track = None if len(run.sections) == 1 else conductor + 1
+            yield from ((s, track) for s in range(*bounds))
+
+
+def _motors(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Loaded]:
+    """Motors of each train: all of them alike, of which one is judged."""
+    trains, current_a = scenario.trains_by_service(), step_values(dataset, "motor_current")
+    names = zip(dataset.train.to_numpy(), dataset.service.to_numpy(), strict=True)
+    for i, (name, service) in enumerate(names):
+        train = trains[str(service)]
+        if train.motor_rating is None or not np.isfinite(current_a[:, i]).any():
+            continue
+        motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
+        body = body_of(train.motor_rating)
+        element = Element(f"motors of {name}", "motors", -1, float("nan"), body, train=i)
+        yield element, current_a[:, i] / (motors * train.motor_rating.continuous_a)
