@@ -169,8 +169,6 @@ class Frame:
     """The stations' 50 Hz sides."""
     feeds_back: bool
     """Whether trains have electric brakes."""
-    feedback: tuple[str, ...]
-    """What each station does with what is fed back."""
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -187,7 +185,6 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         system=model.network.system,
         sides=sides_of(scenario),
         feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
-        feedback=tuple(station.feedback for station in scenario.supply.stations),
     )
 
 
@@ -242,7 +239,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
-        braking=braking_mwh(run, frame.feedback),
+        braking=braking_mwh(run, frame.sides),
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),

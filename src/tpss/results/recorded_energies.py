@@ -38,14 +38,14 @@ def grid_side_mwh(run: Run, sides: Sequence[StationSide], feeds_back: bool) -> d
     }
 
 
-def braking_mwh(run: Run, feedback: Sequence[str]) -> dict[str, float]:
+def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     """Where the work of all brakes goes; empty without electric brakes. [MWh]
 
     Parameters
     ----------
     run : Run
-    feedback : sequence of str
-        What each station does with what is fed back, as in the scenario.
+    sides : sequence of StationSide
+        What stations do with what is fed back.
     """
     rows = np.asarray(run.recording.regeneration)[: run.step]
     if not rows.size:
@@ -54,7 +54,7 @@ def braking_mwh(run: Run, feedback: Sequence[str]) -> dict[str, float]:
     own = set(rows.dtype.names or ())
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}
     stations = np.asarray(run.recording.stations)[: run.step]
-    powers = braking_powers(recorded, stations["station_active_power"], feedback)
+    powers = braking_powers(recorded, stations["station_active_power"], sides)
     duration_s = _duration_s(run)
     return {name: float((duration_s @ w).sum()) / J_PER_MWH for name, w in powers.items()}
 

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tpss.results.grid_side import StationSide, sides_of
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.tables import J_PER_MWH, over_time
 from tpss.scenario.scenario import Scenario
@@ -77,9 +78,8 @@ def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 
 def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
     """Energies by the names `TOTALS`, shape (trains,)."""
-    feedback = [station.feedback for station in scenario.supply.stations]
     stations = step_values(dataset, "station_active_power")
-    powers = powers_of(_recorded(dataset), stations, feedback)
+    powers = powers_of(_recorded(dataset), stations, sides_of(scenario))
     return {name: over_time(each, dataset) / J_PER_MWH for name, each in powers.items()}
 
 
@@ -110,7 +110,7 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
 
 
 def powers_of(
-    recorded: Mapping[str, Floats], station_w: Floats, feedback: Sequence[str]
+    recorded: Mapping[str, Floats], station_w: Floats, sides: Sequence[StationSide]
 ) -> dict[str, Floats]:
     """Those, and where what is fed back goes, by the names `TOTALS`. [W], shape (steps, trains)
 
@@ -120,18 +120,18 @@ def powers_of(
         As of `parts_of`.
     station_w : array, shape (steps, stations)
         Power that stations feed into the railway. [W]
-    feedback : sequence of str
-        What each station does with what is fed back, as in the scenario.
+    sides : sequence of StationSide
+        What stations do with what is fed back.
     """
     parts = parts_of(recorded)
     given = parts["fed_back_mwh"]
     total = given.sum(axis=1)
     taken = np.maximum(-np.nan_to_num(station_w), 0.0)
     # A station that takes nothing back takes a thousandth of its rating at most, for its angle.
-    taken[:, [each == "none" for each in feedback]] = 0.0
+    taken[:, [side.blocks for side in sides]] = 0.0
     # What stations take beyond what trains give comes from other stations.
     of_each = np.maximum(np.maximum(total, taken.sum(axis=1)), np.finfo(float).tiny)
-    burns = np.array([each == "resistor" for each in feedback], dtype=bool)
+    burns = np.array([side.burns for side in sides], dtype=bool)
     to_grid, burnt = (
         given * (taken[:, which].sum(axis=1) / of_each)[:, None] for which in (~burns, burns)
     )
