@@ -1,5 +1,7 @@
 """Where braked energy goes, in reports, comparisons, variants and figures."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -66,10 +68,18 @@ def test_of_many_services_the_last_bar_is_that_of_those_that_brake_least(electri
     assert few.braked_mwh.sum() == pytest.approx(many.braked_mwh.sum())
 
 
-def test_without_electric_brakes_nothing_is_drawn(friction):
+def test_without_electric_brakes_all_is_friction(electric, friction):
+    """Such a bar stands beside those of electric brakes; alone it is drawn only if asked for."""
     assert not applies("braking", friction)
-    with pytest.raises(NothingToDrawError, match="electric brakes"):
-        braking({"": friction})
+    (bar,) = braking({"": friction}).panels[0].items
+    assert bar.name == "friction"
+    assert bar.length == pytest.approx(electric.regeneration.braked_mwh.sum(), rel=1e-6)
+
+
+def test_without_a_train_nothing_is_drawn(friction):
+    empty = replace(friction, dataset=friction.dataset.isel(train=slice(0)))
+    with pytest.raises(NothingToDrawError, match="no train"):
+        braking({"": empty})
 
 
 def test_a_station_that_takes_power_back_is_marked_at_nothing(electric, friction):

@@ -30,7 +30,7 @@ from tpss.report.measured import MeasuredPart, measured_part
 from tpss.report.moving import network_moving
 from tpss.report.page import fill
 from tpss.report.render.interactive import render
-from tpss.report.trains import NothingToDrawError, chosen_train, seen_trains
+from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import is_report
 from tpss.results.notes import notes
@@ -218,10 +218,9 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
 
 def _braked(runs: Mapping[str, Result]) -> dict[str, Figure]:
     """Where braked energy goes, as high as its bars; nothing without electric brakes."""
-    try:
-        drawing = braking(runs)
-    except NothingToDrawError:
+    if not any(len(run.regeneration) for run in runs.values()):
         return {}
+    drawing = braking(runs)
     return {"braking": render(drawing, 170 + 44 * len(drawing.panels[0].rows))}
 
 

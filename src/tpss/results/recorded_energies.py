@@ -47,9 +47,9 @@ def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     sides : sequence of StationSide
         What stations do with what is fed back.
     """
-    rows = np.asarray(run.recording.regeneration)[: run.step]
-    if not rows.size:
+    if not run.recording.regeneration.size:
         return {}
+    rows = np.asarray(run.recording.regeneration)[: run.step]
     trains = np.asarray(run.recording.trains)[: run.step]
     own = set(rows.dtype.names or ())
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}

@@ -66,13 +66,16 @@ def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, float] | None
 
 
 def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
-    """The same by service, a column for each of `TOTALS`; empty without electric brakes.
+    """The same by service, a column for each of `TOTALS`; without electric brakes all is friction.
 
     Of what trains feed back in a step, those that feed back have the same share used, taken or burnt.
     """
-    if REGENERATED not in dataset:
-        return pd.DataFrame(columns=list(TOTALS))
-    each = pd.DataFrame(_energies_mwh(dataset, scenario))
+    if REGENERATED in dataset:
+        each = pd.DataFrame(_energies_mwh(dataset, scenario))
+    else:
+        braked = over_time(step_values(dataset, "braking_power"), dataset) / J_PER_MWH
+        each = pd.DataFrame(dict.fromkeys(TOTALS, np.zeros_like(braked)))
+        each = each.assign(braked_mwh=braked, friction_mwh=braked)
     return each.groupby(dataset.service.to_numpy(), sort=False).sum()
 
 

@@ -34,7 +34,7 @@ ROW_INCH = 0.42
 
 
 def braking(runs: Mapping[str, Result]) -> Drawing:
-    """A bar for each service: the work of its brakes, and where it goes.
+    """A bar for each service: the work of its brakes, and where it goes; of friction brakes into heat.
 
     Of many services those that brake least have one bar together.  Parts that are too small to be
     visible are left out.
@@ -47,7 +47,7 @@ def braking(runs: Mapping[str, Result]) -> Drawing:
     Raises
     ------
     NothingToDrawError
-        No train has electric brakes, or none brakes.
+        No train was on the line.
     """
     found = {label: by_service(run.dataset, run.scenario) for label, run in runs.items()}
     rows = {
@@ -55,9 +55,9 @@ def braking(runs: Mapping[str, Result]) -> Drawing:
         for label, table in found.items()
         for service, each in _few(table).iterrows()
     }
-    width = max((float(each["braked_mwh"]) for each in rows.values()), default=0.0)
-    if width <= 0.0:
-        raise NothingToDrawError("no train with electric brakes brakes")
+    if not rows:
+        raise NothingToDrawError("no train was on the line")
+    width = max(1e-9, *(float(each["braked_mwh"]) for each in rows.values()))
     bars: list[Bar] = []
     named: set[str] = set()
     for row, each in enumerate(rows.values()):
@@ -76,8 +76,7 @@ def braking(runs: Mapping[str, Result]) -> Drawing:
 
 
 def _few(table: pd.DataFrame) -> pd.DataFrame:
-    """Services that brake, of many those that brake least together."""
-    table = table[table.braked_mwh > 0.0]
+    """All services, of many those that brake least together."""
     if len(table) <= MOST_ROWS:
         return table
     least = table.braked_mwh.rank(method="first") <= len(table) - MOST_ROWS + 1
