@@ -2,6 +2,7 @@
 
 import copy
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -26,6 +27,9 @@ from tpss.step.state import State, loads_of
 
 from benchmarks.continuation import Equations
 from benchmarks.homotopy import End, is_sound, loads_last, sources_last
+
+Raising = Callable[[Model, State], float]
+"""A way to raise all loads from zero; gives the share that is carried."""
 
 RISE = 0.04
 """Share of the load by which it is raised at a time. [1]"""
@@ -53,7 +57,9 @@ class Replay:
         trains += departing_trains(start.services, model.options, 0, steps)
         self.run = Run(model, trains, steps)
 
-    def root_of_step(self, step: int, step_s: float) -> tuple[float, npt.NDArray[np.float64]]:
+    def root_of_step(
+        self, step: int, step_s: float, raising: Raising | None = None
+    ) -> tuple[float, npt.NDArray[np.float64]]:
         """Share of a step's load that is carried, and each train's pantograph voltage.
 
         NaN where the share is not known, or a train draws nothing.  The step may be shorter than the
@@ -67,7 +73,7 @@ class Replay:
         change_length(step, step_s, run.model, run.state, run.recording)
         count, model = clock.on_line, plain(with_step)(run.model, step_s)
         prepare_step(count, model, run.state)
-        share = solve_step_slowly(count, model, run.state)
+        share = solve_step_slowly(count, model, run.state, raising or raise_loads)
         places = run.state.flow.standing[:count]
         voltages = np.full(len(run.trains), np.nan)
         voltages[places.train] = np.abs(places.voltage_v)
@@ -94,13 +100,13 @@ class Replay:
         return length_s
 
 
-def solve_step_slowly(count: int, model: Model, state: State) -> float:
+def solve_step_slowly(count: int, model: Model, state: State, raising: Raising) -> float:
     """As the clock does it, but every load flow begins without load; return the share carried."""
     if state.clock[0].unfed > 0:
         prepare_unfed(count, model, state)
     while True:
         decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
-        share = raise_loads(model, state)
+        share = raising(model, state)
         if share != 1.0:
             return share
         for place in state.flow.standing[:count]:
@@ -115,6 +121,11 @@ def raise_loads(model: Model, state: State) -> float:
     """Raise all loads from zero; return the share that is carried."""
     share = raise_loads_within_the_band(model, state)
     return share if share == 1.0 else raise_loads_by_homotopy(share, model, state)
+
+
+def follow_paths(model: Model, state: State) -> float:
+    """Follow the paths of another load flow, whatever is found within the band."""
+    return raise_loads_by_homotopy(math.nan, model, state)
 
 
 def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:

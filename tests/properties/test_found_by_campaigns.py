@@ -9,9 +9,9 @@ import pytest
 import tpss
 
 from properties.journeys import Journey
-from properties.judge import judge_result
+from properties.judge import farthest_off, judge_result
 from properties.kilometres import moved
-from properties.roots import Replay
+from properties.roots import Replay, follow_paths
 from scenarios import SHORT_LINE, short_line
 
 
@@ -198,3 +198,46 @@ def test_a_collapse_within_a_step_that_ends_with_an_arrival_is_judged_in_that_ti
     assert 5.0 < short_s < 30.0
     assert replay.root_of_step(0, short_s)[0] < 1.0
     assert replay.root_of_step(0, 300.0)[0] == 1.0
+
+
+OUT_OF_PHASE = {
+    "format": 1, "name": "out-of-phase",
+    "line": {
+        "length_km": 0.2, "gradients": [{"from_km": 0.0, "permille": 0.0}],
+        "speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0}],
+        "stations": [{"name": "S0", "position_km": 0.1}, {"name": "S1", "position_km": 0.01}],
+    },
+    "supply": {
+        "catenary": "BT",
+        "converter_stations": [
+            {
+                "name": "C0", "position_km": 0.03, "grid_angle_deg": -58.8, "converters": 3,
+                "grid_reactance_ohm": 1.3,
+                "type": {
+                    "no_load_voltage_kv": 16.9, "rating_mva": 80.0, "motor_reactance_pu": 0.3,
+                    "generator_reactance_pu": 10.0, "motor_base_mva": 10.0, "generator_base_mva": 10.0,
+                    "base_voltage_kv": 16.5, "droop_kv_per_mvar": 0.08,
+                },
+            },
+            {
+                "name": "C1", "position_km": 0.0312, "type": "Q48/Q49", "converters": 1,
+                "grid_reactive_power_mvar": 0.8, "grid_angle_deg": 5.0, "grid_reactance_ohm": 0.16,
+            },
+        ],
+    },
+    "trains": {"freight": {"model": "Rc4-freight-1470t"}},
+    "traffic": [{"name": "a", "train": "freight", "from": "S1", "to": "S0", "headway_min": 2.0}],
+}  # fmt: skip
+
+
+def test_stations_out_of_phase_count_as_the_path_from_alike_stations_says():
+    """Two stations a metre apart, 64° apart at their grids, feed each other in two ways that are both
+    sound, and 9 % apart.  Loads raised from base voltage find the one, the path from stations made
+    alike the other, which counts."""
+    result = tpss.simulate(tpss.Scenario.from_document(copy.deepcopy(OUT_OF_PHASE), "out-of-phase"))
+    judge_result(result)
+    drawn = result.dataset.pantograph_voltage.to_numpy()[0]
+    replay = Replay(result.scenario, result.dataset.sizes["time"])
+    length_s = result.dataset.attrs["time_step_s"]
+    assert farthest_off(drawn, replay.root_of_step(0, length_s)[1]) > 0.05
+    assert farthest_off(drawn, replay.root_of_step(0, length_s, follow_paths)[1]) < 1e-6

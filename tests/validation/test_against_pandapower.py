@@ -87,3 +87,25 @@ def test_the_network_agrees():
 
 def test_a_line_with_open_ends_and_trains_less_than_a_metre_apart_agrees():
     assert_agreement(odd_line())
+
+
+@pytest.mark.parametrize("feedback", ["grid", "none"])
+def test_trains_that_feed_back_agree(feedback):
+    """Down a grade all trains are sources, of which one station takes nothing where it is told so."""
+    brakes = {"max_force_kn": 250.0, "max_power_kw": 4_000.0, "efficiency": 0.85}
+    changes = {
+        "name": f"down-{feedback}",
+        "line.gradients": [{"from_km": 0.0, "permille": -12.0}],
+        "trains.*.regeneration": brakes,
+        "supply.converter_stations.0.feedback": feedback,
+    }
+    scenario = tpss.load_scenario(EXAMPLES / "at_headway_3.toml", changes)
+    result = tpss.simulate(scenario)
+    given_w = result.dataset.active_power.isel(time=slice(0, -1)).sum("train")
+    taken_w = result.dataset.station_active_power.isel(time=slice(0, -1))
+    assert float(given_w.min()) < -5e6
+    worst_taken_w = float(taken_w.isel(station=0).min())
+    assert worst_taken_w < -1e6 if feedback == "grid" else worst_taken_w > -4e4
+    moment = result.dataset.isel(time=int(given_w.argmin("time")))
+    differences = worst_differences(solve_with_pandapower(scenario, moment), moment)
+    assert max(differences.values()) < TOLERANCE, differences
