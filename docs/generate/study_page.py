@@ -128,6 +128,16 @@ MEANINGS = {
     "drawn_from_grid_mwh": "energy that stations take from their grids; null likewise",
     "fed_back_to_grid_mwh": "energy that they give back; null unless losses are described, or trains "
     "have electric brakes",
+    "braking.braked_mwh": "work of all brakes; this and its parts are null unless trains have electric "
+    "brakes",
+    "braking.friction_mwh": "part of it: friction brakes",
+    "braking.machine_losses_mwh": "part of it: lost in the machines",
+    "braking.refused_mwh": "part of it: offered to the line, which does not take it",
+    "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
+    "braking.fed_back_mwh": "part of it: what trains feed back into the line",
+    "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",
+    "braking.to_grid_mwh": "of that, what stations take back, on the railway's side",
+    "braking.burnt_in_stations_mwh": "of that, what resistors of stations burn",
     "lowest_voltage_kv": "lowest voltage at a pantograph",
     "lowest_voltage_km": "where it was",
     "lowest_voltage_min": "when it was",

@@ -66,6 +66,8 @@ def test_check_says_what_a_model_is(tpss_command, model):
     assert said.code == 0
     assert "catenary AT or BT" in said.out
     assert "train_mass_t 1470 only" in said.out
+    assert "Predicts mean speed, trip time, total energy, losses, lowest voltage" in said.out
+    assert "does not tell what converters lose or what trains feed back" in said.out
 
 
 def test_check_compares_with_the_cases_held_out_or_with_another_study(

@@ -1,5 +1,8 @@
 """The example of a plan: half a reinforcement is worth nothing, and a lead time changes what to do."""
 
+import json
+import tomllib
+
 import pytest
 
 from tpss.planning import tables
@@ -121,3 +124,16 @@ def test_a_network_s_timetable_grows(tmp_path):
     served = answer.model.served[0].quantities
     assert served.may_serve.tolist() == [[True, False, True], [True, True, True]]
     assert tables.first_decisions(answer).configuration.tolist()[:2] == ["AT", "Gruvan"]
+
+
+def test_the_plan_with_losses_differs_in_what_converters_lose_and_nothing_else():
+    """Its line and its new stations have the twin of the converters' type; names and comments differ."""
+    for name in ("plan_320km", "line_320km"):
+        plain, losing = (
+            tomllib.loads((EXAMPLES / f"{name}{end}.toml").read_text("utf-8"))
+            for end in ("", "_losses")
+        )
+        text = json.dumps(plain).replace('"Q48/Q49"', '"Q48/Q49 with losses (estimate)"')
+        text = text.replace("line_320km.toml", "line_320km_losses.toml")
+        assert {**json.loads(text), "name": losing["name"]} == losing
+    load_plan(EXAMPLES / "plan_320km_losses.toml")

@@ -1,5 +1,6 @@
 """The report of a plan, made of its folder: what it says first, its figures, its tables, its text."""
 
+import copy
 import json
 import re
 
@@ -12,6 +13,7 @@ from tpss.planning.report import pictures_of, plan_report
 from tpss.planning.written import read_written
 from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
+import small_plans
 from pages import Page
 from small_plans import PLAN
 from solved_plans import HEADWAY, many, solved
@@ -275,3 +277,37 @@ def test_a_folder_without_its_tables_is_refused_with_the_remedy(tmp_path):
         read_written(folder)
     with pytest.raises(PlanError, match="name one that tpss plan run has written"):
         read_written(tmp_path)
+
+
+LOSING = "Q48/Q49 with losses (estimate)"
+
+MID_LOSING = {"measures/Mid/add/supply.converter_stations/type": LOSING}
+"""A station that may be built, whose converters say what they lose."""
+
+
+def test_losses_of_some_converters_are_told_apart(tmp_path):
+    """Converters of today say nothing of them; those of a measure do, by an estimate."""
+    document = json.loads((solved(tmp_path, MID_LOSING) / "plan.json").read_text())
+    said = " ".join(document["not_counted"])
+    assert "Losses of some converters are not described" in said
+    assert "Outside the hours in which the traffic runs converters are taken to be off" in said
+    assert [words for words in document["by_estimate"] if "converters" in words]
+
+
+def test_losses_that_are_counted_are_not_listed_as_not_counted(tmp_path, monkeypatch):
+    """The first page says that they are estimates."""
+    line = copy.deepcopy(small_plans.LINE)
+    for station in line["supply"]["converter_stations"]:
+        station["type"] = LOSING
+    monkeypatch.setattr(small_plans, "LINE", line)
+    place = solved(tmp_path, MID_LOSING)
+    document = json.loads((place / "plan.json").read_text())
+    assert "not described" not in " ".join(document["not_counted"])
+    text = Page(plan_report(read_written(place))).text
+    assert "By estimate: What converters lose" in text
+    assert text.index("By estimate") < text.index("What is not counted")
+
+
+def test_without_losses_nothing_is_an_estimate(folder, page):
+    assert json.loads((folder / "plan.json").read_text())["by_estimate"] == []
+    assert "By estimate" not in Page(page).text

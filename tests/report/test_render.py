@@ -11,16 +11,31 @@ from tpss.report.drawings.voltage import envelopes
 from tpss.report.figures import FIGURES
 from tpss.report.render import interactive, static
 
+from scenarios import run
+
 
 def counted(drawing: Drawing) -> int:
     """Number of items other than marks."""
     return sum(not isinstance(item, Mark) for panel in drawing.panels for item in panel.items)
 
 
+@pytest.fixture(scope="module")
+def described():
+    """The short line with converters that say what they lose, and a catenary with a rating."""
+    rating = {"continuous_a": 467.0, "time_constant_min": 4.7}
+    return run(
+        {
+            "traffic.0.headway_min": 10.0,
+            "supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)",
+            "supply.catenary": {"r_ohm_per_km": 0.21, "x_ohm_per_km": 0.2, "rating": rating},
+        }
+    )
+
+
 @pytest.mark.parametrize("name", FIGURES)
-def test_every_figure_for_print_is_drawn_for_a_page_too(short, name):
+def test_every_figure_for_print_is_drawn_for_a_page_too(described, name):
     _, describe = FIGURES[name]
-    drawing = describe(short, "eastbound 1", "distance")
+    drawing = describe(described, "eastbound 1", "distance")
     figure = interactive.render(drawing, 400)
     assert len(figure.data) == counted(drawing)
     assert figure.layout.meta in ("time", "position", "speed", "energy")

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 import tpss
 from tpss.many import key_figures
 from tpss.results.key_figures import KeyFigures
+from tpss.results.regeneration import fed_back
 
 from conftest import EXAMPLE_SCENARIOS, SHARED
 from properties.judge import is_long
@@ -62,6 +63,8 @@ def assert_same(found: KeyFigures, result: tpss.Result) -> None:
     assert close(found.losses_mwh, summary["losses_mwh"])
     converters = summary.get("converter_losses")
     assert close(found.converter_losses_mwh, converters and converters["losses_mwh"])
+    braking = fed_back(result.dataset, result.scenario) or {}
+    assert found.braking == pytest.approx(braking, rel=1e-9)
     lowest = found.lowest_voltage
     assert (lowest and lowest.as_dict()) == summary["lowest_voltage"]
     useful = summary["standards"]["mean_useful_voltage"]
@@ -206,14 +209,14 @@ def test_a_value_that_is_not_a_number_fails_the_audit(place, monkeypatch):
     """As if the solver had left a NaN in one record of one step."""
     from tpss.results import key_figures as module
 
-    def spoil(run, *others, **options):
-        status = advance_to_end(run, *others, **options)
+    def spoil(*others):
+        run, status = run_to_end(*others)
         field = {"trains": "active_power", "nodes": "node_real"}.get(place, "station_active_power")
         getattr(run.recording, place)[field][3, 0] = np.nan
-        return status
+        return run, status
 
-    advance_to_end = module.advance_to_end
-    monkeypatch.setattr(module, "advance_to_end", spoil)
+    run_to_end = module.run_to_end
+    monkeypatch.setattr(module, "run_to_end", spoil)
     audit = key_figures(short_line()).audit
     assert math.isnan(audit.power_mismatch_va)
     assert not audit.passed

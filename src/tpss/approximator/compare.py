@@ -69,11 +69,12 @@ def cases_inside(model: Approximator, table: pd.DataFrame) -> tuple[Cases, int]:
         The table lacks an output.
     """
     names = [output.name for output in model.file.outputs]
-    absent = [name for name in names if name not in table]
+    finished = table[table["status"] == "finished"]
+    absent = [name for name in names if name not in table or finished[name].isna().any()]
     if absent:
         raise ApproximatorError(
-            f"the table has no column {', '.join(absent)}: its lines differ in kind from "
-            "those that the approximator was trained on"
+            f"the table has no column {', '.join(absent)}, or not in all cases: its lines differ in "
+            "kind from those that the approximator was trained on"
         )
     given = given_by(model, table)
     inside = np.array(

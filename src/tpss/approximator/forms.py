@@ -8,6 +8,12 @@ import pandas as pd
 TRAINS, TRAINS_SPEED = "trains", "trains_speed_kmh"
 """Inputs of the original form that the table does not contain; see `with_traffic`."""
 
+LOST = ("converter_losses_mwh", "drawn_from_grid_mwh")
+"""Figures of cases in which converters say what they lose."""
+
+FED_BACK = ("braking.fed_back_mwh", "fed_back_to_grid_mwh")
+"""Figures of cases in which trains have electric brakes; the first one of no others."""
+
 _SUPPLY = ("converters_per_station", "converters", "converter_rating_mva", "transformers")
 _CATENARY = ("catenary_r_ohm_per_km", "catenary_x_ohm_per_km", "connection_x_ohm")
 _GRADIENTS = ("gradient_mean_permille", "gradient_std_permille")
@@ -28,6 +34,8 @@ class Form:
     outputs: tuple[str, ...]
     of_each_station: tuple[str, ...]
     """Figures of each feeding station that are outputs too."""
+    where_told: tuple[str, ...] = ()
+    """Outputs where a study tells them: see `LOST` and `FED_BACK`."""
 
     def outputs_of(self, columns: Sequence[str]) -> list[str]:
         """Outputs for a table with these columns."""
@@ -65,6 +73,7 @@ _AGGREGATED = Form(
         "peak_loading",
     ),
     of_each_station=("energy_mwh",),
+    where_told=(*LOST, *FED_BACK),
 )
 
 AGGREGATED, VARIED = "aggregated", "varied"

@@ -7,6 +7,7 @@ approximator knows nothing of what was the same in all cases.
 from collections.abc import Iterator
 from typing import Any
 
+from tpss.approximator.forms import FED_BACK, FORMS, LOST
 from tpss.approximator.model_file import ModelFile
 from tpss.approximator.parameters import PROFILE, input_name
 from tpss.errors import ApproximatorError, Finding, ScenarioError, TpssError, shortened
@@ -61,6 +62,39 @@ def inputs_from_scenario(file: ModelFile, scenario: Scenario) -> dict[str, Any]:
         for name, value in values.items()
         if name != PROFILE
     }
+
+
+def demand_same_kind(file: ModelFile, scenario: Scenario) -> None:
+    """Refuse a scenario that differs in kind from the study, in what no aggregated input says.
+
+    Raises
+    ------
+    ScenarioError
+        Its trains have electric brakes and those of the study none, or the reverse; or the approximator
+        predicts what converters lose, and the scenario does not describe it.
+    """
+    if not (file.form in FORMS and FORMS[file.form].where_told):
+        return
+    predicted = {output.name for output in file.outputs}
+    types = {entry.train for entry in scenario.traffic}
+    braking = [name for name in sorted(types) if scenario.trains[name].regeneration is not None]
+    place, findings = str(scenario.source), []
+    if braking and FED_BACK[0] not in {*predicted, *file.untold}:
+        problem = "the study had no electric brakes: an approximator cannot know what they do"
+        remedy = "simulate it, or train on a study whose trains have them"
+        findings = [
+            Finding(place, f"trains.{name}.regeneration", "", problem, remedy) for name in braking
+        ]
+    if not braking and FED_BACK[0] in predicted:
+        problem = "no train has electric brakes, and those of the study did"
+        findings.append(Finding(place, "trains", "", problem, "simulate it, or give them some"))
+    losses = [kind.losses for kind in scenario.supply.converters_in_use]
+    if LOST[0] in predicted and None in losses:
+        problem = "converters do not say what they lose, and those of the study did"
+        remedy = "give their type losses, as the study has them"
+        findings.append(Finding(place, "supply.converter_stations", "", problem, remedy))
+    if findings:
+        raise ScenarioError(findings)
 
 
 def _document_of(scenario: Scenario) -> dict[str, Any]:

@@ -54,6 +54,7 @@ def form_named(name: str, table: pd.DataFrame) -> Form:
         choices=tuple(each for each in names if each not in numbers),
         outputs=form.outputs,
         of_each_station=form.of_each_station,
+        where_told=form.where_told,
     )
 
 

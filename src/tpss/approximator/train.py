@@ -156,6 +156,8 @@ def _train(
         if form == VARIED
         else (own.outputs_of([str(name) for name in used]), [])
     )
+    more, lacking = _where_told(own, used)
+    names, untold = [*names, *more], [*untold, *lacking]
     given = inputs.read({each.name: used[each.name] for each in inputs.varying}, "the table")
     cases = cases_of(used, inputs.encode(given.inputs), names)
     held_out = _held_out(len(used), seed)
@@ -221,6 +223,17 @@ def _outputs(form: Form, used: pd.DataFrame) -> tuple[list[str], list[str]]:
             "simulate longer"
         )
     return told, [name for name in names if name not in told]
+
+
+def _where_told(form: Form, used: pd.DataFrame) -> tuple[list[str], list[str]]:
+    """Of the outputs that not every study has: those that can be learned, and those that cannot.
+
+    One of which no case has a value is none of either: the study does not tell it.
+    """
+    finished = used[used["status"] == "finished"]
+    there = [name for name in form.where_told if name in used and finished[name].notna().any()]
+    told = [n for n in there if finished[n].notna().all() and finished[n].nunique() > 1]
+    return told, [name for name in there if name not in told]
 
 
 def _calibrated(output: Output, errors: Array, log_noise: Array, spread: Array) -> Output:

@@ -131,13 +131,15 @@ def _assignment(text: str) -> tuple[str, Any]:
 
 def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
     from tpss.approximator.forms import VARIED, with_traffic
-    from tpss.approximator.from_scenario import inputs_from_scenario
+    from tpss.approximator.from_scenario import demand_same_kind, inputs_from_scenario
     from tpss.scenario import load_scenario
     from tpss.sweep.inputs import inputs_of
 
+    scenario = load_scenario(file)
     if model.file.form == VARIED:
-        return inputs_from_scenario(model.file, load_scenario(file))
-    described = pd.DataFrame([inputs_of(load_scenario(file))._asdict()])
+        return inputs_from_scenario(model.file, scenario)
+    demand_same_kind(model.file, scenario)
+    described = pd.DataFrame([inputs_of(scenario)._asdict()])
     known = with_traffic(described).iloc[0].dropna()
     return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
 
@@ -261,9 +263,18 @@ def _print_model(model: "Approximator", console: Console) -> None:
 
 
 def _not_known(model: "Approximator") -> list[str]:
-    """What the study varies and the inputs leave out, and figures that are not predicted."""
+    """What is predicted, what the study varies and the inputs leave out, and what is not predicted."""
+    from tpss.approximator.forms import FED_BACK, FORMS, LOST
+
     left_out, untold = model.file.left_out, model.file.untold
-    told = []
+    names = [output.name for output in model.file.outputs]
+    told = [f"Predicts {', '.join(map(_words, names))}."]
+    known = {*names, *untold}
+    form = FORMS.get(model.file.form)
+    kinds = {"what converters lose": LOST, "what trains feed back": FED_BACK}
+    unknown = [words for words, (first, *_) in kinds.items() if first not in known]
+    if form is not None and form.where_told and unknown:
+        told.append(f"Its study does not tell {' or '.join(unknown)}, so neither does it.")
     if left_out:
         told.append(
             f"Left out, though the study varies it: {', '.join(left_out)}. What it changes is in the "

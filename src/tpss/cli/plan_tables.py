@@ -23,7 +23,7 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     """Print an answer: its sentences, what is done when, what else one could do, what it is worth."""
     from tpss.planning import tables
     from tpss.planning.sentence import sentences
-    from tpss.planning.uncounted import uncounted, unknown
+    from tpss.planning.uncounted import estimated, uncounted, unknown
 
     economics = answer.model.plan.file.economics
     unit = f"{economics.currency} of {economics.price_year}"
@@ -50,6 +50,8 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     print_firsts(answer, console)
     values = tables.values(answer)[["meaning", "cost"]]
     print_frame(values, f"Values [{unit}, discounted]", {"meaning": "", "cost": ""}, console)
+    if found := list(estimated(answer.model)):
+        say(console, "By estimate: " + " ".join(found))
     say(console, "Not counted: " + " ".join(uncounted(answer.model)))
 
 

@@ -21,7 +21,7 @@ BASE = "base"
 
 COLUMNS = (
     "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %", "converters lose MWh",
-    "from grid MWh", "to grid MWh",
+    "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh",
 )  # fmt: skip
 """Those of which no run has a figure are left out."""
 
@@ -84,9 +84,12 @@ def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
 
 def row_of(result: "Result") -> Row:
     """Figures of a result in the order of the columns; None of what it does not have."""
+    from tpss.results.regeneration import fed_back
+
     summary, lowest = result.summary, result.summary["lowest_voltage"] or {}
     loading = result.stations.peak_loading.max()
     grid = summary.get("converter_losses") or {}
+    braking = fed_back(result.dataset, result.scenario) or {}
     figures = [
         summary["trip_time_min"],
         summary["total_energy_mwh"],
@@ -95,6 +98,7 @@ def row_of(result: "Result") -> Row:
         _place(lowest),
         None if loading != loading else 100.0 * float(loading),
         *(grid.get(key) for key in ("losses_mwh", "from_grid_mwh", "to_grid_mwh")),
+        *(braking.get(key) for key in ("braked_mwh", "fed_back_mwh")),
     ]
     return Row(result.status, figures)
 

@@ -15,7 +15,8 @@ import numpy.typing as npt
 from tpss.planning.plan import Evaluation
 from tpss.planning.steady import FINISHED, SteadyRun, Window, run_steadily
 from tpss.results.grid_side import sides_of
-from tpss.results.key_figures import KeyFigures, frame_of, grid_side_w, key_figures_of
+from tpss.results.key_figures import KeyFigures, frame_of, key_figures_of
+from tpss.results.recorded_energies import grid_side_w
 from tpss.run.run import Run, arrivals_s
 from tpss.run.stiff import lost_by_train
 from tpss.scenario.scenario import Scenario

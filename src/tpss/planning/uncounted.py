@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from tpss.planning.lazily import ALL
 from tpss.planning.solve import Model
-from tpss.scenario.scenario import Scenario
+from tpss.scenario.supply import ConverterType
 
 GENERAL = (
     "Traffic is as asked for in each future: none is added because the supply is better.",
@@ -19,16 +19,40 @@ GENERAL = (
 def uncounted(model: Model) -> Iterator[str]:
     """What a plan does not count: of any plan, and of this one."""
     yield from GENERAL
-    yield from _converter_losses([each.area.today for each in model.areas])
+    yield from _converter_losses(_converters(model))
     if not (model.table["fed_back_to_grid_mw"].fillna(0.0) > 0.0).any():
         yield "No energy is given back to the grid."
     if model.plan.file.budget is None:
         yield "There is no budget."
 
 
-def _converter_losses(scenarios: Sequence[Scenario]) -> Iterator[str]:
-    """Whether scenarios describe what converters lose, and how well."""
-    types = [kind for each in scenarios for kind in each.supply.converters_in_use]
+def estimated(model: Model) -> Iterator[str]:
+    """What a plan counts by figures that are estimates."""
+    types = _converters(model)
+    if any(each.losses is not None and each.losses.origin == "estimate" for each in types):
+        yield (
+            "What converters lose is counted by an estimate, not by figures that were measured or "
+            "guaranteed."
+        )
+
+
+def _converters(model: Model) -> list[ConverterType]:
+    """Types of converters of today, and those that come with each measure at each of its levels."""
+    cases = {(case.area, case.configuration): case for case in model.case_list.cases}
+    found: list[ConverterType] = []
+    for number, area in enumerate(model.areas):
+        seen: set[tuple[int, int]] = set()
+        for k, configuration in enumerate(area.configurations):
+            built = {each for each in enumerate(configuration.levels) if each[1]}
+            if k == 0 or built - seen:
+                supply = model.case_list.scenario(cases[number, k]).supply
+                found += supply.converters_in_use
+            seen |= built
+    return found
+
+
+def _converter_losses(types: Sequence[ConverterType]) -> Iterator[str]:
+    """Which losses of converters are not counted."""
     known = [kind.losses for kind in types if kind.losses is not None]
     if len(known) < len(types):
         which = "some converters" if known else "converters"
@@ -37,8 +61,8 @@ def _converter_losses(scenarios: Sequence[Scenario]) -> Iterator[str]:
             f"Losses of {which} are not described in the scenarios, so {whose} is what stations "
             "give to the railway."
         )
-    if any(losses.origin == "estimate" for losses in known):
-        yield "Losses of converters are by estimate."
+    if known:
+        yield "Outside the hours in which the traffic runs converters are taken to be off."
 
 
 def unknown(model: Model) -> Iterator[str]:

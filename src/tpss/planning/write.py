@@ -22,7 +22,7 @@ from tpss.planning.prove import Grade
 from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
 from tpss.planning.turning import Turn
-from tpss.planning.uncounted import uncounted, unknown
+from tpss.planning.uncounted import estimated, uncounted, unknown
 from tpss.sweep.folder import REMEDY
 from tpss.sweep.versions import versions
 
@@ -68,6 +68,7 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         "answer": sentences(answer, turns),
         "claim": answer.claim,
         **_proof(answer),
+        "by_estimate": list(estimated(model)),
         "not_counted": list(uncounted(model)),
         "currency": economics.currency,
         "price_year": economics.price_year,

@@ -16,6 +16,7 @@ from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import ALONG, along, gradients_along, is_corridor
+from tpss.report.drawings.braking import braking
 from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
@@ -135,6 +136,7 @@ def report(
         ),
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_converter_losses(result),
+        *tables.of_regeneration(result),
         *(
             [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
             if len(result.thermal)
@@ -206,11 +208,20 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     rated = {label: run for label, run in runs.items() if run.equipment.elements}
     lossy = {label: run for label, run in runs.items() if len(run.converter_losses)}
     shown = {"thermal": rated, "converter-losses": lossy}
-    return {
+    drawn = {
         key: render(describe(own), height)
         for key, (describe, height) in OVER_TIME.items()
         if (own := shown.get(key, runs))
     }
+    return {**drawn, **_braked(runs)}
+
+
+def _braked(runs: Mapping[str, Result]) -> dict[str, Figure]:
+    """Where braked energy goes, as high as its bars; nothing without electric brakes."""
+    if not any(len(run.regeneration) for run in runs.values()):
+        return {}
+    drawing = braking(runs)
+    return {"braking": render(drawing, 170 + 44 * len(drawing.panels[0].rows))}
 
 
 def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import pandas as pd
 
 from tpss import units
 from tpss.results.places import LINE
+from tpss.results.regeneration import fed_back
 from tpss.results.result import Result
 from tpss.scenario.differences import differences
 from tpss.units import on_line
@@ -103,6 +104,12 @@ def of_converter_losses(result: Result) -> list[Table]:
     return [of_frame("converter-losses", caption, found)] if len(found) else []
 
 
+def of_regeneration(result: Result) -> list[Table]:
+    """What each train brakes, and where that goes, where any has electric brakes."""
+    found = result.regeneration
+    return [of_frame("regeneration", "Braked", found)] if len(found) else []
+
+
 def of_figures(results: Mapping[str, Result]) -> Table:
     """Key figures of runs, one row per figure and one column per run, with differences to the first."""
     columns = [
@@ -140,6 +147,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ("losses", "MWh", lost),
         ("share of losses", "%", 100.0 * lost / total if total else None),
         *_grid_side(summary.get("converter_losses")),
+        *_braking(fed_back(result.dataset, result.scenario)),
         ("lowest voltage", "kV", lowest.get("voltage_kv")),
         ("train with lowest voltage", "", lowest.get("train")),
         _place("place of lowest voltage", lowest),
@@ -175,6 +183,25 @@ def _grid_side(found: Mapping[str, Any] | None) -> list[tuple[str, str, Any]]:
         ),
         ("starts of converters", "", found["starts"]),
     ]
+
+
+BRAKED = {
+    "braked_mwh": "energy braked",
+    "friction_mwh": "braked by friction",
+    "machine_losses_mwh": "lost in machines that brake",
+    "refused_mwh": "refused by the line",
+    "own_use_mwh": "own use of trains that brake",
+    "fed_back_mwh": "fed back by trains",
+    "used_by_others_mwh": "of it used by other trains and the line",
+    "to_grid_mwh": "of it taken back by stations",
+    "burnt_in_stations_mwh": "of it burnt in resistors of stations",
+}
+"""Words for where braked energy goes."""
+
+
+def _braking(found: Mapping[str, float] | None) -> list[tuple[str, str, Any]]:
+    """Where braked energy goes; empty without electric brakes."""
+    return [] if found is None else [(words, "MWh", found[key]) for key, words in BRAKED.items()]
 
 
 def _place(name: str, found: Mapping[str, Any]) -> tuple[str, str, Any]:

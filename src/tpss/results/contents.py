@@ -45,7 +45,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "thermal", "energy",
+    "stations", "converters", "converter-losses", "braking", "thermal", "energy",
     "effort",
 )  # fmt: skip
 

@@ -107,6 +107,7 @@ class StationSide:
     mixed: Records[MixedLaw] | None = None
     auxiliaries_w: float | None = None
     burns: bool = False
+    blocks: bool = False
 
     @property
     def is_described(self) -> bool:
@@ -206,6 +207,7 @@ def _side_of(station: Station) -> StationSide:
         mixed=mixed,
         auxiliaries_w=None if station.station_kw is None else si(station, "station_kw"),
         burns=station.feedback != "grid",
+        blocks=station.feedback == "none",
     )
 
 

@@ -15,7 +15,8 @@ from tpss.audit.verdict import JUDGED, Audit, judge, limits_of
 from tpss.kernel import plain
 from tpss.model.build import Layout
 from tpss.powerflow.system import System
-from tpss.results.grid_side import StationSide, powers_of, sides_of
+from tpss.results.grid_side import StationSide, sides_of
+from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
@@ -104,6 +105,9 @@ class KeyFigures:
         Energy that all stations take from their grids: what they feed and lose; NaN likewise.
     fed_back_to_grid_mwh : float
         Energy that they give back; NaN unless losses are described or trains have electric brakes.
+    braking : dict of str to float
+        Where the work of all brakes goes, as of `tpss.results.regeneration.fed_back`; empty without any
+        electric ones. [MWh]
     lowest_voltage : LowestVoltage or None
     mean_useful_voltage_kv : float
         Lowest one of the zones, by EN 50388, in the peak window.
@@ -130,6 +134,7 @@ class KeyFigures:
     converter_losses_mwh: float
     drawn_from_grid_mwh: float
     fed_back_to_grid_mwh: float
+    braking: dict[str, float]
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
     dimensioning_train_kv: float
@@ -233,7 +238,8 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         services=_services(run, start),
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
-        **_grid_side(run, frame),
+        **grid_side_mwh(run, frame.sides, frame.feeds_back),
+        braking=braking_mwh(run, frame.sides),
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),
@@ -324,45 +330,6 @@ def _stations(run: Run, frame: Frame, figures: Figures) -> tuple[StationFigures,
             frame.stations, figures.stations.tolist(), strict=True
         )
     )
-
-
-def _grid_side(run: Run, frame: Frame) -> dict[str, float]:
-    """Energies on the grids' side of all stations, NaN where they are not described. [MWh]"""
-    lost = drawn = fed_back = math.nan
-    described = any(side.is_described for side in frame.sides)
-    if described or frame.feeds_back:
-        found = grid_side_w(run, frame.sides)
-        duration_s = np.full(run.step, run.model.options.step_s)
-        duration_s[-1:] = run.last_step_s
-        energies = [math.fsum(each.sum(axis=1) * duration_s) / J_PER_MWH for each in found]
-        fed_back = energies[2]
-        if described:
-            lost, drawn = energies[:2]
-    return {
-        "converter_losses_mwh": lost,
-        "drawn_from_grid_mwh": drawn,
-        "fed_back_to_grid_mwh": fed_back,
-    }
-
-
-def grid_side_w(run: Run, sides: Sequence[StationSide]) -> tuple[Floats, Floats, Floats]:
-    """Losses of converters, power from the grid, power to it, of each step and station. [W]"""
-    rows = np.asarray(run.recording.stations)[: run.step]
-    # What transformer stations lose is recorded, and acts on the railway.
-    active = rows["station_active_power"] + np.nan_to_num(rows["station_losses"])
-    reactive, running = rows["station_reactive_power"], rows["active_converters"]
-    found = [
-        powers_of(active[:, s], reactive[:, s], running[:, s], side) for s, side in enumerate(sides)
-    ]
-    lost, drawn, fed_back = (
-        np.stack(each, axis=1)
-        for each in (
-            [powers.losses for powers in found],
-            [powers.from_grid for powers in found],
-            [powers.to_grid for powers in found],
-        )
-    )
-    return lost, drawn, fed_back
 
 
 def _number(value: float) -> float:

@@ -1,11 +1,13 @@
 """What trains brake, and where that goes: to themselves, to others, to the grid, or into heat."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tpss.results.grid_side import StationSide, sides_of
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.tables import J_PER_MWH, over_time
 from tpss.scenario.scenario import Scenario
@@ -15,6 +17,21 @@ REGENERATED = "regenerated_power"
 
 PARTS = ("friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "fed_back_mwh")
 """Columns into which `braked_mwh` is divided."""
+
+USES = ("used_by_others_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
+"""Energies into which `fed_back_mwh` is divided: others are other trains, and the losses on the line."""
+
+TOTALS = ("braked_mwh", *PARTS, *USES)
+"""Totals of a run."""
+
+RECORDED_POWERS = (
+    "braking_power",
+    "electric_braking_power",
+    REGENERATED,
+    "refused_power",
+    "active_power",
+)
+"""Recorded powers of trains from which the parts follow."""
 
 
 def regeneration(dataset: xr.Dataset) -> pd.DataFrame:
@@ -27,25 +44,7 @@ def regeneration(dataset: xr.Dataset) -> pd.DataFrame:
     """
     if REGENERATED not in dataset:
         return pd.DataFrame(columns=["train", "service", "braked_mwh", *PARTS])
-    braked, electric, regenerated, refused, active = (
-        np.nan_to_num(step_values(dataset, name))
-        for name in (
-            "braking_power",
-            "electric_braking_power",
-            REGENERATED,
-            "refused_power",
-            "active_power",
-        )
-    )
-    fed_back = np.maximum(-active, 0.0)
-    powers = {
-        "braked_mwh": braked,
-        "friction_mwh": braked - electric,
-        "machine_losses_mwh": electric - regenerated - refused,
-        "refused_mwh": refused,
-        "own_use_mwh": regenerated - fed_back,
-        "fed_back_mwh": fed_back,
-    }
+    powers = parts_of(_recorded(dataset))
     return pd.DataFrame(
         {
             "train": dataset.train.to_numpy(),
@@ -55,7 +54,7 @@ def regeneration(dataset: xr.Dataset) -> pd.DataFrame:
     )
 
 
-def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Any] | None:
+def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, float] | None:
     """Totals of all trains, and where what they feed back goes; None without electric brakes.
 
     In each step stations take back no more than trains feed back; what they take beyond comes from
@@ -63,28 +62,88 @@ def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Any] | None:
     """
     if REGENERATED not in dataset:
         return None
-    totals = regeneration(dataset).drop(columns=["train", "service"]).sum()
-    given = np.maximum(-np.nan_to_num(step_values(dataset, "active_power")), 0.0).sum(axis=1)
-    taken = np.maximum(-np.nan_to_num(step_values(dataset, "station_active_power")), 0.0)
-    # A station that takes nothing back takes a thousandth of its rating at most, for its angle.
-    taken[:, [station.feedback == "none" for station in scenario.supply.stations]] = 0.0
-    to_stations = _no_more_than(given, taken)
-    burns = np.array([station.feedback == "resistor" for station in scenario.supply.stations])
-    by_station = over_time(to_stations, dataset) / J_PER_MWH
-    to_grid, burnt = float(by_station[~burns].sum()), float(by_station[burns].sum())
+    return {name: float(mwh.sum()) for name, mwh in _energies_mwh(dataset, scenario).items()}
+
+
+def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
+    """The same by service, a column for each of `TOTALS`; without electric brakes all is friction.
+
+    Of what trains feed back in a step, those that feed back have the same share used, taken or burnt.
+    """
+    if REGENERATED in dataset:
+        each = pd.DataFrame(_energies_mwh(dataset, scenario))
+    else:
+        braked = over_time(step_values(dataset, "braking_power"), dataset) / J_PER_MWH
+        each = pd.DataFrame(dict.fromkeys(TOTALS, np.zeros_like(braked)))
+        each = each.assign(braked_mwh=braked, friction_mwh=braked)
+    return each.groupby(dataset.service.to_numpy(), sort=False).sum()
+
+
+def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
+    """Energies by the names `TOTALS`, shape (trains,)."""
+    stations = step_values(dataset, "station_active_power")
+    powers = powers_of(_recorded(dataset), stations, sides_of(scenario))
+    return {name: over_time(each, dataset) / J_PER_MWH for name, each in powers.items()}
+
+
+def _recorded(dataset: xr.Dataset) -> dict[str, Floats]:
+    return {name: step_values(dataset, name) for name in RECORDED_POWERS}
+
+
+def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Power of the brakes and its parts, by the columns of their energies. [W], shape (steps, trains)
+
+    Parameters
+    ----------
+    recorded : mapping of str to array, shape (steps, trains)
+        What is recorded, by the names `RECORDED_POWERS`; NaN of trains that are not on the line. [W]
+    """
+    braked, electric, regenerated, refused, active = (
+        np.nan_to_num(recorded[name]) for name in RECORDED_POWERS
+    )
+    fed_back = np.maximum(-active, 0.0)
     return {
-        **{str(name): float(value) for name, value in totals.items()},
-        "used_by_others_mwh": float(totals["fed_back_mwh"]) - to_grid - burnt,
-        "to_grid_mwh": to_grid,
-        "burnt_in_stations_mwh": burnt,
+        "braked_mwh": braked,
+        "friction_mwh": braked - electric,
+        "machine_losses_mwh": electric - regenerated - refused,
+        "refused_mwh": refused,
+        "own_use_mwh": regenerated - fed_back,
+        "fed_back_mwh": fed_back,
     }
 
 
-def _no_more_than(given: Floats, taken: Floats) -> Floats:
-    """What stations take, shape (steps, stations), scaled down to what is given in each step."""
-    total = taken.sum(axis=1)
-    share = np.divide(np.minimum(given, total), total, out=np.zeros_like(total), where=total > 0.0)
-    return np.asarray(taken * share[:, None])
+def powers_of(
+    recorded: Mapping[str, Floats], station_w: Floats, sides: Sequence[StationSide]
+) -> dict[str, Floats]:
+    """Those, and where what is fed back goes, by the names `TOTALS`. [W], shape (steps, trains)
+
+    Parameters
+    ----------
+    recorded : mapping of str to array, shape (steps, trains)
+        As of `parts_of`.
+    station_w : array, shape (steps, stations)
+        Power that stations feed into the railway. [W]
+    sides : sequence of StationSide
+        What stations do with what is fed back.
+    """
+    parts = parts_of(recorded)
+    given = parts["fed_back_mwh"]
+    total = given.sum(axis=1)
+    taken = np.maximum(-np.nan_to_num(station_w), 0.0)
+    # A station that takes nothing back takes a thousandth of its rating at most, for its angle.
+    taken[:, [side.blocks for side in sides]] = 0.0
+    # What stations take beyond what trains give comes from other stations.
+    of_each = np.maximum(np.maximum(total, taken.sum(axis=1)), np.finfo(float).tiny)
+    burns = np.array([side.burns for side in sides], dtype=bool)
+    to_grid, burnt = (
+        given * (taken[:, which].sum(axis=1) / of_each)[:, None] for which in (~burns, burns)
+    )
+    return {
+        **parts,
+        "used_by_others_mwh": given - to_grid - burnt,
+        "to_grid_mwh": to_grid,
+        "burnt_in_stations_mwh": burnt,
+    }
 
 
 def in_words(totals: dict[str, Any]) -> str:

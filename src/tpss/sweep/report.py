@@ -182,7 +182,8 @@ def _spread(summary: Summary) -> Table:
 
 def _cases(outcome: Outcome) -> Table:
     """All cases, those that were not run too."""
-    columns = ["case", *outcome.varied, "status", *[n for n in SHOWN if n in outcome.table]]
+    shown = [n for n in SHOWN if n in outcome.table and outcome.table[n].notna().any()]
+    columns = ["case", *outcome.varied, "status", *shown]
     frame: pd.DataFrame = outcome.table[columns]
-    shown = tables.of_frame("cases", "Cases", frame)
-    return Table(shown.key, shown.caption, [heading(name) for name in columns], shown.rows)
+    table = tables.of_frame("cases", "Cases", frame)
+    return Table(table.key, table.caption, [heading(name) for name in columns], table.rows)

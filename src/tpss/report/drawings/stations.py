@@ -2,17 +2,22 @@
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
 import xarray as xr
 
 from tpss.report.drawings.parts import DOTTED, TIME, Curve, Drawing, Mark, Panel
-from tpss.report.palette import BLACK, COLOURS
+from tpss.report.palette import BLACK, COLOURS, STRONG_GREY
 from tpss.results.result import Result
+
+VISIBLE_MW = 0.01
+"""Power below 0 from which a station is said to take power back. [MW]"""
 
 
 def station_powers(runs: Mapping[str, Result]) -> Drawing:
     """Active and reactive power that each feeding station feeds into the railway, over time.
 
-    A colour is a station, a line style for each run.
+    A colour is a station, a line style for each run.  Where a station takes power back, a line marks 0:
+    what is below it goes to the station.
 
     Parameters
     ----------
@@ -25,8 +30,10 @@ def station_powers(runs: Mapping[str, Result]) -> Drawing:
     """
     active = _curves(runs, lambda data: data.station_active_power / 1e6)
     reactive = _curves(runs, lambda data: data.station_reactive_power / 1e6)
+    takes_back = any(np.nanmin(curve.y, initial=0.0) < -VISIBLE_MW for curve in active)
+    zero = [Mark(0.0, colour=STRONG_GREY)] if takes_back else []
     panels = [
-        Panel("active [MW]", active, "$P_G$ [MW]"),
+        Panel("active [MW]", [*zero, *active], "$P_G$ [MW]"),
         Panel("reactive [Mvar]", reactive, "$Q_G$ [MVAr]"),
     ]
     return Drawing(TIME, panels, panel_inch=2.0)

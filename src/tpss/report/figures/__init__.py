@@ -5,6 +5,7 @@ dashed, then dash-dotted.  All return a matplotlib figure, which is neither show
 ``journey({"as built": result}).savefig("journey.png")``.  `draw` makes one by its name.
 """
 
+from tpss.report.drawings import braking as _braking
 from tpss.report.drawings import converter_losses as _converter_losses
 from tpss.report.drawings import effort as _effort
 from tpss.report.drawings import energy as _energy
@@ -18,6 +19,7 @@ from tpss.report.figures.catalogue import FIGURES as FIGURES
 from tpss.report.figures.catalogue import draw as draw
 from tpss.report.render.static import static
 
+braking = static(_braking.braking)
 converter_losses = static(_converter_losses.converter_losses)
 effort = static(_effort.effort)
 energy_flow = static(_energy.energy_flow)

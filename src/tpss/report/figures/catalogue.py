@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from tpss.errors import ResultError, suggest
 from tpss.report.corridor import ALONG, along
+from tpss.report.drawings.braking import braking
 from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.effort import effort
 from tpss.report.drawings.energy import energy_flow
@@ -36,6 +37,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
+    "braking": ("run", lambda run, *_: braking({"": run})),
     "thermal": ("run", lambda run, *_: thermal({"": run})),
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
@@ -109,7 +111,8 @@ def draw(
 
 def applies(name: str, result: Result) -> bool:
     """Whether a figure shows something that the scenario of a result describes."""
-    return name != "converter-losses" or len(result.converter_losses) > 0
+    tables = {"converter-losses": "converter_losses", "braking": "regeneration"}
+    return name not in tables or len(getattr(result, tables[name])) > 0
 
 
 def demand_figure(name: str) -> None:
