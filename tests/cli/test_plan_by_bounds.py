@@ -35,7 +35,7 @@ def cases(folder):
 
 
 def test_run_says_round_by_round_how_far_the_proof_is_and_what_it_claims(solved, tmp_path):
-    assert "4 cases simulated: no plan costs less than" in solved.err
+    assert "5 cases simulated: no plan costs less than" in solved.err
     assert "5 of 8 cases were simulated, and none of them does" in solved.out
     assert ALL in solved.out
     assert cases(tmp_path) == 5

@@ -16,7 +16,7 @@ from tpss.planning.first_costs import first_costs
 from tpss.planning.lazily import prove_lazily, simulated_and_all
 from tpss.planning.plan import BOUNDS, SIMULATION
 from tpss.planning.solve import model_of
-from tpss.planning.strongest import bound_of, strongest
+from tpss.planning.strongest import Energies, bound_of, strongest
 from tpss.planning.turning import all_turns
 from tpss.planning.uncounted import unknown
 
@@ -307,9 +307,34 @@ def test_the_strongest_are_those_to_which_nothing_can_be_added(tmp_path):
 
 def test_a_bound_has_the_best_of_every_strongest_supply():
     """Energy 100 less 5 %, 12 given back and 5 % more, of minutes the fewest, whoever has them."""
-    operation = np.array([[100.0, 10.0, 3.0], [110.0, 12.0, 2.0]])
-    assert bound_of(operation, 0.05, 0, 1).tolist() == pytest.approx([95.0, 12.6, 2.0], rel=1e-15)
-    assert bound_of(operation[:, ::2], 0.0, 0, None).tolist() == [100.0, 2.0]
+    operation, none = np.array([[100.0, 10.0, 3.0], [110.0, 12.0, 2.0]]), np.zeros(2)
+    bound = bound_of(operation, none, 0.0, 0.05, Energies(0, 1))
+    assert bound.tolist() == pytest.approx([95.0, 12.6, 2.0], rel=1e-15)
+    bound = bound_of(operation[:, ::2], none, 0.0, 0.0, Energies(0, None))
+    assert bound.tolist() == [100.0, 2.0]
+
+
+def test_converters_lose_no_less_than_those_of_today_or_of_the_strongest():
+    """Of 100, 20 are lost, and 8 at least: the railway takes 80, so 88; 10 or 12 more go back."""
+    operation, lost = np.array([[100.0, 10.0]]), np.array([20.0])
+    bound = bound_of(operation, lost, 8.0, 0.0, Energies(0, 1))
+    assert bound.tolist() == [88.0, 22.0]
+    assert bound_of(operation * [1.0, 0.0], lost, 8.0, 0.0, Energies(0, 1)).tolist() == [88.0, 0.0]
+
+
+@pytest.mark.parametrize("idle_mw", [0.2, 1.0])
+def test_more_converters_may_lose_more(idle_mw, tmp_path):
+    """Each station loses so much without load: the strongest takes the most, and no bound fails."""
+    listed = CaseList(plan(tmp_path, FOUR))
+    table = outcomes(listed)
+    for case in listed.cases:
+        lost = idle_mw * (1 + listed.areas[0].configurations[case.configuration].size)
+        table.loc[case.digest, "converter_losses_mw"] = lost
+        table.loc[case.digest, "drawn_from_grid_mw"] += lost
+    every, answer = whole(tmp_path, FOUR, table), bounded(tmp_path, FOUR, table)[0]
+    assert answer.proof.holds
+    assert answer.best.cost == every.best.cost
+    assert answer.proof.simulated < answer.proof.cases
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
-"""Prove a plan by bounds: simulate the strongest supplies, then only what the best plan uses.
+"""Prove a plan by bounds: simulate the strongest supplies and today's, then what the best plan uses.
 
 What is simulated is a configuration with a traffic, with all outages required.  First come those of
-the strongest configurations, which give the bounds (`tpss.planning.strongest`); then the loop of
-`tpss.planning.prove`.  Everything is kept in the folder of the plan, so an interrupted proof goes on
-where it was.
+the strongest configurations and of today's, which give the bounds (`tpss.planning.strongest`); then the
+loop of `tpss.planning.prove`.  Everything is kept in the folder of the plan, so an interrupted proof
+goes on where it was.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -23,7 +23,7 @@ from tpss.planning.prove import Case as Cell
 from tpss.planning.prove import prove as proved
 from tpss.planning.solve import Model, Units, model_of
 from tpss.planning.steady import FINISHED
-from tpss.planning.strongest import strongest
+from tpss.planning.strongest import anchors, strongest
 from tpss.planning.tree import Indices
 
 Simulate = Callable[[Sequence[Case]], pd.DataFrame]
@@ -96,8 +96,9 @@ class _Search:
         for case in self.case_list.cases:
             unit = (case.area, case.state, case.configuration)
             self.by_unit.setdefault(unit, []).append(case)
+        first = [set(anchors(area).tolist()) for area in self.case_list.areas]
+        self._simulate({unit for unit in self.by_unit if unit[2] in first[unit[0]]})
         best = [set(strongest(area).tolist()) for area in self.case_list.areas]
-        self._simulate({unit for unit in self.by_unit if unit[2] in best[unit[0]]})
         bounded = self._with_bounds(best)
         if rest := {unit for unit in self.by_unit if unit[:2] not in bounded}:
             self._simulate(rest)

@@ -238,13 +238,13 @@ class Evaluation(Part):
     by: Literal["simulation", "bounds"] = Field(
         default="simulation",
         description="Whether every case is simulated, or only what proves a plan to be the best if no "
-        "case costs less than a bound: what the strongest supply uses, less a margin.",
+        "case costs less than a bound: what the strongest supplies use, less a margin.",
     )
     bound_margin_percent: Real = Field(
         default=5.0,
         ge=0,
         lt=100,
-        description="How much less energy than with the strongest supply a case may take, by bounds.",
+        description="How much less energy than with the strongest supplies a case may take, by bounds.",
     )
     audit_cases: Whole = Field(
         default=0,

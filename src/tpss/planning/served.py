@@ -25,7 +25,7 @@ from tpss.planning.prices import Flags, Quantities
 from tpss.planning.requirements import records_of, verdicts
 from tpss.planning.states import State
 from tpss.planning.steady import FINISHED
-from tpss.planning.strongest import bound_of, strongest
+from tpss.planning.strongest import UNCHANGED, Energies, bound_of, strongest
 from tpss.planning.tree import Indices
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import DEPARTURES
@@ -139,21 +139,32 @@ def _bounds(
     runs: list[dict[str, "_Run"]],
 ) -> Array:
     """Least use of each state of traffic, NaN where no strongest supply came through."""
-    file, area = case_list.plan.file, case_list.areas[number]
+    file = case_list.plan.file
     components, hours = components_of(file), file.economics.running_hours_per_year
-    given_back = components.index(FED_BACK) if FED_BACK in components else None
+    energies = Energies(
+        components.index(ENERGY), components.index(FED_BACK) if FED_BACK in components else None
+    )
+    through = {key: row for key, row in rows.items() if row["status"] == FINISHED}
+    lost = {key: _lost_by_converters(row) * hours * KWH_PER_MWH for key, row in through.items()}
+    # Where today's supply does not come through, its converters lose no less than with other traffic.
+    ever = min((lost[key] for key in lost if key[1] == UNCHANGED), default=0.0)
     bound = np.full((len(runs), len(components)), np.nan)
-    best = strongest(area)
+    best = strongest(case_list.areas[number]).tolist()
     for d, own in enumerate(runs):
-        uses = [
-            _operation(rows[d, c], own, components, hours)
-            for c in best.tolist()
-            if (d, c) in rows and rows[d, c]["status"] == FINISHED
-        ]
-        if uses:
+        there = [c for c in best if (d, c) in through]
+        if there:
+            uses = np.array([_operation(through[d, c], own, components, hours) for c in there])
+            losses = np.array([lost[d, c] for c in there])
+            least = min(float(losses.min()), lost.get((d, UNCHANGED), ever))
             margin = file.evaluate.bound_margin_percent / 100.0
-            bound[d] = bound_of(np.array(uses), margin, components.index(ENERGY), given_back)
+            bound[d] = bound_of(uses, losses, least, margin, energies)
     return bound
+
+
+def _lost_by_converters(row: Mapping[str, Any]) -> float:
+    """What converters lose that describe it, in the mean. [MW]"""
+    lost = row.get("converter_losses_mw")
+    return 0.0 if lost is None or np.isnan(lost) else float(lost)
 
 
 def _put_bounds(operation: Array, is_simulated: Flags, bound: Array) -> None:
