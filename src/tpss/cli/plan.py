@@ -5,7 +5,7 @@ import os
 import random
 import sys
 import time
-from collections.abc import Sized
+from collections.abc import Callable, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from tpss.errors import AuditError, NoPlanError
 if TYPE_CHECKING:
     from tpss.planning.cases import CaseList
     from tpss.planning.load import Plan
+    from tpss.planning.prove import Round
     from tpss.sweep.progress import Advance
 
 GAP_LEFT = 5
@@ -94,6 +95,7 @@ def _without_source(plan: "Plan") -> list[str]:
 def _print_time(case_list: "CaseList", console: Console) -> None:
     """How many cases there are, and how long they take, from a few of them."""
     from tpss.planning.cases import distinct
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.rows import row_of
 
     cases = distinct(case_list.cases)
@@ -109,11 +111,12 @@ def _print_time(case_list: "CaseList", console: Console) -> None:
             break
     case_s = (time.perf_counter() - started) / done
     cores = os.cpu_count() or 1
+    most = "" if evaluation.by == SIMULATION else "At most "
     whole_s = math.ceil(len(cases) * case_s / cores)
     say(
         console,
-        f"{len(cases):,} cases, {1e3 * case_s:.0f} ms each, about {whole_s:,} s on {cores} core(s).  "
-        "Nothing was written.",
+        f"{most}{len(cases):,} cases, {1e3 * case_s:.0f} ms each, about {whole_s:,} s on "
+        f"{cores} core(s).  Nothing was written.",
     )
 
 
@@ -124,14 +127,18 @@ def run_plan(
     scheduler: str | None,
     gap: float,
     time_limit_s: float | None,
+    simulate_all: bool,
     quiet: bool,
 ) -> int:
     """Simulate the cases of a plan, solve it and write the answer; return the exit code."""
     demand_packages()
     from tpss.planning.load import load_plan
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.run import run_plan as run
 
     plan = load_plan(file)
+    if simulate_all:
+        plan = plan.with_({"evaluate.by": SIMULATION})
     console = Console(stderr=True, quiet=quiet)
     announce_compilation(console)
     try:
@@ -139,6 +146,7 @@ def run_plan(
             answered = run(
                 plan, out, threads=workers, scheduler=scheduler, gap=gap,
                 time_limit_s=time_limit_s, report=report,
+                tell=_rounds(console),
             )  # fmt: skip
     except KeyboardInterrupt:
         print(
@@ -159,6 +167,29 @@ def exit_code_of(error: AuditError | NoPlanError) -> int:
     if isinstance(error, AuditError):
         return AUDIT_FAILED
     return BAD_INPUT if error.limit == "budget" else NO_SOLUTION
+
+
+def _rounds(console: Console) -> Callable[["Round"], None]:
+    """Prints rounds of a proof by bounds in which a better plan was found, and those that close it."""
+    best = math.nan
+
+    def tell(each: "Round") -> None:
+        nonlocal best
+        if each.upper != best or each.lower >= each.upper:
+            say(console, _round_in_words(each))
+        best = each.upper
+
+    return tell
+
+
+def _round_in_words(each: "Round") -> str:
+    """How far a proof by bounds has come."""
+    from tpss.planning.sentence import money
+
+    best = f"the best so far {money(each.upper)}" if math.isfinite(each.upper) else "none known yet"
+    return (
+        f"{each.simulated:,} cases simulated: no plan costs less than {money(each.lower)}, {best}"
+    )
 
 
 def _progress(state: "Advance") -> dict[str, Any]:

@@ -80,20 +80,30 @@ def run(
     ] = None,
     gap: Gap = 1e-9,
     time_limit: TimeLimit = None,
+    all_: Annotated[
+        bool,
+        option(
+            "--all",
+            help='Simulate every case, also of a plan that is proved by bounds (by = "bounds").',
+        ),
+    ] = False,
     quiet: Quiet = False,
 ) -> None:
     """Simulate the cases of a plan, find the best plan of all, and write it with its tables.
+
+    Of a plan with `by = "bounds"` only those cases are simulated that prove it to be the best one, if
+    no case costs less than its bound. That is tested on every simulated case.
 
     After an interruption of any kind the same command continues, and simulates no case twice; so it
     does after a change of the plan.
 
     Exit codes: 0 done, 2 bad input, or no plan meets the budget, 3 no plan meets the requirements,
-    4 the audit of a case failed, 5 a better plan may exist: the time was over, 130 interrupted
-    (finished cases are kept).
+    4 the audit of a case failed, 5 a better plan may exist: the time was over, or a bound did not hold,
+    130 interrupted (finished cases are kept).
     """
     from tpss.cli.plan import run_plan
 
-    raise typer.Exit(run_plan(file, out, workers, scheduler, gap, time_limit, quiet))
+    raise typer.Exit(run_plan(file, out, workers, scheduler, gap, time_limit, all_, quiet))
 
 
 @app.command(

@@ -11,7 +11,7 @@ from tpss.cli.plan_tables import print_firsts, print_frame
 from tpss.cli.run import DONE, NO_SOLUTION
 from tpss.cli.sweep import demand_packages
 from tpss.cli.terminal import say
-from tpss.errors import AuditError, Finding, NoPlanError, ScenarioError, no_such
+from tpss.errors import AuditError, Finding, NoPlanError, PlanError, ScenarioError, no_such
 
 
 def price_plan(
@@ -20,13 +20,20 @@ def price_plan(
     """Price a plan anew and print its first decisions, and where they turn; return the exit code."""
     demand_packages()
     from tpss.planning.answer import Effort, answer_of
+    from tpss.planning.lazily import ALL
+    from tpss.planning.plan import BOUNDS
     from tpss.planning.sentence import sentences
     from tpss.planning.turning import varied
+    from tpss.planning.uncounted import unknown
     from tpss.planning.write import read_model, switching_table
     from tpss.scenario.override import parse_assignment
 
     try:
         model = read_model(folder, dict(parse_assignment(text) for text in assignments))
+        if sweeps and model.has_bounds:
+            raise PlanError(
+                f"where the first decision turns is told if all cases were simulated: {ALL}"
+            )
         answer = answer_of(model, Effort(gap, time_limit_s or math.inf))
     except (AuditError, NoPlanError) as error:
         print(str(error), file=sys.stderr)
@@ -34,7 +41,11 @@ def price_plan(
     console = Console()
     for sentence in sentences(answer, ()):
         say(console, sentence)
+    if model.plan.file.evaluate.by == BOUNDS:
+        say(console, answer.claim)
     print_firsts(answer, console)
+    for line in unknown(model):
+        say(console, line)
     ranges = [_range_of(text) for text in sweeps]
     known = {each.key: each for each in varied(model)} if ranges else {}
     turns = []
@@ -79,6 +90,7 @@ def why_not(folder: Path, text: str, assignments: list[str]) -> int:
     """Print what the best plan costs that contains some measures, and why; return the exit code."""
     demand_packages()
     from tpss.planning.answer import Effort
+    from tpss.planning.lazily import ALL, refuse_bounds
     from tpss.planning.program import solve_any
     from tpss.planning.questions import best_with, not_carried, question_of
     from tpss.planning.sentence import money
@@ -89,10 +101,16 @@ def why_not(folder: Path, text: str, assignments: list[str]) -> int:
     model = read_model(folder, dict(parse_assignment(each) for each in assignments))
     question, effort = question_of(text, model), Effort()
     best = solve_any(model.problem, effort.gap)
+    refuse_bounds(model, best.policy, "the best plan")
     found = best_with(question, model, effort)
     console, currency = Console(), model.plan.file.economics.currency
     if found is None:
         say(console, f"There is no plan with {text}: dates, exclusions or the budget leave none.")
+    elif units := model.lacking_of(found.policy):
+        more = found.cost - best.cost
+        say(console, f"The best plan with {text}: at least {money(found.cost)} {currency} expected, "
+            f"at least {money(more)} more than the best of all; {len(units):,} of its configurations "
+            f"with a traffic were not simulated. {ALL} simulates them.")  # fmt: skip
     else:
         more = found.cost - best.cost
         say(console, f"The best plan with {text}: {money(found.cost)} {currency} expected, "

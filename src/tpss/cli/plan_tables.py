@@ -23,14 +23,16 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     """Print an answer: its sentences, what is done when, what else one could do, what it is worth."""
     from tpss.planning import tables
     from tpss.planning.sentence import sentences
-    from tpss.planning.uncounted import estimated, uncounted
+    from tpss.planning.uncounted import estimated, uncounted, unknown
 
     economics = answer.model.plan.file.economics
     unit = f"{economics.currency} of {economics.price_year}"
     for sentence in sentences(answer, turns):
         say(console, sentence)
     say(console, answer.claim)
-    if not answer.is_closed:
+    for line in unknown(answer.model):
+        say(console, line)
+    if not answer.is_closed and answer.proof.holds:
         say(
             console,
             f"A better plan may cost {100 * answer.best.gap:.2g} % less: more time decides.",
@@ -60,6 +62,8 @@ def print_firsts(answer: "Answer", console: Console) -> None:
     firsts = tables.first_decisions(answer)
     columns = {"ordered": "ordered", "in_service": "in service", "configuration": "configuration",
                "cost": "cost", "surplus": "more"}  # fmt: skip
+    if tables.KNOWN in firsts:
+        columns[tables.KNOWN] = tables.KNOWN
     for (area, scenarios), group in firsts.groupby(["area", "if"], sort=False):
         title = f"First decisions of {area}"
         if firsts["if"].nunique() > 1:

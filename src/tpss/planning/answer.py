@@ -1,5 +1,6 @@
 """The answer to a plan: what to do when, what else one could do, and what it is worth to know."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,9 +11,10 @@ from tpss.planning.claim import claim
 from tpss.planning.costs import expected_cost
 from tpss.planning.counting import number_of_plans
 from tpss.planning.dynamic import FirstDecision, first_decisions
+from tpss.planning.lazily import proof_of
 from tpss.planning.problem import Problem, Solution
 from tpss.planning.program import GAP, solve_any
-from tpss.planning.prove import Grade, Proof
+from tpss.planning.prove import Proof
 from tpss.planning.solve import Model
 from tpss.planning.tree import Indices
 from tpss.planning.worth import Worth, decided_first, worth_of
@@ -39,32 +41,54 @@ class Answer:
     claim: str
     """What may be claimed of the plan."""
     is_closed: bool
-    """Whether no better plan is possible, up to the gap that was asked for."""
+    """Whether no better plan is possible, up to the gap that was asked for, as far as is known."""
+    proof: Proof
+    """What the claim stands on."""
 
     @property
     def best(self) -> Solution:
         """The best plan."""
         return self.worth.best
 
+    def is_bound(self, policy: Indices, scenario: int | None = None) -> bool:
+        """Whether what a plan costs is a bound, as not all that it uses was simulated.
+
+        Parameters
+        ----------
+        policy : array of int, shape (areas, nodes)
+            Or of the shape (areas, stages), of one scenario.
+        scenario : int, optional
+        """
+        if not self.model.has_bounds:
+            return False
+        tree = self.model.tree
+        nodes = None if scenario is None else tree.node_of[scenario]
+        return bool(self.model.lacking_of(policy, nodes))
+
 
 def answer_of(model: Model, effort: Effort = Effort()) -> Answer:
-    """Solve a model all of whose cases were simulated.
+    """Solve a model all of whose cases were simulated, or that a proof by bounds has made.
 
     Raises
     ------
     NoPlanError
         No plan meets the budgets.
     PlanError
-        There is no plan yet when the time is over, or a solver is not installed.
+        There is no plan yet when the time is over, a solver is not installed, or the best plan uses
+        what was not simulated.
     """
     problem = model.problem
-    solver = partial(solve_any, gap=effort.gap, time_limit_s=effort.time_limit_s)
-    worth = worth_of(problem, solver=solver)
+    worth = worth_of(problem, solver=solver_of(effort))
+    proof = proof_of(model, worth.best)
     firsts = first_choices(problem, worth.best, effort)
-    cases = len({case.digest for case in model.case_list.cases})
-    proof = Proof(worth.best, Grade.EXHAUSTIVE, (), (), cases, cases, 0)
     sentence = claim(proof, number_of_plans(problem), effort.gap)
-    return Answer(model, worth, tuple(firsts), sentence, worth.best.gap <= effort.gap)
+    is_closed = worth.best.gap <= effort.gap and proof.holds
+    return Answer(model, worth, tuple(firsts), sentence, is_closed, proof)
+
+
+def solver_of(effort: Effort) -> Callable[[Problem], Solution]:
+    """What finds the best plan of a problem."""
+    return partial(solve_any, gap=effort.gap, time_limit_s=effort.time_limit_s)
 
 
 def first_choices(problem: Problem, best: Solution, effort: Effort) -> list[FirstDecision]:

@@ -14,6 +14,7 @@ from tpss.planning.configurations import (
     document_of,
 )
 from tpss.planning.load import Plan, PlannedArea
+from tpss.planning.plan import PROOF_KEYS
 from tpss.planning.states import State, States, states_of
 from tpss.scenario.inline import inline_files
 from tpss.scenario.scenario import Scenario
@@ -71,7 +72,7 @@ class CaseList:
 
     def _of(self, number: int) -> Iterator[Case]:
         area_cases = self.areas[number]
-        evaluation = digest_of(self.plan.file.evaluate.model_dump(exclude={"by", "most_cases"}))
+        evaluation = digest_of(self.plan.file.evaluate.model_dump(exclude=PROOF_KEYS))
         traffic = [
             digest_of([dict(state.values), _files_named(state, area_cases.area.source)])
             for state in area_cases.states.states

@@ -31,14 +31,16 @@ def _ground(proof: Proof) -> str:
     some = f"{proof.simulated:,} of {proof.cases:,} cases were simulated"
     if proof.grade is Grade.EXHAUSTIVE or proof.simulated == proof.cases:
         return f": all {proof.cases:,} cases were simulated."
-    if proof.grade is Grade.BOUNDED:
-        return f", if no case costs less than its bound: {some}, and none of them does."
     words = f", if the lower ends of the approximator hold: {some}, and none is below its own."
+    verb, verbs = "is", "are"
+    if proof.grade is Grade.BOUNDED:
+        words = f", if no case costs less than its bound: {some}, and none of them does."
+        verb, verbs = "does", "do"
     if (rate := proof.fault_rate) is None:
         return words
     return (
-        f"{words} Nor is any of {proof.audited:,} that were drawn at random: at most "
-        f"{100.0 * rate:.2g} % of all are, with 95 % confidence, which is a rate and no proof."
+        f"{words} Nor {verb} any of {proof.audited:,} that were drawn at random: at most "
+        f"{100.0 * rate:.2g} % of all {verbs}, with 95 % confidence, which is a rate and no proof."
     )
 
 
@@ -46,9 +48,9 @@ def _withdrawn(proof: Proof) -> str:
     """Why nothing is claimed, and what to do."""
     worst = max(proof.violations, key=lambda each: each.bound - each.cost)
     return (
-        f"Nothing is claimed of other plans: {len(proof.violations):,} of {proof.simulated:,} simulated "
-        f"cases cost less than their bounds, one of them {worst.cost:.6g} a year where the bound was "
-        f"{worst.bound:.6g}. Simulate all cases."
+        f"Nothing is claimed of other plans: of {proof.simulated:,} simulated cases "
+        f"{len(proof.violations):,} cost less than their bounds, one of them {worst.cost:.6g} a year "
+        f"where the bound was {worst.bound:.6g}. Simulate all cases: tpss plan run --all."
     )
 
 

@@ -14,7 +14,8 @@ MOST_FIRSTS = 12
 def first_costs(answer: Answer) -> pd.DataFrame:
     """Expected discounted cost by component of the best plan that contains each first decision.
 
-    The best first decisions only, and of each only what costs something, or is paid for.
+    The best first decisions only, and of each only what costs something, or is paid for; none of those
+    whose costs are bounds.
     """
     model, rows = answer.model, []
     components = (*model.served[0].quantities.components, INVESTMENT)
@@ -24,7 +25,7 @@ def first_costs(answer: Answer) -> pd.DataFrame:
             dict.fromkeys(w for n in each.nodes for w in model.tree.scenarios_through(n))
         )
         told[each.area, through] = told.get((each.area, through), 0) + 1
-        if told[each.area, through] > MOST_FIRSTS:
+        if told[each.area, through] > MOST_FIRSTS or answer.is_bound(each.policy):
             continue
         parts = [p.by_component(row) for p, row in zip(model.priced, each.policy, strict=True)]
         discounted = costs_by_part(model.problem, each.policy, parts)[1].sum(axis=1)

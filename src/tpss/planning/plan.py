@@ -10,6 +10,12 @@ from tpss.scenario.fields import Flag, Name, Part, Real, Version, Whole, ascendi
 PlainName = Annotated[Name, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 """A name without spaces, from which others are made."""
 
+SIMULATION, BOUNDS = "simulation", "bounds"
+"""Ways in which a plan is proved: every case is simulated, or what the proof takes."""
+
+PROOF_KEYS = {"by", "bound_margin_percent", "audit_cases", "audit_seed", "most_cases"}
+"""Keys of the evaluation that say which cases are simulated, not what comes of one."""
+
 LEVEL = "{level}"
 """Stands for the value of a measure's level, in its changes."""
 
@@ -229,7 +235,25 @@ class Area(Part):
 class Evaluation(Part):
     """How the operation of a year is found by simulation."""
 
-    by: Literal["simulation"] = Field(default="simulation", description="Every case is simulated.")
+    by: Literal["simulation", "bounds"] = Field(
+        default="simulation",
+        description="Whether every case is simulated, or only what proves a plan to be the best if no "
+        "case costs less than a bound: what the strongest supply uses, less a margin.",
+    )
+    bound_margin_percent: Real = Field(
+        default=5.0,
+        ge=0,
+        lt=100,
+        description="How much less energy than with the strongest supply a case may take, by bounds.",
+    )
+    audit_cases: Whole = Field(
+        default=0,
+        ge=0,
+        le=10_000_000,
+        description="Configurations with a traffic that are drawn at random and simulated, by bounds, "
+        "to test these.",
+    )
+    audit_seed: Whole = Field(default=0, ge=0, description="Seed of that draw.")
     time_step_min: Real | None = Field(
         default=None,
         ge=0.001,

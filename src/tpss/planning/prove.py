@@ -136,6 +136,11 @@ class Evidence:
         self.tables[case.area][nodes, case.configuration] = cost
         self.is_known[case.area][nodes, case.configuration] = True
 
+    def tighten(self, lower: Sequence[Array]) -> None:
+        """Put other bounds in the place of those of cases that are not known."""
+        for own, known, better in zip(self.tables, self.is_known, lower, strict=True):
+            own[~known] = better[~known]
+
     def cases(self, wanted: Sequence[Flags]) -> list[Case]:
         """Cases of some cells that are not known, each once; the most probable ones first."""
         weight: dict[Case, float] = {}
@@ -213,7 +218,7 @@ def prove(
     _find_out(evidence, simulate, evidence.cases([np.isnan(table) for table in evidence.lower]))
     rounds: list[Round] = []
     solution = _close(evidence, simulate, solver, rounds, tell)
-    drawn = _draw(evidence, bounded, audit, seed)
+    drawn = audit_of(evidence, audit, seed)
     open_ones = [case for case in drawn if case not in evidence.known]
     if open_ones:
         _find_out(evidence, simulate, open_ones)
@@ -270,10 +275,10 @@ def _all_cases(evidence: Evidence, cells: Sequence[Flags]) -> list[Case]:
     return sorted(found)
 
 
-def _draw(evidence: Evidence, bounded: Sequence[Flags], count: int, seed: int) -> list[Case]:
-    """Cases of an audit, whatever was simulated already."""
+def audit_of(evidence: Evidence, count: int, seed: int) -> list[Case]:
+    """Cases with a bound that an audit draws at random, whatever was simulated already."""
     if not count:
         return []
-    cases = _all_cases(evidence, bounded)
+    cases = _all_cases(evidence, [np.isfinite(table) for table in evidence.lower])
     chosen = np.random.default_rng(seed).permutation(len(cases))[:count]
     return [cases[k] for k in chosen]

@@ -104,5 +104,5 @@ def not_carried(question: Question, model: Model) -> list[str]:
     return [
         f"{area.configurations[c].name} does not carry {state.name}: {'; '.join(reasons)}"
         for d, state in enumerate(area.states.states)
-        if (reasons := served.reasons[d, c])
+        if (reasons := served.reasons.get((d, c)))
     ]

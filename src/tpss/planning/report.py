@@ -12,6 +12,7 @@ from tpss.planning.figures.catalogue import FIGURES
 from tpss.planning.report_prices import tables_of_prices, without_source
 from tpss.planning.report_tables import tables_of, values
 from tpss.planning.sentence import TIE
+from tpss.planning.tables import KNOWN, SIMULATED
 from tpss.planning.written import Written, read_written
 from tpss.report.html import check_target
 from tpss.report.page import fill
@@ -109,14 +110,14 @@ def plan_report(written: Written) -> str:
 def _ties(written: Written) -> list[str]:
     """First decisions that cost the same as the best one, as exactly as costs are known."""
     frame = written.tables["first_decisions"]
-    found = []
+    found, several = [], frame["if"].nunique() > 1
+    if KNOWN in frame:
+        frame = frame[frame[KNOWN] == SIMULATED]
     for (area, futures), group in frame.groupby(["area", "if"], sort=False):
         close = group[(group.surplus <= TIE * group.cost.abs())].configuration.tolist()
         if len(close) > 1:
             where = f"{area}: " if len(written.areas) > 1 else ""
-            when = (
-                f" if {written.futures_in_words(str(futures))}" if frame["if"].nunique() > 1 else ""
-            )
+            when = f" if {written.futures_in_words(str(futures))}" if several else ""
             found.append(f"{where}{', '.join(close)}{when}")
     return found
 

@@ -1,16 +1,21 @@
 """A plan from its file to its answer: checked, simulated, solved and written."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import pandas as pd
+
 from tpss.errors import Finding, ScenarioError
-from tpss.planning.answer import Answer, Effort, answer_of
+from tpss.planning.answer import Answer, Effort, answer_of, solver_of
 from tpss.planning.case_folder import CaseFolder
-from tpss.planning.cases import CaseList
+from tpss.planning.cases import Case, CaseList
 from tpss.planning.configurations import check_configurations
+from tpss.planning.lazily import prove_lazily
 from tpss.planning.load import Plan
+from tpss.planning.plan import SIMULATION
+from tpss.planning.prove import Round
 from tpss.planning.simulate import simulate_cases
 from tpss.planning.solve import model_of, tree_of
 from tpss.planning.turning import Turn, all_turns
@@ -36,9 +41,9 @@ def check_plan(plan: Plan) -> CaseList:
     """
     case_list = CaseList(plan)
     most = plan.file.evaluate.most_cases
-    if len(case_list) > most:
+    if len(case_list) > most and plan.file.evaluate.by == SIMULATION:
         problem = f"{len(case_list):,} cases are more than that"
-        remedy = "raise it, or let measures exclude each other"
+        remedy = 'raise it, let measures exclude each other, or prove by bounds: by = "bounds"'
         place = (str(plan.source), "evaluate.most_cases", str(most))
         raise ScenarioError([Finding(*place, problem, remedy)])
     for each in case_list.areas:
@@ -56,8 +61,12 @@ def run_plan(
     gap: float | None = None,
     time_limit_s: float | None = None,
     report: Callable[[Advance], None] | None = None,
+    tell: Callable[[Round], None] | None = None,
 ) -> Answered:
     """Simulate the cases of a plan that its folder does not hold, solve it, and write the answer there.
+
+    With ``evaluate.by = "bounds"`` only those cases that prove a plan to be the best one, if no case
+    costs less than its bound.
 
     Parameters
     ----------
@@ -74,11 +83,14 @@ def run_plan(
         With a budget: time after which the best plan so far is taken, of each search. [s]
     report : callable, optional
         Called after every case.
+    tell : callable, optional
+        By bounds: called after every round of the proof.
 
     Returns
     -------
     Answered
-        If the time was over, its ``answer.is_closed`` says that a better plan may exist.
+        If the time was over, or a bound did not hold, its ``answer.is_closed`` says that a better plan
+        may exist.
 
     Raises
     ------
@@ -95,10 +107,17 @@ def run_plan(
     effort = Effort(effort.gap if gap is None else gap, time_limit_s or math.inf)
     case_list, target = check_plan(plan), CaseFolder(Path(folder))
     with target.opened():
-        table = simulate_cases(
-            case_list, target, case_list.cases, threads=threads, scheduler=scheduler, report=report
-        )
-        answer = answer_of(model_of(case_list, table), effort)
+
+        def simulate(cases: Sequence[Case]) -> pd.DataFrame:
+            return simulate_cases(
+                case_list, target, cases, threads=threads, scheduler=scheduler, report=report
+            )
+
+        if plan.file.evaluate.by == SIMULATION:
+            model = model_of(case_list, simulate(case_list.cases))
+        else:
+            model = prove_lazily(case_list, simulate, solver_of(effort), tell)
+        answer = answer_of(model, effort)
         answered = Answered(answer, tuple(all_turns(answer)))
         write_answer(target.path, answer, answered.turns)
     return answered

@@ -49,7 +49,7 @@ def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]
         )
         when = f" if {' or '.join(through)}"
     others = ", ".join(
-        _other(name, each, is_first=i == 0)
+        _other(answer, name, each, is_first=i == 0)
         for i, (name, each) in enumerate(zip(names[1:], firsts[1:], strict=True))
         if i < ALTERNATIVES
     )
@@ -58,10 +58,13 @@ def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]
     return "; ".join(part for part in parts if part) + "."
 
 
-def _other(name: str, first: FirstDecision, is_first: bool) -> str:
+def _other(answer: Answer, name: str, first: FirstDecision, is_first: bool) -> str:
     """What another first decision costs more."""
+    instead = f"{name}{' instead costs' if is_first else ''}"
+    if answer.is_bound(first.policy):
+        return f"{instead} at least {money(first.surplus)} more"
     tie = ", which is a tie" if first.is_tie(TIE) else ""
-    return f"{name}{' instead costs' if is_first else ''} {money(first.surplus)} more{tie}"
+    return f"{instead} {money(first.surplus)} more{tie}"
 
 
 def in_words(answer: Answer, first: FirstDecision) -> str:

@@ -3,26 +3,29 @@
 A configuration that does not carry the traffic asked for runs less: another state of the plan that it
 carries, with no more trains of any service, or no train at all.  What it does not run is missed.  So
 every plan is possible, and what a weak supply costs is the value of trains.
+
+Of a plan that is proved by bounds, what was not simulated has those of `tpss.planning.strongest`.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from tpss.errors import Finding, ScenarioError
+from tpss.errors import Finding, PlanError, ScenarioError
 from tpss.planning.cases import INTACT, Case, CaseList
 from tpss.planning.money import Array
 from tpss.planning.outcome import trains_per_h
 from tpss.planning.period import period_of
-from tpss.planning.plan import PlanFile
+from tpss.planning.plan import BOUNDS, PlanFile
 from tpss.planning.plan_faults import PRICES
-from tpss.planning.prices import Quantities
+from tpss.planning.prices import Flags, Quantities
 from tpss.planning.requirements import records_of, verdicts
 from tpss.planning.states import State
 from tpss.planning.steady import FINISHED
+from tpss.planning.strongest import bound_of, strongest
 from tpss.planning.tree import Indices
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.traffic import DEPARTURES
@@ -47,7 +50,13 @@ class Served:
     traffic: tuple[str, ...]
     """Names of the traffic that may be run: the states of the plan, and none."""
     reasons: Mapping[tuple[int, int], list[str]]
-    """By state and configuration; an empty list: it is carried."""
+    """By state and configuration, of those that were simulated; an empty list: it is carried."""
+    is_simulated: Flags
+    """Whether what a configuration uses of a traffic was simulated, not a bound, shape (traffic,
+    configurations)."""
+    bound: Array | None
+    """Of a plan that is proved by bounds: least use of a traffic by any configuration, without its
+    fixed cost, NaN where none is known, shape (states, components)."""
 
 
 def components_of(file: PlanFile) -> tuple[str, ...]:
@@ -79,9 +88,14 @@ def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node:
         A case could not be simulated, or what it feeds back has no price.
     AuditError
         The audit of a case failed.
+    PlanError
+        A case was not simulated, and has no bound.
     """
     area, file = case_list.areas[number], case_list.plan.file
     own = [case for case in case_list.cases if case.area == number]
+    is_bounded = file.evaluate.by == BOUNDS
+    if is_bounded:
+        own = whole_ones(own, table)
     reasons = verdicts(area, own, table, file.require)
     runs = [_trains(case_list, number, d) for d in range(len(area.states.states))]
     states, configurations = len(area.states.states), len(area.configurations)
@@ -95,11 +109,62 @@ def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node:
         carried[d, c] = not failed
         if not failed:
             operation[d, c] = _operation(rows[d, c], runs[d], components, hours)
+    is_simulated, bound = np.ones_like(carried), None
+    if is_bounded:
+        is_simulated[:states] = [
+            [(d, c) in reasons for c in range(configurations)] for d in range(states)
+        ]
+        bound = _bounds(case_list, number, rows, runs)
+        _put_bounds(operation[:states], is_simulated[:states], bound)
     operation[:, :, components.index(FIXED)] += _fixed(case_list, number)
     unserved, may_serve = _missed(area.states.states, runs, components, hours)
     quantities = Quantities(components, operation, carried, unserved, may_serve, state_of_node)
     names = (*(state.name for state in area.states.states), NO_TRAFFIC)
-    return Served(quantities, names, reasons)
+    return Served(quantities, names, reasons, is_simulated, bound)
+
+
+def whole_ones(cases: Sequence[Case], table: pd.DataFrame) -> list[Case]:
+    """Cases of the configurations with a traffic that were simulated, with all outages required."""
+    known = set(table.index)
+    lacking = {
+        (case.area, case.state, case.configuration) for case in cases if case.digest not in known
+    }
+    return [case for case in cases if (case.area, case.state, case.configuration) not in lacking]
+
+
+def _bounds(
+    case_list: CaseList,
+    number: int,
+    rows: Mapping[tuple[int, int], Mapping[str, Any]],
+    runs: list[dict[str, "_Run"]],
+) -> Array:
+    """Least use of each state of traffic, NaN where no strongest supply came through."""
+    file, area = case_list.plan.file, case_list.areas[number]
+    components, hours = components_of(file), file.economics.running_hours_per_year
+    given_back = components.index(FED_BACK) if FED_BACK in components else None
+    bound = np.full((len(runs), len(components)), np.nan)
+    best = strongest(area)
+    for d, own in enumerate(runs):
+        uses = [
+            _operation(rows[d, c], own, components, hours)
+            for c in best.tolist()
+            if (d, c) in rows and rows[d, c]["status"] == FINISHED
+        ]
+        if uses:
+            margin = file.evaluate.bound_margin_percent / 100.0
+            bound[d] = bound_of(np.array(uses), margin, components.index(ENERGY), given_back)
+    return bound
+
+
+def _put_bounds(operation: Array, is_simulated: Flags, bound: Array) -> None:
+    """Let what was not simulated use what is least."""
+    lacking = ~is_simulated
+    if unknown := int(lacking[np.isnan(bound).any(axis=1)].sum()):
+        raise PlanError(
+            f"{unknown:,} configurations with a traffic were neither simulated nor have a "
+            "bound: the plan or its scenarios have changed; run tpss plan run again, which adds them"
+        )
+    operation[lacking] = np.broadcast_to(bound[:, np.newaxis], operation.shape)[lacking]
 
 
 def _intact_rows(own: list[Case], table: pd.DataFrame) -> dict[tuple[int, int], Mapping[str, Any]]:

@@ -19,6 +19,9 @@ from tpss.planning.states import at_stage
 from tpss.planning.transitions import Changes
 from tpss.planning.tree import Indices, Tree, make_tree
 
+Units = set[tuple[int, int, int]]
+"""Areas, traffics and configurations that are simulated together, with all outages required."""
+
 
 @dataclass(frozen=True)
 class Model:
@@ -26,7 +29,7 @@ class Model:
 
     case_list: CaseList
     table: pd.DataFrame
-    """Outcomes of all its cases by digest."""
+    """Outcomes by digest: of all its cases, or of those that a proof by bounds takes."""
     served: tuple[Served, ...]
 
     @property
@@ -73,9 +76,53 @@ class Model:
         limit = None if budget is None else np.array(budget.per_stage)[self.tree.stage]
         return Problem(self.tree, self.stages, areas, limit)
 
+    @cached_property
+    def has_bounds(self) -> bool:
+        """Whether some costs are bounds, as not all cases were simulated."""
+        return not all(each.is_simulated.all() for each in self.served)
+
+    def lacking(self, area: int, nodes: Indices, configuration: Indices) -> Units:
+        """What was not simulated of that on which the costs of some configurations depend.
+
+        The traffic that is asked for, and the one that is run.
+
+        Parameters
+        ----------
+        area : int
+        nodes : array of int, shape (n,)
+        configuration : array of int, shape (n,)
+            One for each of these nodes.
+        """
+        own, priced = self.served[area], self.priced[area]
+        policy = np.zeros(self.tree.nodes, dtype=np.int64)
+        policy[nodes] = configuration
+        asked, run = own.quantities.state_of_node[nodes], priced.served(policy)[nodes]
+        return {
+            (area, int(g), int(c))
+            for traffic in (asked, run)
+            for g, c in zip(traffic, configuration, strict=True)
+            if not own.is_simulated[g, c]
+        }
+
+    def lacking_of(self, policy: Indices, nodes: Indices | None = None) -> Units:
+        """What was not simulated of a plan; what it costs is a bound then.
+
+        Parameters
+        ----------
+        policy : array of int, shape (areas, nodes)
+        nodes : array of int, optional
+            Nodes that the plan is for; by default all of them.
+        """
+        if nodes is None:
+            nodes = np.arange(self.tree.nodes)
+        found: Units = set()
+        for k, row in enumerate(policy):
+            found |= self.lacking(k, nodes, row)
+        return found
+
 
 def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
-    """Model of a plan all of whose cases were simulated.
+    """Model of a plan all of whose cases were simulated, or have bounds.
 
     Parameters
     ----------
@@ -90,7 +137,7 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     AuditError
         The audit of a case failed.
     PlanError
-        The tables make no plan.
+        The tables make no plan, or a case was neither simulated nor has a bound.
     """
     tree = tree_of(case_list)
     each = tuple(

@@ -1,6 +1,7 @@
 """Tables of an answer: decisions, first decisions, costs, regret, values, configurations."""
 
 from collections.abc import Iterator
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,13 @@ from tpss.planning.worth import costs_by_part
 
 INVESTMENT = "investment"
 """Names what is charged for changes, among the components of costs."""
+
+
+KNOWN, SIMULATED, AT_LEAST = "known", "simulated", "at least"
+"""Column that says how well a cost is known, and what it says, where some costs are bounds."""
+
+NOT_SIMULATED = "not simulated"
+"""Stands where it is not known whether a configuration carries a traffic."""
 
 
 def configuration_names(model: Model, area: int) -> list[str]:
@@ -88,9 +96,15 @@ def first_decisions(answer: Answer) -> pd.DataFrame:
                 "configuration": configuration_names(model, each.area)[each.configuration],
                 "cost": each.cost,
                 "surplus": each.surplus,
+                **({KNOWN: _known(answer, each.policy)} if model.has_bounds else {}),
             }
         )
     return pd.DataFrame(rows)
+
+
+def _known(answer: Answer, policy: Indices) -> str:
+    """How well the cost of a plan is known."""
+    return AT_LEAST if answer.is_bound(policy) else SIMULATED
 
 
 def costs(answer: Answer) -> pd.DataFrame:
@@ -132,12 +146,14 @@ def cost_difference(model: Model, policy: Indices, other: Indices) -> pd.DataFra
 
 
 def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
-    """The best plans in the order of their costs, node by node; none with a budget."""
+    """The best plans in the order of their costs, node by node; none with a budget.
+
+    Where some costs are bounds: only as far as the order is known.
+    """
     model = answer.model
+    columns = ["rank", "cost", "surplus", "area", "in_service", "if", "configuration"]
     if model.problem.is_limited:
-        return pd.DataFrame(
-            columns=["rank", "cost", "surplus", "area", "in_service", "if", "configuration"]
-        )
+        return pd.DataFrame(columns=columns)
     start = model.plan.file.stages.start
     return pd.DataFrame(
         [
@@ -150,16 +166,28 @@ def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
                 "if": " or ".join(model.tree.scenarios_through(n)),
                 "configuration": configuration_names(model, k)[solution.policy[k, n]],
             }
-            for rank, solution in enumerate(ranked(model.problem, count), start=1)
+            for rank, solution in enumerate(
+                takewhile(
+                    lambda each: not answer.is_bound(each.policy), ranked(model.problem, count)
+                ),
+                start=1,
+            )
             for k, area in enumerate(model.problem.areas)
             for n in range(model.tree.nodes)
-        ]
+        ],
+        columns=columns,
     )
 
 
 def regret(answer: Answer) -> pd.DataFrame:
-    """What each plan costs more than the best one of a scenario would, were that known."""
+    """What each plan costs more than the best one of a scenario would, were that known.
+
+    Where some costs are bounds: none, unless the best plan of each scenario was simulated, and then
+    only of plans that were.
+    """
     model = answer.model
+    if any(answer.is_bound(each.policy, w) for w, each in enumerate(answer.worth.known)):
+        return pd.DataFrame(columns=["plan", *model.tree.names, "largest"])
     plans = {"as today": as_today(model.problem)}
     if answer.worth.fixed is not None:
         plans["decided today"] = answer.worth.fixed.policy
@@ -170,9 +198,11 @@ def regret(answer: Answer) -> pd.DataFrame:
         plans[f"first {label}" if len(model.areas) == 1 else f"first {label} at {first}"] = (
             each.policy
         )
-    if len(model.areas) == 1 and not model.problem.is_limited and parts_at_orders(model.problem):
+    may_be_least = len(model.areas) == 1 and not (model.problem.is_limited or model.has_bounds)
+    if may_be_least and parts_at_orders(model.problem):
         plans["least regret"] = least_regret(model.problem, answer.worth.known_cost)
     plans["the plan"] = answer.best.policy
+    plans = {name: policy for name, policy in plans.items() if not answer.is_bound(policy)}
     values = regrets(model.problem, list(plans.values())[::-1], answer.worth.known_cost)
     frame = pd.DataFrame(values, columns=list(model.tree.names))
     frame.insert(0, "plan", list(plans)[::-1])
@@ -180,17 +210,32 @@ def regret(answer: Answer) -> pd.DataFrame:
 
 
 def values(answer: Answer) -> pd.DataFrame:
-    """What the plan, knowledge and freedom are worth."""
-    worth = answer.worth
+    """What the plan, knowledge and freedom are worth; "at least", where costs are bounds."""
+    worth, least = answer.worth, f", {AT_LEAST}"
+    known = any(answer.is_bound(each.policy, w) for w, each in enumerate(worth.known))
+    decided = worth.fixed is not None and answer.is_bound(worth.fixed.policy)
+    today = answer.is_bound(as_today(answer.model.problem))
     fixed = np.nan if worth.fixed is None else worth.fixed.cost
     rows = [
         ("plan", worth.best.cost, "expected cost of the plan"),
         ("bound", worth.best.bound, "no plan costs less"),
-        ("known", worth.expected_known_cost, "expected cost if each future were known"),
+        (
+            "known",
+            worth.expected_known_cost,
+            f"expected cost if each future were known{least * known}",
+        ),
         ("information", worth.of_information, "worth of knowing the future, at most"),
-        ("fixed", fixed, "expected cost if all is decided today"),
-        ("flexibility", fixed - worth.best.cost, "worth of being able to decide later"),
-        ("saved", saved_against_today(answer), "saved against leaving everything as it is"),
+        ("fixed", fixed, f"expected cost if all is decided today{least * decided}"),
+        (
+            "flexibility",
+            fixed - worth.best.cost,
+            f"worth of being able to decide later{least * decided}",
+        ),
+        (
+            "saved",
+            saved_against_today(answer),
+            f"saved against leaving everything as it is{least * today}",
+        ),
     ]
     return pd.DataFrame(rows, columns=["value", "cost", "meaning"])
 
@@ -209,14 +254,15 @@ def configurations(model: Model) -> pd.DataFrame:
         if case.outage != INTACT:
             continue
         area, served = model.areas[case.area], model.served[case.area]
-        reasons = served.reasons[case.state, case.configuration]
-        outcome = model.table.loc[case.digest]
+        reasons = served.reasons.get((case.state, case.configuration), [NOT_SIMULATED])
+        is_known = served.is_simulated[case.state, case.configuration]
+        outcome = model.table.loc[case.digest] if is_known else pd.Series(dtype=object)
         rows.append(
             {
                 "area": model.problem.areas[case.area].name,
                 "configuration": area.configurations[case.configuration].name,
                 "traffic": area.states.states[case.state].name,
-                "carried": not reasons,
+                "carried": not reasons if is_known else None,
                 "why_not": "; ".join(reasons),
                 **{name: outcome.get(name, np.nan) for name in SHOWN},
             }

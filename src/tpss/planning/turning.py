@@ -94,11 +94,12 @@ def all_turns(answer: Answer) -> list[Turn]:
     """Where the first decision of each area turns that has a single one.
 
     An area has several if scenarios part at once.  There are none with a budget, and none of a plan of
-    so many configurations that it would take minutes: `Varied.turn` looks for single ones.
+    so many configurations that it would take minutes: `Varied.turn` looks for single ones.  Nor are
+    there any where some costs are bounds: at other prices others might not hold.
     """
     model = answer.model
     size = sum(area.configurations for area in model.problem.areas) * model.tree.nodes
-    if model.problem.is_limited or size > MOST_TO_TURN:
+    if model.problem.is_limited or model.has_bounds or size > MOST_TO_TURN:
         return []
     nodes = [
         {tuple(each.nodes.tolist()) for each in answer.firsts if each.area == area}

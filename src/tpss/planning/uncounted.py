@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from tpss.planning.lazily import ALL
 from tpss.planning.solve import Model
 from tpss.scenario.supply import ConverterType
 
@@ -62,3 +63,13 @@ def _converter_losses(types: Sequence[ConverterType]) -> Iterator[str]:
         )
     if known:
         yield "Outside the hours in which the traffic runs converters are taken to be off."
+
+
+def unknown(model: Model) -> Iterator[str]:
+    """What a plan that is proved by bounds leaves open, and what would tell it."""
+    if model.has_bounds:
+        yield (
+            "What costs at least so much was not simulated as a whole, and may cost more. Where the "
+            "first decision turns is not known, nor regrets and further plans that take more cases: "
+            f"{ALL} simulates them all."
+        )

@@ -17,10 +17,12 @@ from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
 from tpss.planning.first_costs import first_costs
 from tpss.planning.load import plan_of
+from tpss.planning.plan import SIMULATION
+from tpss.planning.prove import Grade
 from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
 from tpss.planning.turning import Turn
-from tpss.planning.uncounted import estimated, uncounted
+from tpss.planning.uncounted import estimated, uncounted, unknown
 from tpss.sweep.folder import REMEDY
 from tpss.sweep.versions import versions
 
@@ -65,6 +67,7 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         "name": model.plan.file.name,
         "answer": sentences(answer, turns),
         "claim": answer.claim,
+        **_proof(answer),
         "by_estimate": list(estimated(model)),
         "not_counted": list(uncounted(model)),
         "currency": economics.currency,
@@ -79,6 +82,24 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         **versions(),
         "source": str(model.plan.source),
         "plan": model.plan.document,
+    }
+
+
+def _proof(answer: Answer) -> dict[str, Any]:
+    """What the claim of a plan stands on that is proved by bounds; nothing of others."""
+    proof = answer.proof
+    if proof.grade is Grade.EXHAUSTIVE:
+        return {}
+    return {
+        "not_known": list(unknown(answer.model)),
+        "proof": {
+            "grade": proof.grade.value,
+            "holds": proof.holds,
+            "simulated_cases": proof.simulated,
+            "cases": proof.cases,
+            "violations": len(proof.violations),
+            "audited": proof.audited,
+        },
     }
 
 
@@ -146,7 +167,7 @@ def read_model(folder: Path, changes: dict[str, Any]) -> Model:
     case_list = CaseList(plan.with_(changes) if changes else plan)
     table = CaseFolder(folder).table()
     missing = sum(case.digest not in table.index for case in case_list.cases)
-    if missing:
+    if missing and case_list.plan.file.evaluate.by == SIMULATION:
         raise PlanError(
             f"{missing:,} of {len(case_list.cases):,} cases were not simulated: the plan or its "
             "scenarios have changed in more than prices; run tpss plan run again, which adds them"

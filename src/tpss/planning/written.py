@@ -24,6 +24,7 @@ NAMES = (
 TEXTS = (
     "area", "if", "builds", "configuration", "traffic_asked_for", "traffic_run", "component", "scenario",
     "plan", "value", "meaning", "traffic", "why_not", "key", "first", "below_to", "above_to",
+    "known",
 )  # fmt: skip
 """Columns that hold text, also where it looks like a number."""
 

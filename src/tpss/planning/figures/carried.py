@@ -5,6 +5,7 @@ from typing import Any
 import pandas as pd
 
 from tpss.planning.requirements import LIMITS
+from tpss.planning.tables import NOT_SIMULATED
 from tpss.planning.wording import in_order, traffic_in_words
 from tpss.planning.written import Written, rows_of
 from tpss.report.drawings.parts import Bar, Drawing, Panel, Words
@@ -21,7 +22,9 @@ COLUMN_INCH, NARROW_INCH = 0.95, 0.3
 """Width of a column with words, and of one without."""
 
 CARRIED, LIMITED, COLLAPSED = "carried", "limited by a requirement", "does not come through"
+UNKNOWN = NOT_SIMULATED
 COLOURS = {
+    UNKNOWN: "#E8E8E8",
     CARRIED: tint("#009E73", 0.35),
     LIMITED: tint("#E69F00", 0.75),
     COLLAPSED: "#A63D00",
@@ -75,6 +78,8 @@ def _rows(written: Written, area: str, used: list[str]) -> list[str]:
 
 def _verdict(row: dict[str, Any]) -> tuple[str, str]:
     """What becomes of a traffic, and in a few words why, or its lowest voltage."""
+    if row["why_not"] == NOT_SIMULATED:
+        return UNKNOWN, ""
     if row["carried"]:
         return CARRIED, f"{row['lowest_voltage_kv']:.2f} kV"
     first = row["why_not"].split("; ")[0]

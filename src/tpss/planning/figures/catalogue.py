@@ -46,14 +46,16 @@ FIGURES: dict[str, Figure] = {
         "How far each number may go, alone, before another first decision is the best one; which one "
         "stands behind the bar.",
         switching_values,
-        "It is not known where the first decision turns: that is told without a budget, and where one "
-        "decision is the same for all scenarios. tpss plan price with --set prices the plan anew.",
+        "It is not known where the first decision turns: that is told without a budget, where one "
+        "decision is the same for all scenarios, and where all cases were simulated. tpss plan price "
+        "with --set prices the plan anew.",
     ),
     "regret": Figure(
         "Regret",
         "What a plan costs more, if a scenario comes, than the best plan for that scenario alone.",
         regret,
-        "There are too many scenarios to be drawn; the table of regrets has them all.",
+        "There are too many scenarios to be drawn, and the table of regrets has them all; or the best "
+        "plans of single scenarios were not simulated.",
         of_area=False,
     ),
     "carried": Figure(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from tpss.planning.tables import AT_LEAST, KNOWN
 from tpss.planning.wording import component_in_words
 from tpss.planning.written import Written, rows_of
 from tpss.report.drawings.parts import Bar, Drawing, Panel, Words
@@ -45,7 +46,8 @@ def first_costs(written: Written, area: str) -> Drawing | None:
         bars, end = _bars(row, costs, components, shown, NARROWEST * widest)
         items += bars
         more = "" if best[row] else f"  +{first['surplus']:,.1f}"
-        items.append(Words(end, row, f"{first['cost']:,.1f}{more}", bold=best[row]))
+        least = f"{AT_LEAST} " if first.get(KNOWN) == AT_LEAST else ""
+        items.append(Words(end, row, f"{least}{first['cost']:,.1f}{more}", bold=best[row]))
     low = min([0.0, *(bar.start for bar in items if isinstance(bar, Bar))])
     inch = (BAR_INCH + 0.16 * (len(groups) > 1)) * len(rows)
     panel = Panel("", items, rows=rows)

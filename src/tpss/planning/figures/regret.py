@@ -22,10 +22,13 @@ LARGEST = "largest"
 
 
 def regret(written: Written, _: str) -> Drawing | None:
-    """Matrix of regrets, a row a plan and a column a scenario; none of more scenarios than fit."""
+    """Matrix of regrets, a row a plan and a column a scenario; none of more scenarios than fit.
+
+    Nor is there one if no regret is known.
+    """
     table = written.tables["regret"]
     futures = [name for name in table.columns if name not in ("plan", LARGEST)]
-    if len(futures) > MOST_COLUMNS:
+    if len(futures) > MOST_COLUMNS or table.empty:
         return None
     chosen = _chosen(table)
     columns = [*futures, LARGEST] if len(futures) > 1 else futures
