@@ -33,8 +33,11 @@ from tpss.vehicle.train import Phase
 Manner = Literal["held-speed", "coasting", "least-energy"]
 """How spare time is used."""
 
-LONG_S = 360_000.0
+LONG_S = 86_400.0
 """A train that has not arrived after this time does not. [s]"""
+
+LONGER = 2.0
+"""A way that takes so many times the wanted time is too long, however long it takes. [1]"""
 
 CLOSE_M = 1e-2
 """Places that are closer to each other are the same. [m]"""
@@ -78,6 +81,7 @@ class Leg:
         row, types["profile"] = model.types[train_type].profile, 0
         own = slice(row, row + 1)
         self._limits = Profile(*(values[row] for values in model.limits))
+        self._longest_s = LONG_S
         self._data = DrivingData(
             options=model.options._replace(step_s=LONG_S),
             gradients=Profiles(*(values[own] for values in model.gradients)),
@@ -95,6 +99,16 @@ class Leg:
         train = ScheduledTrain("", "", 0, 0, 0, phase=Phase.DRIVING, position_m=from_m)
         self._records = train_records([train], self._voltage_v)
 
+    def demand_no_more(self, time_s: float) -> None:
+        """Follow ways no longer than a time: one that takes more does not arrive. [s]"""
+        self._longest_s = min(LONG_S, time_s)
+        options = self._data.options._replace(step_s=self._longest_s)
+        self._data = self._data._replace(options=options)
+
+    def later(self, speed_m_s: float, coasts_from_m: float, wanted_s: float) -> float:
+        """By what a way takes more than a time; finite, also if the train does not arrive. [s]"""
+        return min(self.way(speed_m_s, coasts_from_m).time_s, self._longest_s) - wanted_s
+
     def way(self, speed_m_s: float = math.inf, coasts_from_m: float = math.inf) -> Way:
         """The way of a train that holds no more than a speed, and coasts from a position on."""
         coasts_from_m = min(coasts_from_m, self.to_m)
@@ -110,7 +124,8 @@ class Leg:
         if passage.motion.phase != Phase.ARRIVED:
             return Way(speed_m_s, coasts_from_m, math.inf, math.inf)
         energy_j = float(passage.active_j - passage.offered_j)
-        return Way(speed_m_s, coasts_from_m, LONG_S - float(passage.stood_s), energy_j)
+        time_s = self._longest_s - float(passage.stood_s)
+        return Way(speed_m_s, coasts_from_m, time_s, energy_j)
 
 
 def _one_row(profile: Profile) -> Profiles:
@@ -128,14 +143,16 @@ def way_that_takes(leg: Leg, wanted_s: float, manner: Manner) -> Way:
     manner : str
         By a lower held speed, by coasting before the stop, or by both, at the least energy.
     """
-    if not leg.way().time_s < wanted_s:
-        return leg.way()
+    fastest = leg.way()
+    if not fastest.time_s < wanted_s:
+        return fastest
+    leg.demand_no_more(LONGER * wanted_s)
     return _MANNERS[manner](leg, wanted_s)
 
 
 def _by_held_speed(leg: Leg, wanted_s: float) -> Way:
     def later_at(speed_m_s: float) -> float:
-        return min(leg.way(speed_m_s).time_s, LONG_S) - wanted_s
+        return leg.later(speed_m_s, leg.to_m, wanted_s)
 
     slowest = (leg.to_m - leg.from_m) / wanted_s
     if not leg.way(slowest).time_s > wanted_s:
@@ -147,7 +164,7 @@ def _by_coasting(leg: Leg, wanted_s: float, speed_m_s: float = math.inf) -> Way:
     """The way of a train that holds a speed, and then coasts so long that it takes the time."""
 
     def later_from(place_m: float) -> float:
-        return min(leg.way(speed_m_s, place_m).time_s, LONG_S) - wanted_s
+        return leg.later(speed_m_s, place_m, wanted_s)
 
     if not leg.way(speed_m_s, leg.from_m).time_s > wanted_s:
         return leg.way(speed_m_s, leg.from_m)
