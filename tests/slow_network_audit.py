@@ -202,6 +202,7 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     for kind, phasor in (
         (SourceKind.CONVERTER, converter_phasor),
         (SourceKind.GRID, grid_phasor),
+        (SourceKind.BOUNDED, bounded_phasor),
     ):
         own = sources.kind == kind
         asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
@@ -225,6 +226,31 @@ def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any
     generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
     angle = law.grid_angle_rad - grid - motor - generator
     return np.asarray(voltage * np.exp(1j * angle))
+
+
+def bounded_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any) -> Complexes:
+    """Phasor that converters with bounds ask for: `converter_phasor`, with less or more voltage. [V]
+
+    The voltage falls to nothing within 2 % of the highest current, the corner rounded off over 0.5 %;
+    power that is taken turns the angle by 0.5 rad up to the width, and raises the voltage beyond twice
+    the width by all of it within one width, the corner rounded off over half a width.
+    """
+    asked = converter_phasor(p, q, n, node_v, sources)
+    whole_v = np.broadcast_to(sources.converter.no_load_voltage_v, p.shape)
+    with np.errstate(all="ignore"):
+        limit_a = np.broadcast_to(sources.bounds.highest_current_a, p.shape)
+        over = np.hypot(p, q) / np.abs(node_v) / n / limit_a - 1.0
+        fall_v = np.where(np.isinf(limit_a), 0.0, whole_v / 0.02 * rounded(over, 0.005))
+        taken = np.maximum(-p / n / sources.bounds.blocked_from_w, 0.0)
+        z = np.minimum(taken, 1.0)
+    rise_v = np.where(taken > 0.0, whole_v * rounded(taken - 2.0, 0.5), 0.0)
+    size = np.abs(asked) - np.nan_to_num(fall_v) + rise_v
+    return size * np.exp(1j * (np.angle(asked) + 0.5 * (3.0 * z**2 - 2.0 * z**3)))
+
+
+def rounded(x: Floats, half: float) -> Floats:
+    """The larger of a number and 0, its corner a parabola over both halves."""
+    return np.where(np.abs(x) < half, (x + half) ** 2 / (4.0 * half), np.maximum(x, 0.0))
 
 
 def grid_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any) -> Complexes:

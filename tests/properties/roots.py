@@ -50,6 +50,7 @@ class Replay:
         start = start_of(scenario, model)
         self.switchings = start.switchings
         self.control = start.model.control
+        model = start.model._replace(control=model.control)  # with types that use spare time
         if start.turns is not None:  # for the trains of the run, no others
             self.run = run_of(replace(start, model=model))
             return

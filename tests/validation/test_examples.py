@@ -91,10 +91,10 @@ def test_the_network_s_forty_trains_keep_their_timetable():
 
 
 def test_every_example_is_one_of_the_above():
-    """`thesis_original` has tests of its own, and `line_320km` as the line of a plan."""
+    """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
-        "both_ways", "emu_25kv", "line_320km", "network", "overloaded", "own_trains",
-        "thesis_original",
+        "both_ways", "emu_25kv", "line_320km", "line_320km_losses", "network", "overloaded",
+        "own_trains", "thesis_original",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}
