@@ -127,8 +127,8 @@ def test_every_function_that_computes_an_equation_cites_its_source(room):
 def test_every_curve_and_network_cites_its_source():
     """The numerics of a machine's curves; that of pairs and blocks is derived where it stands."""
     helpers = {
-        "index_at", "index_from", "reaches", "series_at", "prepare_series", "outside", "exponential",
-        "outside_curve", "_piece_at",
+        "index_at", "index_from", "room_to_next", "reaches", "series_at", "prepare_series", "outside",
+        "exponential", "outside_curve", "_piece_at",
     }  # fmt: skip
     for name in ("staircase", "series", "neural_network", "exponential", "curve"):
         tree = ast.parse((SOURCE / "numerics" / f"{name}.py").read_text("utf-8"))

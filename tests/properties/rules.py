@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tpss import Result
+from tpss import Result, Scenario
 from tpss.results.passing import stand_before
 from tpss.results.places import train_tracks
 from tpss.run.delays import Delays
@@ -118,14 +118,8 @@ def judge_departures(result: Result) -> None:
     data, h = result.dataset, result.dataset.attrs["time_step_s"]
     continuous = result.scenario.simulation.how_trains_move == "continuous"
     begun = data.sizes["time"] - 1 + (result.status in ("collapsed", "stalled", "deadlocked"))
-    for entry in result.scenario.traffic:
-        asked_min = entry.listed_departures_min
-        if asked_min is None:
-            last_min = begun * h / 60.0 + entry.headway_min
-            count = max(0, math.ceil((last_min - entry.first_departure_min) / entry.headway_min))
-            asked_min = [entry.first_departure_min + k * entry.headway_min for k in range(count)]
-        if entry.delays is not None:
-            asked_min = delayed(asked_min, entry)
+    asked = asked_departures(result.scenario, begun * h / 60.0)
+    for entry, asked_min in zip(result.scenario.traffic, asked, strict=True):
         mine = data.departure_time.to_numpy()[data.service.to_numpy() == entry.name]
         departed_s = mine[np.isfinite(mine)]
         if continuous:
@@ -145,6 +139,31 @@ def judge_departures(result: Result) -> None:
         due = [max(0, math.ceil((60.0 * minute - 1e-6) / h)) for minute in asked_min]
         departed = np.rint(departed_s / h)
         assert departed.tolist() == [step for step in due if step < max(begun, 1)], entry.name
+
+
+def asked_departures(scenario: Scenario, until_min: float) -> list[list[float]]:
+    """When trains of each service are to depart, some beyond a time too, ascending. [min]
+
+    Of trains that begin at one station each waits until the one before it has been gone for a while.
+    """
+    asked = []
+    for entry in scenario.traffic:
+        times_min = entry.listed_departures_min
+        if times_min is None:
+            last_min = until_min + entry.headway_min
+            count = max(0, math.ceil((last_min - entry.first_departure_min) / entry.headway_min))
+            times_min = [entry.first_departure_min + k * entry.headway_min for k in range(count)]
+        asked.append(list(times_min) if entry.delays is None else delayed(times_min, entry))
+    apart_min, free_min = scenario.signalling.starts_apart_s / 60.0, dict[str, float]()
+    if apart_min == 0.0:
+        return asked
+    starts: list[list[float]] = [[] for _ in asked]
+    for minute, number in sorted((m, k) for k, times_min in enumerate(asked) for m in times_min):
+        origin = scenario.traffic[number].origin
+        start_min = max(minute, free_min.get(origin, minute))
+        free_min[origin] = start_min + apart_min
+        starts[number].append(start_min)
+    return starts
 
 
 def delayed(scheduled_min: Sequence[float], entry: Traffic) -> list[float]:

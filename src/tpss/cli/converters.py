@@ -1,22 +1,17 @@
 """The command ``tpss converters``: switching converters by loading against all on."""
 
-import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich import box
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.plot import demand_format, figure_bytes
+from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.run import DONE, PROGRESS, SEVERITY, exit_code
+from tpss.cli.table_and_picture import demand_room, write_picture, write_table
 from tpss.cli.terminal import announce_compilation, progress_bar, say
-from tpss.files import whole
-from tpss.files.refusals import explained, refuse_to_replace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,16 +33,13 @@ def run_converters(
         A file cannot be written.
     """
     from tpss.converter_control.compare import compare_controls
+    from tpss.report.drawings.converter_losses import losses_by_control
     from tpss.run.interrupt import interruptible
     from tpss.scenario import load_scenario
     from tpss.scenario.override import parse_assignment
 
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
-    for target in (out, plot):
-        if target is not None:
-            refuse_to_replace(target, force, "a file", Path.is_file)
-    if plot is not None:
-        demand_format(plot)
+    demand_room(out, plot, force)
     console = Console(stderr=True)
     announce_compilation(console)
     with (
@@ -64,29 +56,15 @@ def run_converters(
         return max(codes, key=SEVERITY.index)
     print_comparison(found, Console())
     if out is not None:
-        _write(out, found.table.to_csv(index=False).encode())
+        write_table(out, found.table)
     if plot is not None:
-        _write(plot, _drawn(found, plot))
+        write_picture(plot, losses_by_control(found.runs))
     return DONE
 
 
 def _progress(state: "Progress") -> dict[str, Any]:
     detail = f"{state.time_s / 60:.1f} min simulated, {state.trains} trains on the line"
     return {"completed": state.share, "total": 1.0, "detail": detail}
-
-
-def _drawn(found: "Comparison", file: Path) -> bytes:
-    from tpss.report.drawings.converter_losses import losses_by_control
-    from tpss.report.render.static import render
-
-    drawn = render(losses_by_control(found.runs))
-    return figure_bytes(drawn, file.suffix.removeprefix("."))
-
-
-def _write(file: Path, content: bytes) -> None:
-    with explained(file):
-        whole.write_file(file, content)
-    print(f"Wrote {file}")
 
 
 def print_comparison(found: "Comparison", console: Console) -> None:
@@ -104,45 +82,22 @@ def print_comparison(found: "Comparison", console: Console) -> None:
         console.print(_table(title, "type", _BREAK_EVEN, found.break_even))
 
 
-@dataclass(frozen=True)
-class _Column:
-    """A column of numbers: where they come from, and how they are shown."""
-
-    key: str
-    heading: str
-    unit: str
-    digits: int
-    scale: float = 1.0
-
-
 _STATIONS = (
-    _Column("converters", "converters", "", 0),
-    _Column("all_on_mwh", "all on", "MWh/d", 3),
-    _Column("by_loading_mwh", "by loading", "MWh/d", 3),
-    _Column("saved_mwh", "saved", "MWh/d", 3),
-    _Column("starts", "starts", "1/d", 0),
-    _Column("peak_loading", "peak load", "%", 1, 100.0),
+    Column("converters", "converters", "", 0),
+    Column("all_on_mwh", "all on", "MWh/d", 3),
+    Column("by_loading_mwh", "by loading", "MWh/d", 3),
+    Column("saved_mwh", "saved", "MWh/d", 3),
+    Column("starts", "starts", "1/d", 0),
+    Column("peak_loading", "peak load", "%", 1, 100.0),
 )
 
 _BREAK_EVEN = (
-    _Column("converters", "converters", "", 0),
-    _Column("power_mva", "up to", "MVA", 2),
-    _Column("loading", "load of all", "%", 1, 100.0),
-    _Column("loading_of_one_less", "of one less", "%", 1, 100.0),
+    Column("converters", "converters", "", 0),
+    Column("power_mva", "up to", "MVA", 2),
+    Column("loading", "load of all", "%", 1, 100.0),
+    Column("loading_of_one_less", "of one less", "%", 1, 100.0),
 )
 
 
-def _number(value: float, digits: int) -> str:
-    return "any" if math.isinf(value) else f"{value:.{digits}f}"
-
-
-def _table(title: str, first: str, columns: Sequence[_Column], frame: "pd.DataFrame") -> Table:
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
-    table.add_column(first)
-    for column in columns:
-        heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
-        table.add_column(heading, justify="right", no_wrap=True)
-    for row in frame.to_dict("records"):
-        cells = [_number(row[each.key] * each.scale, each.digits) for each in columns]
-        table.add_row(escape(row[first]), *cells)
-    return table
+def _table(title: str, first: str, columns: Sequence[Column], frame: "pd.DataFrame") -> Table:
+    return table_of_columns(title, first, columns, named_rows(frame, first))

@@ -8,11 +8,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.plot import demand_format, figure_bytes
+from tpss.cli.table_and_picture import demand_room, write_picture, write_table
 from tpss.cli.terminal import announce_compilation, progress_bar, say
 from tpss.errors import ResultError
-from tpss.files import whole
-from tpss.files.refusals import explained, refuse_to_replace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,16 +35,13 @@ def print_savings(
     ResultError
         No train reaches its destination, or a file cannot be written.
     """
+    from tpss.savings.drawing import savings_drawing
     from tpss.savings.table import PERCENTS, spare_time_savings
     from tpss.scenario import load_scenario
     from tpss.scenario.override import parse_assignment
 
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
-    for target in (out, plot):
-        if target is not None:
-            refuse_to_replace(target, force, "a file", Path.is_file)
-    if plot is not None:
-        demand_format(plot)
+    demand_room(out, plot, force)
     console = Console(stderr=True)
     announce_compilation(console)
     with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
@@ -57,9 +52,9 @@ def print_savings(
         )
     _print(table, Console())
     if out is not None:
-        _write(out, table.to_csv(index=False).encode())
+        write_table(out, table)
     if plot is not None:
-        _write(plot, _drawn(table, plot))
+        write_picture(plot, savings_drawing(table))
 
 
 def _progress(done: int, services: int) -> dict[str, Any]:
@@ -80,17 +75,3 @@ def _print(table: "pd.DataFrame", console: Console) -> None:
             named.add_row(f"{percent:g}", f"{own.spare_min.max():.1f}", *saved)
         console.print(named)
     say(console, "Energy of a lone train at nominal voltage, against one as fast as it can be.")
-
-
-def _drawn(table: "pd.DataFrame", file: Path) -> bytes:
-    from tpss.report.render.static import render
-    from tpss.savings.drawing import savings_drawing
-
-    return figure_bytes(render(savings_drawing(table)), file.suffix.removeprefix("."))
-
-
-def _write(file: Path, content: bytes) -> None:
-    with explained(file):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        whole.write_file(file, content)
-    print(f"Wrote {file}")

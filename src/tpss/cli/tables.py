@@ -1,17 +1,15 @@
 """What ``tpss run`` prints: tables that a traction engineer reads at a glance."""
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
-from rich import box
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import units
+from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
@@ -39,7 +37,7 @@ def print_result(result: Result, console: Console) -> None:
         "Feeding stations",
         "station",
         _STATION_COLUMNS,
-        _named_rows(result.stations, "station"),
+        named_rows(result.stations, "station"),
         console,
     )
     if len(result.converter_losses):
@@ -59,106 +57,58 @@ def print_result(result: Result, console: Console) -> None:
         console.print(f"[bold red]Audit failed:[/bold red] {failure}", highlight=False)
 
 
-def _number(value: float, digits: int) -> str:
-    return "-" if math.isnan(value) else f"{value:.{digits}f}"
-
-
-@dataclass(frozen=True)
-class _Column:
-    """A column of numbers: where they come from, and how they are shown."""
-
-    key: str
-    heading: str
-    unit: str
-    digits: int
-    scale: float = 1.0
-
-
 _TRAIN_COLUMNS = (
-    _Column("departure_min", "departs", "min", 2),
-    _Column("arrival_min", "arrives", "min", 2),
-    _Column("trip_min", "trip", "min", 2),
-    _Column("distance_km", "distance", "km", 1),
-    _Column("mean_speed_kmh", "mean v", "km/h", 1),
-    _Column("energy_mwh", "energy", "MWh", 3),
-    _Column("lowest_voltage_kv", "low U", "kV", 2),
-    _Column("lowest_voltage_line", "on", "", 0),
-    _Column("lowest_voltage_km", "at", "km", 1),
+    Column("departure_min", "departs", "min", 2),
+    Column("arrival_min", "arrives", "min", 2),
+    Column("trip_min", "trip", "min", 2),
+    Column("distance_km", "distance", "km", 1),
+    Column("mean_speed_kmh", "mean v", "km/h", 1),
+    Column("energy_mwh", "energy", "MWh", 3),
+    Column("lowest_voltage_kv", "low U", "kV", 2),
+    Column("lowest_voltage_line", "on", "", 0),
+    Column("lowest_voltage_km", "at", "km", 1),
 )
 
 _STATION_COLUMNS = (
-    _Column("line", "on", "", 0),
-    _Column("position_km", "at", "km", 1),
-    _Column("energy_mwh", "energy", "MWh", 3),
-    _Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
-    _Column("peak_power_mw", "peak P", "MW", 2),
-    _Column("mean_loading", "mean load", "%", 1, 100.0),
-    _Column("peak_loading", "peak load", "%", 1, 100.0),
-    _Column("mean_converters", "converters", "mean", 1),
+    Column("line", "on", "", 0),
+    Column("position_km", "at", "km", 1),
+    Column("energy_mwh", "energy", "MWh", 3),
+    Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
+    Column("peak_power_mw", "peak P", "MW", 2),
+    Column("mean_loading", "mean load", "%", 1, 100.0),
+    Column("peak_loading", "peak load", "%", 1, 100.0),
+    Column("mean_converters", "converters", "mean", 1),
 )
 
 _RARE = ("to_grid_mwh", "burnt_mwh", "auxiliaries_mwh")
 """Columns of the 50 Hz side that are left out where they are 0."""
 
 _LOSS_COLUMNS = (
-    _Column("from_grid_mwh", "taken", "MWh", 3),
-    _Column("to_grid_mwh", "given", "MWh", 3),
-    _Column("burnt_mwh", "burnt", "MWh", 3),
-    _Column("losses_mwh", "losses", "MWh", 3),
-    _Column("idle_mwh", "idle", "MWh", 3),
-    _Column("by_load_mwh", "by load", "MWh", 3),
-    _Column("auxiliaries_mwh", "auxil.", "MWh", 3),
-    _Column("mean_efficiency", "mean eff.", "%", 1, 100.0),
-    _Column("starts", "starts", "", 0),
-    _Column("peak_from_grid_mw", "peak", "MW", 2),
+    Column("from_grid_mwh", "taken", "MWh", 3),
+    Column("to_grid_mwh", "given", "MWh", 3),
+    Column("burnt_mwh", "burnt", "MWh", 3),
+    Column("losses_mwh", "losses", "MWh", 3),
+    Column("idle_mwh", "idle", "MWh", 3),
+    Column("by_load_mwh", "by load", "MWh", 3),
+    Column("auxiliaries_mwh", "auxil.", "MWh", 3),
+    Column("mean_efficiency", "mean eff.", "%", 1, 100.0),
+    Column("starts", "starts", "", 0),
+    Column("peak_from_grid_mw", "peak", "MW", 2),
 )
 
-_STEP_PLACE = [_Column("line", "on", "", 0), _Column("track", "track", "", 0)]
+_STEP_PLACE = [Column("line", "on", "", 0), Column("track", "track", "", 0)]
 """Where a train is beside its kilometre, where that has to be told."""
 
 _STEP_COLUMNS = [
-    _Column(each.column, each.heading, units.label(each.column), each.digits)
+    Column(each.column, each.heading, units.label(each.column), each.digits)
     for each in RECORDED
     if each.heading
 ]
 
 
-def _table(
-    title: str,
-    first: str,
-    columns: Sequence[_Column],
-    rows: Sequence[tuple[str, Mapping[str, Any]]],
-) -> Table:
-    """Table with a name in the first column and numbers, with their units, in the others.
-
-    Columns with the names of lines are there where the rows have any.
-    """
-    columns = [column for column in columns if all(column.key in values for _, values in rows)]
-    table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left", padding=0)
-    table.add_column(first, no_wrap=True)
-    for column in columns:
-        heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
-        table.add_column(heading, justify="right", no_wrap=True)
-    for name, values in rows:
-        cells = [_cell(values[column.key], column) for column in columns]
-        table.add_row(escape(name), *cells)
-    return table
-
-
-def _cell(value: Any, column: _Column) -> str:
-    if isinstance(value, str):
-        return escape(value)
-    return _number(value * column.scale, column.digits)
-
-
-def _named_rows(frame: pd.DataFrame, name: str) -> list[tuple[str, dict[str, Any]]]:
-    rows: list[dict[str, Any]] = frame.to_dict("records")  # type: ignore[assignment]
-    return [(str(row[name]), row) for row in rows]
-
-
 def _print_trains(result: Result, console: Console) -> None:
     trips = result.trips
-    rows = _named_rows(trips.head(MOST_TRAINS), "train")
+    rows = named_rows(trips.head(MOST_TRAINS), "train")
     _print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
     if len(trips) > MOST_TRAINS:
         say(console, f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result")
@@ -168,13 +118,13 @@ def _print_losses(found: pd.DataFrame, console: Console) -> None:
     """Print the 50 Hz side of stations, without columns of what does not occur."""
     occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
     title = "50 Hz side of converter stations"
-    _print_table(title, "station", occurs, _named_rows(found, "station"), console)
+    _print_table(title, "station", occurs, named_rows(found, "station"), console)
 
 
 def _print_table(
     title: str,
     first: str,
-    columns: Sequence[_Column],
+    columns: Sequence[Column],
     rows: Sequence[tuple[str, Mapping[str, Any]]],
     console: Console,
 ) -> None:
@@ -186,8 +136,10 @@ def _print_table(
         if column.heading != "on"
     ]
 
-    def table_of(groups: Sequence[Sequence[_Column]], more: str = "") -> Table:
-        return _table(title + more, first, [column for each in groups for column in each], rows)
+    def table_of(groups: Sequence[Sequence[Column]], more: str = "") -> Table:
+        return table_of_columns(
+            title + more, first, [column for each in groups for column in each], rows
+        )
 
     for k, part in enumerate(parts_that_fit(together, table_of, console)):
         console.print(table_of(part, ", continued" if k else ""))
@@ -277,8 +229,8 @@ def print_violations(result: Result, console: Console) -> None:
 def print_train(result: Result, name: str, console: Console) -> None:
     """Print a train's journey, one row per step."""
     steps = train_steps(result.dataset.sel(train=[name]))
-    rows = _named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
+    rows = named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
     columns = [*_STEP_PLACE, *_STEP_COLUMNS]
-    table = _table(name, "time\n[dim]min[/dim]", columns, rows)
+    table = table_of_columns(name, "time\n[dim]min[/dim]", columns, rows)
     # A row stays on one line, in a narrow terminal too.
     Console(file=console.file, width=max(console.width, width_of(table))).print(table)

@@ -12,7 +12,7 @@ from tpss.driving.data import DrivingData, Floats, Profiles
 from tpss.driving.pull import Aim, Pull, pull_with
 from tpss.kernel import at, fused, inlined
 from tpss.numerics.curve import Points
-from tpss.numerics.staircase import index_at
+from tpss.numerics.staircase import index_at, room_to_next
 from tpss.vehicle.train import Motion, Passage, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -36,9 +36,7 @@ def coasting_speed(position_m: float, kind: TrainType, coasting: Profiles) -> fl
 @inlined
 def _room_to_change(position_m: float, kind: TrainType, data: DrivingData) -> float:
     """Distance to where the next stretch begins or ends. [m]"""
-    from_m = data.coasting.from_m[at(kind.profile)]
-    following = index_at(position_m, from_m) + 1
-    return from_m[at(following)] - position_m if following < from_m.size else math.inf
+    return room_to_next(position_m, data.coasting.from_m[at(kind.profile)])
 
 
 @inlined

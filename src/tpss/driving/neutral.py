@@ -9,7 +9,7 @@ import math
 
 from tpss.driving.data import DrivingData
 from tpss.kernel import at, inlined
-from tpss.numerics.staircase import index_at
+from tpss.numerics.staircase import index_at, room_to_next
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.vehicle.train import Motion, Passage
 from tpss.vehicle.train_type import TrainType
@@ -39,9 +39,7 @@ def time_without_power(motion: Motion, kind: TrainType, data: DrivingData) -> fl
 @inlined
 def room_to_change(position_m: float, kind: TrainType, data: DrivingData) -> float:
     """Distance to the next beginning or end of a neutral section. [m]"""
-    from_m = data.neutral.from_m[at(kind.profile)]
-    following = index_at(position_m, from_m) + 1
-    return from_m[at(following)] - position_m if following < from_m.size else math.inf
+    return room_to_next(position_m, data.neutral.from_m[at(kind.profile)])
 
 
 @inlined

@@ -115,6 +115,9 @@ def held_on(model: Model, stretch: Stretch, route: int) -> Held:
 def held_speed(model: Model, stretch: Stretch, route: int) -> float:
     """Highest speed that a train holds to take its supplement, found by bisection. [m/s]
 
+    Its trials run in the steps of the model, as those of supplements always did; the other manners of
+    `model.spare_time` take one passage each, which ends parts of a second elsewhere.
+
     Infinite if a lone train does not come to the end of the stretch, or has no supplement on it.
     """
     kind = model.types[stretch.train_type]

@@ -3,6 +3,8 @@
 The outer values continue beyond the ends.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -34,3 +36,10 @@ def index_from(index: int, position_m: float, from_m: Array) -> int:
     while index + 1 < from_m.size and from_m[at(index + 1)] <= position_m:
         index += 1
     return index
+
+
+@inlined
+def room_to_next(position_m: float, from_m: Array) -> float:
+    """Distance to where the next value begins; infinite: there is none. [m]"""
+    following = index_at(position_m, from_m) + 1
+    return from_m[at(following)] - position_m if following < from_m.size else math.inf

@@ -7,19 +7,15 @@ from pydantic import Field, model_validator
 
 from tpss.scenario.fields import (
     FromLibrary,
-    Name,
     Part,
-    Position,
     Real,
     Whole,
     fault,
     library_name,
-    name_of_line,
-    station_at,
 )
 from tpss.scenario.rating import Rating
 from tpss.scenario.supply.feedback import ConverterFeedback, converter_feedback
-from tpss.scenario.supply.feeds import Feeds, feeds
+from tpss.scenario.supply.feeding_station import FeedingStation
 from tpss.scenario.supply.losses import ConverterLosses
 
 
@@ -55,14 +51,9 @@ class ConverterType(Part):
     )
 
 
-class ConverterStation(Part):
+class ConverterStation(FeedingStation):
     """A converter station that feeds the contact line."""
 
-    name: Name = Field(description="Name, shown in the results.")
-    line: Name | None = name_of_line()
-    at: Name | None = station_at()
-    position_km: Position = Field(description="Position on its line.")
-    feeds: Feeds | None = feeds()
     type: Annotated[ConverterType, FromLibrary("converters", own="supply.converter_types")] = Field(
         description="Library name, a name of `supply.converter_types`, or a table of your own."
     )

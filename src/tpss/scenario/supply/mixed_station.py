@@ -6,19 +6,15 @@ from pydantic import Field, field_validator, model_validator
 
 from tpss.scenario.fields import (
     FromLibrary,
-    Name,
     Part,
-    Position,
     Real,
     Whole,
     fault,
     library_name,
-    name_of_line,
-    station_at,
 )
 from tpss.scenario.supply.converter_station import ConverterType
 from tpss.scenario.supply.feedback import Feedback, feedback
-from tpss.scenario.supply.feeds import Feeds, feeds
+from tpss.scenario.supply.feeding_station import FeedingStation
 
 MOST_TYPES = 3
 """Types of converters that a station may have; the law has as many."""
@@ -48,17 +44,12 @@ class ConverterUnits(Part):
         return self.converters * self.type.rating_mva
 
 
-class MixedStation(Part):
+class MixedStation(FeedingStation):
     """A converter station with converters of several types at one busbar, which all run.
 
     The types share a load by their own droops and angles; one 50 Hz grid, infinitely strong, feeds all.
     """
 
-    name: Name = Field(description="Name, shown in the results.")
-    line: Name | None = name_of_line()
-    at: Name | None = station_at()
-    position_km: Position = Field(description="Position on its line.")
-    feeds: Feeds | None = feeds()
     units: Annotated[tuple[ConverterUnits, ...], Field(min_length=1, max_length=MOST_TYPES)] = (
         Field(description="Converters by their types.")
     )

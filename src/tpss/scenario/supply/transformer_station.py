@@ -5,18 +5,14 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from tpss.scenario.fields import (
-    Name,
     Part,
-    Position,
     Real,
     Whole,
     fault,
-    name_of_line,
-    station_at,
 )
 from tpss.scenario.rating import TransformerRating
 from tpss.scenario.supply.feedback import Feedback, feedback
-from tpss.scenario.supply.feeds import Feeds, feeds
+from tpss.scenario.supply.feeding_station import FeedingStation
 
 
 class StationTransformer(Part):
@@ -56,14 +52,9 @@ class StationTransformer(Part):
         return self
 
 
-class TransformerStation(Part):
+class TransformerStation(FeedingStation):
     """A transformer station that feeds the contact line."""
 
-    name: Name = Field(description="Name, shown in the results.")
-    line: Name | None = name_of_line()
-    at: Name | None = station_at()
-    position_km: Position = Field(description="Position on its line.")
-    feeds: Feeds | None = feeds()
     feedback: Feedback = feedback()
     no_load_voltage_kv: Real = Field(
         ge=0.1, le=100, description="Voltage without load, on the railway's side."
