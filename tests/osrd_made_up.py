@@ -72,7 +72,13 @@ INFRA: dict[str, Any] = {
         limit(None, on("B1", 0.0, 5000.0), speed_limit_by_tag={"MA100": 20.0}),
     ],
     "electrifications": [{"id": "e", "voltage": "25000V", "track_ranges": [on("M1", 0.0, 6000.0)]}],
-    "neutral_sections": [{"id": "n"}],
+    "neutral_sections": [
+        {"id": "n1", "lower_pantograph": False, "track_ranges": [on("M1", 5900.0, 6000.0)],
+         "announcement_track_ranges": [on("M1", 5500.0, 5900.0)]},
+        {"id": "n2", "lower_pantograph": True, "track_ranges": [on("M1", 5700.0, 5950.0)],
+         "announcement_track_ranges": []},
+        {"id": "n3", "lower_pantograph": False, "track_ranges": [on("M2", 2000.0, 2100.0)]},
+    ],
     "signals": [{}, {}], "routes": [{}], "detectors": [{}, {}, {}], "buffer_stops": [],
     "extended_switch_types": [],
 }  # fmt: skip

@@ -11,12 +11,13 @@ import pytest
 
 import tpss
 from tpss.cli.main import main
+from tpss.importers.feeding import feeding_places
 from tpss.importers.network import ImportedNetwork, NetworkLine
 from tpss.importers.network_files import files
 from tpss.importers.osrd import read
 from tpss.importers.timetable import seconds_of
 
-from osrd_made_up import INFRA, TRAINS, circle, parallel, point, ports, track
+from osrd_made_up import INFRA, TRAINS, circle, on, parallel, point, ports, track
 
 REAL = Path(os.environ.get("OSRD_INFRAS", "not given"))
 needs_real_files = pytest.mark.skipif(
@@ -94,10 +95,62 @@ def test_limits_hold_in_their_directions_the_lowest_of_several(network):
 def test_what_is_left_out_is_counted(network):
     told = network(INFRA).left_out
     assert "signalling: 2 signals, 1 routes, 3 detectors" in told
-    assert "neutral sections: 1" in told
+    assert any(each.startswith("announcements of neutral sections: 1") for each in told)
     assert "speed sections of single routes: 1" in told
     assert "speed sections of single kinds of train: 1" in told
     assert any("25000V on 6 km of track" in each for each in told)
+
+
+def test_neutral_sections_are_those_of_both_directions_and_end_before_lines_meet(network):
+    """On M1 those of 5.9 to 6 km and of 5.7 to 5.95 km overlap: one, which ends 2 m before the switch at
+    km 6.  That on M2, at 2 to 2.1 km from its end at km 10, lies at km 7.9 to 8.
+    """
+    found = network(INFRA)
+    assert found.neutral_sections == [
+        ("Main_V1", 5.7, 5.998, 15.0), ("Main_V1", 7.9, 8.0, 0.0),
+    ]  # fmt: skip
+    assert any(each.startswith("neutral sections: 2") for each in found.taken)
+    assert any(each.startswith("15 s until power is back") for each in found.assumed)
+
+
+def test_each_side_of_a_neutral_section_has_a_feeding_station(network):
+    """West to km 5.7, the fork with the branch, and East beyond km 8."""
+    places = feeding_places(network(INFRA))
+    assert sorted(place.at for place in places) == ["East", "Fork", "West"]
+
+
+def test_a_stretch_between_neutral_sections_without_a_station_is_fed_in_its_middle(network):
+    """Between km 1 and km 2 of the main line there is no station."""
+    infra = copy.deepcopy(INFRA)
+    infra["neutral_sections"] = [
+        {"id": str(km), "track_ranges": [on("M1", 1e3 * km - 50.0, 1e3 * km)]} for km in (1, 2)
+    ]
+    found = network(infra)
+    assert ("Main_V1 1.475 km", "", "Main_V1", 1.475) in feeding_places(found)
+    text = files(found)["scenario.toml"]
+    assert 'line = "Main_V1"\nposition_km = 1.475\n' in text
+
+
+def test_a_neutral_section_at_a_place_where_lines_meet_is_told(network):
+    """4 m before the switch only 2 m would be left of it."""
+    infra = copy.deepcopy(INFRA)
+    infra["neutral_sections"] = [{"id": "n", "track_ranges": [on("M1", 5996.0, 6000.0)]}]
+    found = network(infra)
+    assert not found.neutral_sections
+    assert "neutral sections where lines meet or end: 1" in found.left_out
+
+
+def test_no_station_is_far_from_a_feeding_station(network):
+    """70 km and 40 km of the main line: one at the fork, and at its ends, 70 and 40 km away."""
+    infra = copy.deepcopy(INFRA)
+    infra |= {"neutral_sections": [], "speed_sections": [], "operational_points": []}
+    infra["track_sections"] = [
+        each | {"length": {"M1": 70e3, "M2": 40e3}.get(each["id"], each["length"]), "slopes": [],
+                "curves": []} for each in infra["track_sections"]
+    ]  # fmt: skip
+    assert [place.at for place in feeding_places(network(infra))] == [
+        "Fork", "Begin of M1", "End of M2",
+    ]  # fmt: skip
 
 
 def test_each_track_lies_on_a_line_once(network):
@@ -163,7 +216,7 @@ def test_a_crossing_lets_lines_cross_and_not_meet(network):
     infra |= {"operational_points": [], "speed_sections": [], "electrifications": []}
     found = network(infra)
     assert [list(line.stations.values()) for line in found.lines] == [[0, 6], [0, 4]]
-    assert len(found.islands) == 2
+    assert len(feeding_places(found)) == 2
 
 
 def test_two_operational_points_of_one_name_are_told_apart(network):
@@ -238,7 +291,7 @@ def test_the_files_are_a_scenario_without_faults(tmp_path, monkeypatch, capsys):
     assert call(monkeypatch, "check", tmp_path / "m" / "scenario.toml") == 0
     scenario = tpss.load_scenario(tmp_path / "m" / "scenario.toml")
     assert scenario.supply.system == "25kV-50Hz"
-    assert {station.at for station in scenario.supply.stations} == {"Fork"}
+    assert {station.at for station in scenario.supply.stations} == {"West", "Fork", "East"}
     text = (tmp_path / "m" / "scenario.toml").read_text("utf-8")
     assert text.count("ASSUMED, edit it") == 4  # duration, supply, train and service
     assert (tmp_path / "m" / "tracks.csv").read_text().splitlines()[2] == "Main_V1,6,10,M2,4000,0"

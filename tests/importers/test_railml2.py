@@ -107,6 +107,29 @@ def test_parts_of_a_train_follow_each_other_over_midnight(railml):
     ]
 
 
+def test_a_train_that_passes_its_origin_departs_there(railml):
+    """Programs that export a part of a network let trains begin where they pass its border."""
+    (train,) = railml(('sequence="1" ocpType="stop"', 'sequence="1" ocpType="pass"')).trains
+    assert told(train)[0] == ("West", "start", None, 23 * HOUR + 40 * MINUTE, None)
+
+
+def test_a_train_begins_where_its_times_do(railml):
+    """Without its departure from West it begins when it passes Fork, at 23:50:30."""
+    found = railml((' departure="23:40"', ""))
+    (train,) = found.trains
+    assert told(train)[0] == ("Fork", "start", None, 23 * HOUR + 50.5 * MINUTE, None)
+    assert any("where it begins: of 1 of the trains" in each for each in found.left_out)
+
+
+def test_a_train_without_any_time_is_left_out(railml):
+    start, end = FILE.index("<trains>"), FILE.index("</timetable>")
+    times = '<times scope="scheduled" departure="00:20:00.0" departureDay="1"/>'
+    found = railml((times, ""), ('<times scope="scheduled" arrival="00:50:00"/>', ""),
+                   text=FILE[:start] + FILE[end:])  # fmt: skip
+    assert [train.name for train in found.trains] == ["p1"]
+    assert "trains without any time: 1" in found.left_out
+
+
 def test_what_is_left_out_is_counted(railml):
     found = railml().left_out
     for words in ("stations of these names: 2", "reserves of running times: 1", "periods: 1",
@@ -145,7 +168,7 @@ def test_the_command_writes_a_timetable(tmp_path, monkeypatch, capsys):
         ('ocpRef="ocp_f"', 'ocpRef="ocp_x"', "trainPart p1, ocpTT", "no such ocp"),
         ('"PT5M"', '"5 min"', "trainPart p2, minimalTime", "not a duration"),
         ('ref="p2"', 'ref="p9"', "trainPartRef p9", "no such trainPart"),
-        ('version="2.4"', 'version="3.2"', "version", "not railML 2 or 3, but railml 3.2"),
+        ('version="2.4"', 'version="4.0"', "version", "not railML 2 or 3, but railml 4.0"),
         ("</timetable>", "", "line 56", "mismatched tag"),
         ("<trainParts>", "<trainParts>" + "<a>" * 300, "line 14", "more than 200 elements"),
     ],

@@ -109,9 +109,21 @@ def test_what_railml_3_has_besides_is_counted(network):
     assert "signalling: 2 signals, 1 balises" in told
     assert "1 platforms" in told
     assert any(each.startswith("electrification sections: 1, 25 kV 50 Hz on 6 km") for each in told)
-    assert "neutral sections: 1" in told
+    assert "neutral sections without a place of their own: 1" in told
     assert "temporary speed sections: 1" in told
     assert "speed sections of single kinds of train: 1" in told
+
+
+def test_a_short_section_that_separates_phases_is_a_neutral_section(network):
+    """The last 200 m of ne_a but 100: km 15.7 to 15.9."""
+    whole = '<associatedNetElement netElementRef="ne_a" keepsOrientation="true"/>'
+    begin = RAILML_3.index('<electrificationSection id="el">')
+    head, tail = RAILML_3[:begin], RAILML_3[begin:]
+    part = whole.replace("/>", ' posBegin="5700" posEnd="5900"/>')
+    found = network(head + tail.replace(whole, part, 1),
+                    ("<phaseSeparationSection/>", '<phaseSeparationSection lowerPantograph="true"/>'),
+                    )  # fmt: skip
+    assert found.neutral_sections == [("Main", 15.7, 15.9, 15.0)]
 
 
 def test_each_element_lies_on_a_line_in_its_kilometres(network):
@@ -142,6 +154,50 @@ def test_a_jump_of_the_kilometres_is_told(network):
     assert any(
         each.startswith("jumps of the kilometres: 1, of up to 1 km") for each in found.left_out
     )
+
+
+ANCHORED = (
+    'startMeasure="10000" endMeasure="20000"/>',
+    """startMeasure="10000" endMeasure="20000">
+          <anchor id="k1" measure="10000" measureToNext="2000"/>
+          <anchor id="k2" measure="12500" measureToNext="6500"/>
+          <anchor id="k3" measure="18800" measureToNext="1200"/>
+        </linearPositioningSystem>""",
+)
+"""Km 12 is km 12.5 at once, and km 19 km 18.8 again."""
+
+
+def test_a_gap_and_an_overlap_of_a_positioning_system_are_no_way(network):
+    """ne_a: 2 km and 3.5 km.  ne_b, from km 20 down to 16: 1.2 km to km 18.8, then from km 19 on 3 km.
+    Of 5.5 km the fork is at the end; Middle at km 13 is 2.5 km from the beginning, and the limit from
+    km 15 on 4.5 km.
+    """
+    found = network(RAILML_3, ('id="ne_a" length="6000"', 'id="ne_a"'), ANCHORED)
+    main = named(found)["Main"]
+    assert (main.begins_at_km, main.length_km) == (10.0, 9.7)
+    assert main.stations == pytest.approx({"West": 0.0, "Middle": 2.5, "Fork": 5.5, "East": 9.6})
+    assert main.limits == [(0, 120), (4.5, 80), (6.5, 120)]
+    (told,) = (each for each in found.left_out if each.startswith("jumps"))
+    assert told.startswith("jumps of the kilometres: 2, of up to 0.5 km")
+    assert told.endswith(
+        "Main at 12 km (12.5 km in the file), Main at 18.5 km (18.8 km in the file)"
+    )
+
+
+def test_a_mileage_change_of_railml_3_is_a_jump(network):
+    """As the first of the anchors, from the spot that ends to the spot that begins."""
+    change = """<mileageChanges><mileageChange id="mc" from="mc_a" to="mc_b" type="gap">
+          <spotLocation id="mc_b" netElementRef="ne_a"><linearCoordinate positioningSystemRef="lps"
+            measure="12500"/></spotLocation>
+          <spotLocation id="mc_a" netElementRef="ne_a"><linearCoordinate positioningSystemRef="lps"
+            measure="12000"/></spotLocation>
+        </mileageChange></mileageChanges>
+        <gradientCurves>"""
+    found = network(
+        RAILML_3, ('id="ne_a" length="6000"', 'id="ne_a"'), ("<gradientCurves>", change)
+    )
+    assert named(found)["Main"].length_km == 9.5
+    assert any(each.endswith("Main at 12 km (12.5 km in the file)") for each in found.left_out)
 
 
 def test_sections_without_a_length_share_that_of_their_track_as_they_are_drawn(network):
@@ -185,10 +241,28 @@ def test_tracks_of_railml_2_follow_each_other_in_lines_beyond_a_jump_of_kilometr
     lines = named(found)
     ends = {name: (line.begins_at_km, line.length_km) for name, line in lines.items()}
     assert ends == {"Main": (10.0, 10.0), "Branch_2": (0.0, 3.0)}
-    assert any("kilometres: 1, of up to 0.5 km" in each for each in found.left_out)
+    (told,) = (each for each in found.left_out if each.startswith("jumps"))
+    assert told.startswith("jumps of the kilometres: 1, of up to 0.5 km")
+    assert told.endswith("Main at 12 km (12.5 km in the file)")
     assert [each.track for each in found.tracks] == [
         "t1", "t1 from 2000 m", "t1 from 4000 m", "t3", "t2"
     ]  # fmt: skip
+
+
+def test_what_ends_at_a_jump_keeps_its_kilometres(network):
+    """Without the kilometre of t1's beginning the change itself tells it: km 12 less 2 km."""
+    lines = named(network(RAILML_2, ('pos="0" absPos="10000"', 'pos="0"')))
+    assert lines["Main"].begins_at_km == 10.0
+
+
+def test_kilometres_that_jump_untold_are_a_jump_too(network):
+    """Without the change, but with a kilometre of the switch: 4 km from km 10 it is km 14.5."""
+    change = '<mileageChange id="m" pos="2000" absPosIn="12000" absPos="12500" type="missing"/>'
+    found = network(
+        RAILML_2, (change, ""), ('name="Fork" pos="4000"', 'name="Fork" pos="4000" absPos="14500"')
+    )
+    (told,) = (each for each in found.left_out if each.startswith("jumps"))
+    assert told.endswith("Main at 14 km (14.5 km in the file)")
 
 
 def test_operational_points_of_railml_2_are_at_cross_sections_and_macroscopic_nodes(network):

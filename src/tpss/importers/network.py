@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from tpss.importers.quantities import DIGITS
 from tpss.importers.timetable import Service, Train
@@ -62,6 +62,15 @@ class NetworkLine:
         return [{"from_km": self._km(km), key: value} for km, value in stairs]
 
 
+class LineNeutral(NamedTuple):
+    """A neutral section of a line, in the line's kilometres."""
+
+    line: str
+    from_km: float
+    to_km: float
+    raise_s: float
+
+
 @dataclass(frozen=True)
 class ImportedNetwork:
     """Lines and trains from files of another format, and how these were used."""
@@ -73,6 +82,7 @@ class ImportedNetwork:
     trains: list[Train] = field(default_factory=list)
     services: list[Service] = field(default_factory=list)
     tracks: list[OsrdTrack] = field(default_factory=list)
+    neutral_sections: list[LineNeutral] = field(default_factory=list)
     system: str = ""
     """Electrification system of most of the lines, if it is known."""
     taken: list[str] = field(default_factory=list)
@@ -83,22 +93,6 @@ class ImportedNetwork:
     def stations(self) -> dict[str, dict[str, float]]:
         """Positions of the stations by the names of the lines, and their own. [km]"""
         return {line.name: line.stations for line in self.lines}
-
-    @property
-    def islands(self) -> list[list[NetworkLine]]:
-        """Lines that hang together by their stations."""
-        islands: list[tuple[set[str], list[NetworkLine]]] = []
-        for line in self.lines:
-            names, lines = set(line.stations), [line]
-            apart = []
-            for each in islands:
-                if each[0] & names:
-                    names |= each[0]
-                    lines = [*each[1], *lines]
-                else:
-                    apart.append(each)
-            islands = [*apart, (names, lines)]
-        return [lines for _, lines in islands]
 
 
 def stairs(

@@ -7,6 +7,7 @@ from typing import Any
 import tomli_w
 
 from tpss.errors import Finding, ScenarioError
+from tpss.importers.feeding import REACH_KM, feeding_places
 from tpss.importers.network import ImportedNetwork, plain_name
 from tpss.importers.services import EXAMPLE, service_tables
 from tpss.importers.texts import comments
@@ -32,7 +33,8 @@ description = {description}
 
 [lines]
 {lines}
-# ASSUMED, edit it: {format_name} describes no power supply.
+# ASSUMED, edit it: {format_name} describes no power supply.  No station is farther than {reach_km:g} km
+# from a feeding station.
 [supply]
 system = {system}
 {supply}{trains}
@@ -44,7 +46,7 @@ _SUPPLY = {
         """
 [[supply.transformer_stations]]
 name = {name}
-at = {at}
+{place}
 no_load_voltage_kv = 27.5
 transformer = {{ rated_mva = 30.0, short_circuit_percent = 10.0 }}
 """,
@@ -54,7 +56,7 @@ transformer = {{ rated_mva = 30.0, short_circuit_percent = 10.0 }}
         """
 [[supply.converter_stations]]
 name = {name}
-at = {at}
+{place}
 type = "Q48/Q49"
 converters = 3
 """,
@@ -119,6 +121,7 @@ def scenario_text(network: ImportedNetwork) -> str:
             simulation=_simulation(network),
             lines="".join(f'{name} = "lines/{name}.toml"\n' for name in network.stations),
             format_name=network.format_name,
+            reach_km=REACH_KM,
             system=_text(network.system or DEFAULT_SYSTEM),
             supply=_supply(network),
             trains="".join(_TRAIN.format(key=plain_name(kind)) for kind in kinds or ["train"]),
@@ -151,14 +154,26 @@ def _simulation(network: ImportedNetwork) -> str:
 
 
 def _supply(network: ImportedNetwork) -> str:
-    """The contact line, and a station for all lines that hang together, where most of them meet."""
+    """The contact line, assumed feeding stations, and the neutral sections of the file."""
     catenary, station = _SUPPLY[network.system or DEFAULT_SYSTEM]
     stations = []
-    for lines in network.islands:
-        names = [name for line in lines for name in line.stations]
-        at = max(names, key=names.count)
-        stations.append(station.format(name=_text(at), at=_text(at)))
-    return f"{catenary}\n{''.join(stations)}"
+    for each in feeding_places(network):
+        place = f"at = {_text(each.at)}"
+        if not each.at:
+            place = f"line = {_text(each.line)}\nposition_km = {each.position_km!r}"
+        stations.append(station.format(name=_text(each.name), place=place))
+    return f"{catenary}\n{''.join(stations)}{_neutral_sections(network)}"
+
+
+def _neutral_sections(network: ImportedNetwork) -> str:
+    tables = []
+    for each in network.neutral_sections:
+        raised = f"raise_s = {each.raise_s!r}\n" if each.raise_s else ""
+        tables.append(
+            f"\n[[supply.neutral_sections]]\nline = {_text(each.line)}\n"
+            f"from_km = {each.from_km!r}\nto_km = {each.to_km!r}\n{raised}"
+        )
+    return "".join(tables)
 
 
 def _traffic(network: ImportedNetwork) -> str:

@@ -54,6 +54,7 @@ def read(infra_path: Path, trains_path: Path | None = None) -> ImportedNetwork:
         "OSRD",
         made.lines,
         tracks=made.ranges,
+        neutral_sections=made.neutral.found,
         system=_system(infra),
         taken=made.taken(),
         left_out=_left_out(infra, made),
@@ -115,9 +116,12 @@ def _left_out(infra: Infra, made: TrackNetwork) -> list[str]:
         for voltage, length_m in _electrified_m(infra).items()
     ]
     ranges = made.profiles.counts
+    announced = sum(bool(each.announcement_track_ranges) for each in infra.neutral_sections)
     told = {
         f"signalling: {', '.join(counts)}": bool(counts),
-        f"neutral sections: {len(infra.neutral_sections)}": bool(infra.neutral_sections),
+        f"announcements of neutral sections: {announced}; trains switch off where the sections begin": (
+            announced
+        ),
         f"electrifications, {', '.join(voltages)}: all lines have a contact line of one system": bool(
             voltages
         ),

@@ -182,6 +182,15 @@ class Electrification(Item):
     track_ranges: tuple[TrackRange, ...] = ()
 
 
+class NeutralSection(Item):
+    """Where trains pass without power, and perhaps with their pantographs lowered."""
+
+    track_ranges: tuple[TrackRange, ...] = ()
+    announcement_track_ranges: tuple[TrackRange, ...] = ()
+    """Before it, where a board tells them to switch off."""
+    lower_pantograph: bool = False
+
+
 class Infra(Item):
     """An infrastructure; of signalling the number of its parts only."""
 
@@ -192,7 +201,7 @@ class Infra(Item):
     operational_points: tuple[OperationalPoint, ...] = ()
     speed_sections: tuple[SpeedSection, ...] = ()
     electrifications: tuple[Electrification, ...] = ()
-    neutral_sections: tuple[Any, ...] = ()
+    neutral_sections: tuple[NeutralSection, ...] = ()
     signals: tuple[Any, ...] = ()
     routes: tuple[Any, ...] = ()
     detectors: tuple[Any, ...] = ()

@@ -6,7 +6,7 @@ from tpss.importers.network import NO_LIMIT_KMH
 from tpss.importers.osrd_infra import Infra, SpeedSection, TrackSection
 from tpss.importers.quantities import DIGITS
 from tpss.importers.track_lines import LEAST_LIMIT_KMH
-from tpss.importers.tracks import Joint, Limit, Place, Section, Tracks
+from tpss.importers.tracks import Joint, Limit, Neutral, Place, Section, Tracks
 
 BOTH_WAYS = {"BOTH": (1, -1), "START_TO_STOP": (1,), "STOP_TO_START": (-1,)}
 """Signs of the directions of a track section."""
@@ -27,6 +27,11 @@ def tracks_of(infra: Infra) -> Tracks:
             for each in infra.operational_points
         ),
         tuple(limits),
+        tuple(
+            Neutral(part.track, part.begin, part.end, each.lower_pantograph)
+            for each in infra.neutral_sections
+            for part in each.track_ranges
+        ),
         counts,
     )
 

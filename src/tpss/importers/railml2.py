@@ -77,13 +77,15 @@ class _Reader:
         self.parts = {part.get("id", ""): part for part in root.iter("trainPart")}
         self.coupled = 0
         """Parts of trains that run coupled to others."""
+        self.shortened, self.untimed = 0, 0
+        """Trains that begin behind the first of their places, and trains without any time."""
         self.scopes: Counter[str] = Counter()
 
     def trains(self) -> list[Train]:
         """Operational trains, else those of any type, else single parts, each of a name of its own."""
         found: list[Train] = []
         for name, parts in self._named_parts():
-            calls = self._calls(parts)
+            calls = self._from_first_time(self._calls(parts))
             if len(calls) >= 2:
                 formation = next(
                     (each.get("formationRef", "") for each in parts[0].iter("formationTT")), ""
@@ -112,6 +114,13 @@ class _Reader:
         ]
         if self.coupled:
             told.append(f"parts of trains that run coupled to others: {self.coupled}")
+        if self.shortened:
+            told.append(
+                f"places before the first time of a train, where it begins: of {self.shortened} of the "
+                "trains"
+            )
+        if self.untimed:
+            told.append(f"trains without any time: {self.untimed}")
         unused = {scope: n for scope, n in self.scopes.items() if n}
         return told + [f"times of scope {scope}: {number}" for scope, number in unused.items()]
 
@@ -149,6 +158,19 @@ class _Reader:
                     call = _joined(calls.pop(), call)
                 calls.append(call)
         return calls
+
+    def _from_first_time(self, calls: list[Call]) -> list[Call]:
+        """Calls from the first one with a time on, where the train departs; none without any time."""
+        if not calls:
+            return []
+        times = (each.arrival_s if each.departure_s is None else each.departure_s for each in calls)
+        found = next(((i, time) for i, time in enumerate(times) if time is not None), None)
+        if found is None:
+            self.untimed += 1
+            return []
+        first, departure_s = found  # a place that is passed has its time as that of arrival
+        self.shortened += first > 0
+        return [replace(calls[first], departure_s=departure_s), *calls[first + 1 :]]
 
     def _call(self, place: Element, part: str, after_s: float) -> Call:
         ident = place.get("ocpRef", "")

@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
+from tpss.importers.railml2_kilometres import jumps_m, marks_of
 from tpss.importers.railml_file import RailmlFile, name_of
 from tpss.importers.track_joints import Way
 from tpss.importers.tracks import End
@@ -55,6 +56,8 @@ class Topology:
         self.broken = 0
         """Connections to what the file does not have."""
         self.tracks = {each.get("id", ""): each for each in tracks_with_topology(file)}
+        self.marks = {ident: marks_of(file, track) for ident, track in self.tracks.items()}
+        """Kilometres along the tracks."""
         self.pieces = {ident: self._pieces(track) for ident, track in self.tracks.items()}
         self._at_ends: dict[str, End] = {}
         """Ends of pieces by the connections there."""
@@ -81,13 +84,13 @@ class Topology:
             remedy = "give its end a pos, in metres from its beginning"
             self.file.blame(track, "it has no length", remedy=remedy)
             length_m = 2.0 * CLOSE_M
-        inside = {
-            pos_m
-            for each in (*switches_of(track), *track.iter("mileageChange"))
-            if (pos_m := self.file.number(each, "pos")) is not None
-            and CLOSE_M < pos_m < length_m - CLOSE_M
-        }
         ident = track.get("id", "")
+        cuts = [
+            *(self.file.number(each, "pos") or 0.0 for each in switches_of(track)),
+            *(self.file.number(each, "pos") or 0.0 for each in track.iter("mileageChange")),
+            *jumps_m(self.marks[ident]),
+        ]
+        inside = {pos_m for pos_m in cuts if CLOSE_M < pos_m < length_m - CLOSE_M}
         return [
             Piece(f"{ident} from {a:g} m" if a else ident, ident, a, b)
             for a, b in pairwise([0.0, *sorted(inside), length_m])

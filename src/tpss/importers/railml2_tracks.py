@@ -13,7 +13,8 @@ from xml.etree.ElementTree import Element
 
 from tpss.importers.network import NO_LIMIT_KMH, own_name
 from tpss.importers.railml2_changes import Change, Courses
-from tpss.importers.railml2_topology import Piece, Topology
+from tpss.importers.railml2_kilometres import kilometre
+from tpss.importers.railml2_topology import Topology
 from tpss.importers.railml_file import RailmlFile, name_of
 from tpss.importers.track_chains import joins_of
 from tpss.importers.track_joints import joints_of
@@ -72,9 +73,9 @@ class Reader:
             line, line_name = lines.get(ident, ("", ""))
             is_main = track.get("type", MAIN) == MAIN
             words = [line_name] if line_name and is_main else [line_name, name_of(track)]
-            marks = self._marks(track)
+            marks = self.topology.marks[ident]
             for piece in self.topology.pieces[ident]:
-                begins_at_km, rises = kilometre(piece, marks)
+                begins_at_km, rises = kilometre(piece.begin_m, piece.end_m, marks)
                 yield (
                     piece.id,
                     Section(
@@ -98,15 +99,6 @@ class Reader:
                 track = reference.get("ref", reference.get("id", ""))
                 found.setdefault(track, (line.get("id", ""), name))
         return found
-
-    def _marks(self, track: Element) -> list[tuple[float, float]]:
-        """Positions on a track and their kilometres, both in metres."""
-        marks = []
-        for element in track.iter():
-            pos_m = self.file.number(element, "pos") if element.get("absPos") else None
-            if pos_m is not None:
-                marks.append((pos_m, self.file.number(element, "absPos") or 0.0))
-        return sorted(marks)
 
     def _places(self) -> Iterator[Place]:
         parts: dict[str, dict[str, float]] = defaultdict(dict)
@@ -195,24 +187,3 @@ class Reader:
             for begin_m, end_m, number in stretches:
                 if number:
                     self.electrified_m[systems[int(number)]] += round(end_m - begin_m)
-
-
-def kilometre(piece: Piece, marks: list[tuple[float, float]]) -> tuple[float | None, int]:
-    """Kilometre where a piece of track begins [km], and 1 or -1 as kilometres rise or fall along it.
-
-    Parameters
-    ----------
-    piece : Piece
-    marks : list of tuple
-        Positions on the track and their kilometres, ascending in the positions. [m]
-    """
-    # Where kilometres jump a piece begins: what is behind the jump counts, so the last at its beginning.
-    at_begin = [mark for mark in marks if mark[0] == piece.begin_m][-1:]
-    own = at_begin + [mark for mark in marks if piece.begin_m < mark[0] < piece.end_m]
-    own = own or [mark for mark in marks if mark[0] == piece.end_m][:1]
-    if not own:
-        return None, 1
-    whole = own if len(own) > 1 and own[0][1] != own[-1][1] else marks
-    rises = -1 if (whole[-1][1] - whole[0][1]) * (whole[-1][0] - whole[0][0]) < 0.0 else 1
-    pos_m, km_m = own[0]
-    return (km_m + rises * (piece.begin_m - pos_m)) / 1e3, rises

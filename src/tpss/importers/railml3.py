@@ -55,6 +55,7 @@ def network_from(file: RailmlFile) -> ImportedNetwork:
         f"railML {file.version}",
         made.lines,
         tracks=made.ranges,
+        neutral_sections=made.neutral.found,
         system=next((system_of(*each) for each, _ in electrified_m.most_common()), ""),
         taken=made.taken(),
         left_out=_left_out(reader, made, electrified_m),
@@ -93,7 +94,6 @@ def _left_out(
         for (voltage_v, frequency_hz), length_m in electrified_m.items()
     ]
     sections = file.count("electrificationSection")
-    separations = file.count("phaseSeparationSection", "systemSeparationSection")
     lost = ", ".join(reader.lost)
     told = {
         f"signalling: {signalling}": signalling,
@@ -101,7 +101,7 @@ def _left_out(
         f"electrification sections: {sections}"
         + (f", {', '.join(systems)}" if systems else "")
         + ": all lines have a contact line of one system": sections,
-        f"neutral sections: {separations}": separations,
+        f"neutral sections without a place of their own: {counts['neutral']}": counts["neutral"],
         f"temporary speed sections: {counts['temporary']}": counts["temporary"],
         f"speed sections of single kinds of train: {counts['profile']}": counts["profile"],
         f"speed sections below 1 km/h: {counts['slow']}": counts["slow"],

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from xml.etree.ElementTree import Element
 
+from tpss.importers.railml3_kilometres import Point, jumps_of, way_m, with_jumps
 from tpss.importers.railml_file import RailmlFile
 from tpss.importers.track_joints import Way
 from tpss.importers.tracks import End
@@ -33,7 +34,7 @@ class NetElement:
 
     id: str
     length_m: float
-    kilometres: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
+    kilometres: dict[str, list[Point]] = field(default_factory=dict)
     """Intrinsic coordinate and distance [m] by positioning system, ascending in the coordinate."""
 
     def position_m(self, system: str, measure_m: float) -> float | None:
@@ -48,11 +49,27 @@ class NetElement:
     @property
     def begin_and_rise(self) -> tuple[float | None, int]:
         """Kilometre of its beginning [km], and 1 or -1 as kilometres rise or fall along it."""
+        points = self._own_points
+        if not points:
+            return None, 1
+        return points[0][1] / 1e3, 1 if points[-1][1] > points[0][1] else -1
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float, float], ...]:
+        """Where these kilometres jump [m], and those before and behind, towards its end. [km]"""
+        return tuple(
+            (self.length_m * a, a_m / 1e3, b_m / 1e3)
+            for (a, a_m), (b, b_m) in pairwise(self._own_points)
+            if a == b
+        )
+
+    @property
+    def _own_points(self) -> list[Point]:
+        """Points of the first positioning system that tells its beginning, and how it counts."""
         for points in self.kilometres.values():
-            (first, begin_m), (_, end_m) = points[0], points[-1]
-            if len(points) > 1 and first == 0.0 and begin_m != end_m:
-                return begin_m / 1e3, 1 if end_m > begin_m else -1
-        return None, 1
+            if len(points) > 1 and points[0][0] == 0.0 and points[0][1] != points[-1][1]:
+                return points
+        return []
 
 
 class Topology:
@@ -66,6 +83,7 @@ class Topology:
             each.get("id", ""): 1e3 if each.get("units", "m").lower() == "km" else 1.0
             for each in file.root.iter("linearPositioningSystem")
         }
+        self._jumps = jumps_of(file, self._units_m)
         given = [each for each in file.root.iter("netElement") if each.get("id")]
         self._parts = _parts(given)
         chosen = self._finest(given)
@@ -126,26 +144,30 @@ class Topology:
         found = next((levels[name] for name in LEVELS if levels.get(name)), None)
         return found or {name for name in idents if not self._parts[name]}
 
-    def _kilometres(self, element: Element) -> dict[str, list[tuple[float, float]]]:
+    def _kilometres(self, element: Element) -> dict[str, list[Point]]:
         """Intrinsic coordinates and distances [m] of an element, by positioning system."""
-        found: dict[str, list[tuple[float, float]]] = defaultdict(list)
+        found: dict[str, list[Point]] = defaultdict(list)
         for point in element.iter("intrinsicCoordinate"):
             at = self.file.number(point, "intrinsicCoord")
             for coordinate in point.iter("linearCoordinate"):
                 distance = self.distance_m(coordinate)
                 if at is not None and distance is not None:
                     found[distance[0]].append((at, distance[1]))
-        return {system: sorted(points) for system, points in found.items()}
+        return {
+            system: with_jumps(sorted(points), self._jumps.get(system, ()))
+            for system, points in found.items()
+        }
 
-    def _length_m(
-        self, element: Element, kilometres: dict[str, list[tuple[float, float]]]
-    ) -> float:
+    def _length_m(self, element: Element, kilometres: dict[str, list[Point]]) -> float:
         """Length of an element, else between its kilometres; 0 without any. [m]"""
         given = self.file.number(element, "length")
         if given is not None:
             return given
-        ends = [(points[0], points[-1]) for points in kilometres.values()]
-        whole = [abs(b_m - a_m) for (a, a_m), (b, b_m) in ends if (a, b) == (0.0, 1.0)]
+        whole = [
+            way_m(points)
+            for points in kilometres.values()
+            if (points[0][0], points[-1][0]) == (0.0, 1.0)
+        ]
         return next((each for each in whole if each), 0.0)
 
     def _relations(self, known: set[str]) -> Iterator[Way]:

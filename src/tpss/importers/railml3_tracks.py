@@ -3,8 +3,8 @@
 References
 ----------
 https://wiki3.railml.org: ``line``, ``track``, ``operationalPoint``, ``speedSection``, ``gradientCurve``,
-``horizontalCurve``, ``switchIS``.  Gradients are in per mille, positive uphill in the direction of their
-location, speeds in km/h.
+``horizontalCurve``, ``switchIS``, ``electrificationSection``.  Gradients are in per mille, positive
+uphill in the direction of their location, speeds in km/h.
 """
 
 from collections import Counter, defaultdict
@@ -18,12 +18,17 @@ from tpss.importers.railml3_topology import Topology
 from tpss.importers.railml_file import RailmlFile, name_of
 from tpss.importers.track_joints import Way, joints_of
 from tpss.importers.track_lines import LEAST_LIMIT_KMH
-from tpss.importers.tracks import Limit, Place, Section, Stretch, Tracks
+from tpss.importers.tracks import Limit, Neutral, Place, Section, Stretch, Tracks
 
 MAIN = "mainTrack"
 
 CLOSE_M = 1.0
 """Gradients that are no farther apart follow each other. [m]"""
+
+SEPARATIONS = ("phaseSeparationSection", "systemSeparationSection")
+
+LONGEST_NEUTRAL_M = 2000.0
+"""What separates phases or systems on a longer stretch only tells that it is somewhere on it. [m]"""
 
 OWNED = ("ownsPlatform", "ownsPlatformEdge", "ownsStoppingPlace", "ownsTrack")
 """Equipment that tells where an operational point is, if it does not tell so itself."""
@@ -50,7 +55,9 @@ class Reader:
         sections = self._sections(kinds, names)
         places = tuple(self._operational_points())
         limits = (*self._line_limits(), *self._limits())
-        return Tracks(sections, joints_of(self._ways(kinds)), places, limits, self.counts)
+        neutral = tuple(self._neutral_sections())
+        joints = joints_of(self._ways(kinds))
+        return Tracks(sections, joints, places, limits, neutral, self.counts)
 
     def _tracks(self) -> tuple[dict[str, str], dict[str, str]]:
         """Types and names of the tracks on which sections lie."""
@@ -81,6 +88,7 @@ class Reader:
                 tuple(curves.get(ident, [])),
                 begins_at_km,
                 rises,
+                element.jumps,
             )
         return found
 
@@ -165,6 +173,20 @@ class Reader:
                     self.counts["slow"] += 1
                 elif speed_kmh < NO_LIMIT_KMH:
                     yield from _limits(self.places.spans(section), speed_kmh)
+
+    def _neutral_sections(self) -> Iterator[Neutral]:
+        """Sections of the contact line that separate phases or systems, as far as they are short."""
+        for section in self._top.iter("electrificationSection"):
+            separations = [each for each in section if each.tag in SEPARATIONS]
+            if not separations:
+                continue
+            spans = self.places.spans(section)
+            if not spans or any(span.end_m - span.begin_m > LONGEST_NEUTRAL_M for span in spans):
+                self.counts["neutral"] += 1
+                continue
+            lowers = any(each.get("lowerPantograph") == "true" for each in separations)
+            for span in spans:
+                yield Neutral(span.section, span.begin_m, span.end_m, lowers)
 
     def _curves(self) -> dict[str, list[Stretch]]:
         found: dict[str, list[Stretch]] = defaultdict(list)

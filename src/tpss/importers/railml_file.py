@@ -12,6 +12,10 @@ SYSTEMS = {(25.0, 50.0): "25kV-50Hz", (15.0, 16.7): "15kV-16.7Hz"}
 """Systems of the library, by voltage [kV] and frequency [Hz] in one decimal."""
 
 
+ROOTS = (("railml", "2."), ("railml", "3."), ("railML", "3."))
+"""Names of root elements, and versions: early files of version 3 have the name of version 2."""
+
+
 class RailmlFile:
     """A document, and the faults found in it so far."""
 
@@ -19,7 +23,7 @@ class RailmlFile:
         self.path = path
         self.root = read_xml(path)
         self.findings: list[Finding] = []
-        if (self.root.tag, self.version[:2]) not in (("railml", "2."), ("railML", "3.")):
+        if (self.root.tag, self.version[:2]) not in ROOTS:
             found = f"{self.root.tag} {self.version}".rstrip()
             problem = f"not railML 2 or 3, but {found}"
             raise ScenarioError([Finding(str(path), "version", self.version, problem, REMEDY)])

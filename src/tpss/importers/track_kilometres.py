@@ -1,5 +1,7 @@
 """Kilometres of a file along chains of its sections: where a line begins, and where they jump."""
 
+from typing import NamedTuple
+
 from tpss.importers.quantities import DIGITS
 from tpss.importers.track_chains import Chain, Link
 
@@ -20,20 +22,40 @@ def kilometre_at(chain: Chain, place_m: float) -> float:
     return 0.0
 
 
-def jumps_km(chain: Chain) -> list[float]:
-    """By how much the kilometres jump along a chain, at each place where they do. [km]"""
+class Jump(NamedTuple):
+    """A place where the kilometres jump, towards the end of the chain."""
+
+    section: str
+    position_m: float
+    """Position on the section. [m]"""
+    before_km: float
+    after_km: float
+
+    @property
+    def size_km(self) -> float:
+        """Its size, however it goes. [km]"""
+        return round(abs(self.after_km - self.before_km), DIGITS)
+
+
+def jumps_of(chain: Chain) -> list[Jump]:
+    """Where the kilometres jump along a chain: within its sections, and from one to the next."""
     found = []
-    begins = [
-        (link.start_m / 1e3, begin_km)
-        for link in chain
-        if (begin_km := _begin_km(link)) is not None
-    ]
-    offset_km = begins[0][1] - begins[0][0] if begins else 0.0
-    for place_km, begin_km in begins:
-        jump_km = begin_km - place_km - offset_km
-        if abs(jump_km) > CLOSE_KM:
-            found.append(round(jump_km, DIGITS))
-            offset_km += jump_km
+    offset_km: float | None = None
+    for link in chain:
+        begin_km = _begin_km(link)
+        if begin_km is None:
+            continue
+        start_km = link.start_m / 1e3
+        offset_km = begin_km - start_km if offset_km is None else offset_km
+        if abs(begin_km - start_km - offset_km) > CLOSE_KM:
+            at_m = 0.0 if link.sign > 0 else link.section.length_m
+            expected_km = round(start_km + offset_km, DIGITS)
+            found.append(Jump(link.section.id, at_m, expected_km, round(begin_km, DIGITS)))
+            offset_km = begin_km - start_km
+        for position_m, before_km, after_km in link.section.jumps[:: link.sign]:
+            ends = (before_km, after_km)[:: link.sign]
+            found.append(Jump(link.section.id, position_m, *ends))
+            offset_km += ends[1] - ends[0]
     return found
 
 
@@ -47,4 +69,7 @@ def _begin_km(link: Link) -> float | None:
     section = link.section
     if section.begins_at_km is None or section.rises * link.sign < 0:
         return None
-    return section.begins_at_km if link.sign > 0 else section.begins_at_km - section.length_m / 1e3
+    if link.sign > 0:
+        return section.begins_at_km
+    jumped_km = sum(after_km - before_km for _, before_km, after_km in section.jumps)
+    return section.begins_at_km - section.length_m / 1e3 + jumped_km

@@ -6,13 +6,17 @@ from functools import cached_property
 from itertools import pairwise
 
 from tpss.importers.network import NO_LIMIT_KMH, NetworkLine, stairs
+from tpss.importers.neutral_sections import RAISE_S, NeutralSections, neutral_sections_of
 from tpss.importers.track_chains import Layout, chains_of, joins_of
-from tpss.importers.track_kilometres import has_kilometres, jumps_km
+from tpss.importers.track_kilometres import has_kilometres, jumps_of
 from tpss.importers.track_lines import Profiles, lines_of
 from tpss.importers.track_stations import Label, Stations, find_stations, station_names
 from tpss.importers.tracks import Tracks
 from tpss.results.osrd_tracks import OsrdTrack
 from tpss.units import kilometres
+
+MOST_JUMPS = 10
+"""Jumps of the kilometres whose places are told."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,7 @@ class TrackNetwork:
     profiles: Profiles
     lines: list[NetworkLine]
     ranges: list[OsrdTrack]
+    neutral: NeutralSections
 
     def station_of(self, label: Label) -> str | None:
         """Name of the station that a place became; None if it is on no line."""
@@ -56,12 +61,17 @@ class TrackNetwork:
                 f"{self.stations.merged} switches and points that are less than a metre from another, "
                 "or at the other end of a track of less than 10 m, became one station with it"
             )
+        if self.neutral.found:
+            told.append(
+                f"neutral sections: {len(self.neutral.found)}, one for both directions where those of "
+                "either overlap"
+            )
         return told
 
     def left_out(self) -> list[str]:
         """What was left out, whatever the format."""
         counts = self.profiles.counts
-        jumps = [jump for chain in self.layout.chains for jump in jumps_km(chain)]
+        jumps = self._jumps()
         told = {
             f"curves below 100 m or beyond 100 km: {counts['radius']}": counts["radius"],
             f"parts of slopes, curves and limits beyond the ends of their tracks: {counts['cut']}": (
@@ -73,14 +83,29 @@ class TrackNetwork:
             f"further parts of operational points on one line: {self.stations.extra_parts}": (
                 self.stations.extra_parts
             ),
-            f"jumps of the kilometres: {len(jumps)}, of up to "
-            f"{max((abs(jump) for jump in jumps), default=0.0):g} km; beyond them positions go on "
-            "from the line's beginning": jumps,
+            f"jumps of the kilometres: {len(jumps)}, of up to {max(jumps, default=(0.0,))[0]:g} km; "
+            "beyond them positions go on from the line's beginning: "
+            + ", ".join(words for _, words in jumps[:MOST_JUMPS])
+            + (f" and {len(jumps) - MOST_JUMPS} more" if len(jumps) > MOST_JUMPS else ""): jumps,
+            f"neutral sections where lines meet or end: {self.neutral.lost}": self.neutral.lost,
             "which ways a switch connects: at a station every line leads to every other": (
                 self.tracks.joints
             ),
         }
         return [words for words, is_so in told.items() if is_so]
+
+    def _jumps(self) -> list[tuple[float, str]]:
+        """Sizes of the jumps of kilometres [km], and where they are, in both kilometres."""
+        ranges = {each.track: each for each in self.ranges}
+        told = []
+        for jump in (jump for chain in self.layout.chains for jump in jumps_of(chain)):
+            lies = ranges.get(jump.section)
+            if lies is not None:
+                slope = (lies.to_km - lies.from_km) / (lies.end_m - lies.begin_m)
+                own_km = kilometres(lies.from_km + slope * (jump.position_m - lies.begin_m))
+                words = f"{lies.line} at {own_km} km ({kilometres(jump.after_km)} km in the file)"
+                told.append((jump.size_km, words))
+        return told
 
     def assumed(self) -> list[str]:
         """What the file does not say, whatever the format."""
@@ -105,6 +130,11 @@ class TrackNetwork:
                 f"stations in the middle of {middles} parallel tracks of one length: a service names in "
                 "via which of them it takes"
             )
+        if any(each.raise_s for each in self.neutral.found):
+            told.append(
+                f"{RAISE_S:g} s until power is back behind neutral sections where pantographs are "
+                "lowered"
+            )
         return told
 
 
@@ -122,7 +152,8 @@ def network_of(tracks: Tracks, further: Iterable[tuple[str, float]] = ()) -> Tra
     stations = find_stations(tracks, layout, joins, further)
     profiles = Profiles(tracks, layout)
     lines, ranges = lines_of(layout, profiles, stations)
-    return TrackNetwork(tracks, layout, stations, profiles, lines, ranges)
+    neutral = neutral_sections_of(tracks.neutral, ranges, lines)
+    return TrackNetwork(tracks, layout, stations, profiles, lines, ranges, neutral)
 
 
 def level_track(tracks: Tracks) -> list[str]:

@@ -36,6 +36,8 @@ class Section:
     """Kilometre of its beginning in the file, if it has one. [km]"""
     rises: int = 1
     """1 if these kilometres rise towards its end, -1 if they fall."""
+    jumps: tuple[tuple[float, float, float], ...] = ()
+    """Positions where these kilometres jump [m], and those before and behind, towards its end. [km]"""
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,17 @@ class Limit:
 
 
 @dataclass(frozen=True)
+class Neutral:
+    """A stretch of a section where two phases or systems meet: trains pass it with their power off."""
+
+    section: str
+    begin_m: float
+    end_m: float
+    lowers: bool = False
+    """Whether they lower their pantographs."""
+
+
+@dataclass(frozen=True)
 class Tracks:
     """All of a file."""
 
@@ -80,5 +93,6 @@ class Tracks:
     joints: tuple[Joint, ...] = ()
     places: tuple[Place, ...] = ()
     limits: tuple[Limit, ...] = ()
+    neutral: tuple[Neutral, ...] = ()
     counts: Counter[str] = field(default_factory=Counter)
     """What was left out, by why."""
