@@ -1,7 +1,6 @@
 """Routes of a GTFS feed: the lines, the timetable and the services that they become."""
 
 import csv
-import os
 import tomllib
 import zipfile
 from datetime import date
@@ -19,10 +18,6 @@ from tpss.importers.network_files import files
 DEGREE_KM = 6371.0 * 3.141592653589793 / 180.0
 """Between two places on the equator that are a degree apart: 111.195 km."""
 
-REAL = Path(os.environ.get("GTFS_FEED", "not given"))
-needs_a_real_feed = pytest.mark.skipif(
-    not REAL.exists(), reason="GTFS_FEED does not name a feed, its first route on rails is imported"
-)
 
 FEED = {
     "routes.txt": """\
@@ -138,6 +133,29 @@ def test_kilometres_along_shapes_are_in_the_unit_that_fits_the_coordinates(feed,
     assert any(
         f"3 distances along the shapes of trips, in {unit} " in each for each in found.assumed
     )
+
+
+def shaped(last: str) -> dict[str, str]:
+    """Trip t1 along a shape that climbs half-way to Beta and comes down again, and ends at a place."""
+    lines = FEED["trips.txt"].splitlines()
+    named = [f"{lines[0]},shape_id", f"{lines[1]},s", *(f"{line}," for line in lines[2:])]
+    points = f"s,0.05,10.05,2\ns,0,10.0,1\ns,0,10.1,30\ns,{last},40\n"
+    header = "shape_id,shape_pt_lat,shape_pt_lon,shape_pt_sequence\n"
+    return {"trips": "\n".join(named), "shapes": header + points}
+
+
+def test_stops_without_distances_are_placed_on_the_shape_of_their_trip(feed):
+    """Two sides of 0.05 times the root of 2 degrees each: 15.725 km to Beta; straight on from there."""
+    found = feed(**shaped("0,10.3"))
+    beta_km = 2.0 * 0.05 * 2.0**0.5 * DEGREE_KM
+    expected = [0.0, beta_km, beta_km + 0.1 * DEGREE_KM, beta_km + 0.2 * DEGREE_KM]
+    assert list(found.lines[0].stations.values()) == pytest.approx(expected, rel=1e-4)
+    assert any("3 distances along the shapes of trips, in km" in each for each in found.assumed)
+
+
+def test_a_shape_that_does_not_lead_to_all_stops_of_a_trip_tells_nothing(feed):
+    """It ends at 10.29 degrees, a kilometre before Delta."""
+    assert any("4 distances straight" in each for each in feed(**shaped("0,10.29")).assumed)
 
 
 def test_that_kilometres_are_straight_is_said(feed):
@@ -308,15 +326,3 @@ def test_what_is_no_feed_is_told(tmp_path):
         with pytest.raises(tpss.ScenarioError) as caught:
             read(path, ["r1"])
         assert "neither a folder nor a zip file" in caught.value.findings[0].problem
-
-
-@needs_a_real_feed
-def test_a_real_feed_becomes_lines_and_trains():
-    from tpss.importers.gtfs_feed import Feed
-    from tpss.importers.gtfs_trips import RAIL
-
-    rows = list(Feed(REAL).rows("routes.txt"))
-    route = next((row for row in rows if row["route_type"] in RAIL), rows[0])
-    found = read(REAL, [route["route_id"]])
-    assert found.trains or found.services
-    assert files(found)

@@ -3,7 +3,6 @@
 import copy
 import csv
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,6 @@ from tpss.importers.osrd import read
 from tpss.importers.timetable import seconds_of
 
 from osrd_made_up import INFRA, TRAINS, circle, on, parallel, point, ports, track
-
-REAL = Path(os.environ.get("OSRD_INFRAS", "not given"))
-needs_real_files = pytest.mark.skipif(
-    not REAL.is_dir(),
-    reason="OSRD_INFRAS does not name the folder tests/data/infras of OSRD's repository",
-)
 
 
 def write(path: Path, document: Any) -> Path:
@@ -379,13 +372,3 @@ def test_a_fault_of_a_train_does_too(network, changes, key):
     assert (Path(caught.value.findings[0].file).name, caught.value.findings[0].key) == (
         "trains.json", key,
     )  # fmt: skip
-
-
-@needs_real_files
-@pytest.mark.parametrize(
-    "name",
-    [each.parent.name for each in sorted(REAL.glob("*/infra.json"))] if REAL.is_dir() else [],
-)
-def test_osrd_s_own_examples_become_scenarios_without_faults(name, tmp_path, monkeypatch):
-    assert call(monkeypatch, "import", "osrd", REAL / name / "infra.json", "--out", tmp_path) == 0
-    assert call(monkeypatch, "check", tmp_path / "scenario.toml") == 0

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tpss.errors import Finding, ScenarioError
 from tpss.importers.gtfs_feed import Feed
+from tpss.importers.gtfs_shapes import with_shape_distances
 from tpss.importers.gtfs_stations import Distances, Stations, lines_of
 from tpss.importers.gtfs_trips import Calendar, StopTime, Trip, chosen_routes, trips_of
 from tpss.importers.network import ImportedNetwork, NetworkLine, own_name, plain_name
@@ -24,7 +25,7 @@ LIMIT_OVER_MEAN = 2.0
 """The speed limit that is assumed, over the highest mean speed of a trip."""
 
 TABLES_LEFT_OUT = {
-    "shapes.txt": "the way between stations; its length counts where stop_times.txt has it",
+    "shapes.txt": "the course of trips, but for its length between stations",
     "transfers.txt": "trains do not wait for others",
     "fare_attributes.txt": "fares",
     "fare_rules.txt": "fares",
@@ -45,7 +46,7 @@ def read(path: Path, routes: list[str], day: date | None = None) -> ImportedNetw
     chosen, trips = _trips_on(feed, names, day)
     stations = Stations(feed, {stop.stop for trip in trips for stop in trip.stops})
     usable = [trip for trip in trips if _is_usable(trip, stations)]
-    distances = Distances(usable, stations)
+    distances = Distances(with_shape_distances(feed, usable, stations.place_of_stop), stations)
     patterns = {_pattern(trip, stations) for trip in usable}
     km = lines_of(patterns, distances, stations.places)
     limit_kmh = _limit_kmh(usable, stations, km)

@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tpss.errors import Finding, ScenarioError
-from tpss.importers.gtfs_feed import REMEDY, Feed
+from tpss.importers.gtfs_feed import REMEDY, Feed, Row
 from tpss.importers.gtfs_trips import Trip
 from tpss.importers.network import own_name
 
@@ -55,6 +55,7 @@ class Stations:
         rows = {row["stop_id"]: row for row in feed.rows("stops.txt", "stop_id", "stop_name")}
         self.name_of: dict[str, str] = {}
         self.places: dict[str, Place] = {}
+        self.place_of_stop: dict[str, Place] = {}
         if unknown := sorted(stops - set(rows)):
             table = str(feed.path / "stops.txt")
             problem = "stop_times.txt has a stop that is not there"
@@ -62,10 +63,8 @@ class Stations:
         wanted: dict[str, str] = {}
         for stop in sorted(stops):
             row = rows.get(rows[stop]["parent_station"], rows[stop])
-            place = Place(row.number("stop_lat"), row.number("stop_lon"))
-            if abs(place.latitude) > 90.0 or abs(place.longitude) > 360.0:
-                column = "stop_lat" if abs(place.latitude) > 90.0 else "stop_lon"
-                raise ScenarioError([row.finding(column, "not a coordinate in degrees")])
+            place = _place(row)
+            self.place_of_stop[stop] = _place(rows[stop])
             name = " ".join(row["stop_name"].split()) or stop
             near = (
                 each
@@ -76,6 +75,14 @@ class Stations:
             wanted[station] = name
             self.name_of[stop] = station
             self.places.setdefault(station, place)
+
+
+def _place(row: Row) -> Place:
+    place = Place(row.number("stop_lat"), row.number("stop_lon"))
+    if abs(place.latitude) > 90.0 or abs(place.longitude) > 360.0:
+        column = "stop_lat" if abs(place.latitude) > 90.0 else "stop_lon"
+        raise ScenarioError([row.finding(column, "not a coordinate in degrees")])
+    return place
 
 
 class Distances:

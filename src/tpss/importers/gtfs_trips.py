@@ -37,6 +37,8 @@ class Trip:
     route: str
     name: str
     service: str
+    shape: str = ""
+    """Its course, if the feed has it."""
     stops: list[StopTime] = field(default_factory=list)
     windows: list[tuple[float, float, float]] = field(default_factory=list)
     """Beginnings and ends of the times when it runs again and again [s], and how often [s]."""
@@ -84,7 +86,8 @@ def trips_of(feed: Feed, routes: Mapping[str, str]) -> list[Trip]:
     for row in feed.rows("trips.txt", "route_id", "service_id", "trip_id"):
         if row["route_id"] in routes:
             name = row["trip_short_name"] or row["trip_id"]
-            trips[row["trip_id"]] = Trip(row["trip_id"], row["route_id"], name, row["service_id"])
+            ident = row["trip_id"]
+            trips[ident] = Trip(ident, row["route_id"], name, row["service_id"], row["shape_id"])
     stops: dict[str, list[tuple[float, StopTime]]] = defaultdict(list)
     for row in feed.rows("stop_times.txt", "trip_id", "stop_id", "stop_sequence"):
         if row["trip_id"] in trips:
