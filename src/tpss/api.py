@@ -98,7 +98,7 @@ def _prepared(scenario: Scenario, compiled: bool) -> "Prepared":
 
 
 def _clock_of(scenario: Scenario) -> Clock:
-    return clock_of(scenario.simulation.load_flow, scenario.source)
+    return clock_of(scenario.simulation.load_flow, scenario.given_source)
 
 
 def _in_check(

@@ -150,7 +150,12 @@ def test_stops_without_distances_are_placed_on_the_shape_of_their_trip(feed):
     """
     found = feed(**shaped("0,10.3"))
     beta_km = 2.0 * 0.05 * 2.0**0.5 * DEGREE_KM
-    expected = [0.0, beta_km + 1e-4 * DEGREE_KM, beta_km + 0.1 * DEGREE_KM, beta_km + 0.2 * DEGREE_KM]
+    expected = [
+        0.0,
+        beta_km + 1e-4 * DEGREE_KM,
+        beta_km + 0.1 * DEGREE_KM,
+        beta_km + 0.2 * DEGREE_KM,
+    ]
     assert list(found.lines[0].stations.values()) == pytest.approx(expected, rel=1e-4)
     assert any("3 distances along the shapes of trips, in km" in each for each in found.assumed)
 

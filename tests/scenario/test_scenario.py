@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from tpss import Scenario, ScenarioError, load_scenario
+from tpss import Scenario, ScenarioError, load_scenario, simulate
 from tpss.scenario.files import read_toml
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.supply.transformers import transformer_positions_km
@@ -338,3 +338,41 @@ def test_the_source_of_a_scenario_is_named_in_faults_of_its_copies():
     with pytest.raises(ScenarioError) as caught:
         load_scenario(FILE).with_({"supply.catenary": "BTX"})
     assert [Path(finding.file) for finding in caught.value.findings] == [FILE]
+
+
+def relative(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Scenario:
+    """An example whose file is named from the working folder."""
+    (tmp_path / "of mine").mkdir()
+    text = FILE.read_text("utf-8").replace("gradients_a_160km.csv", "gradients.csv")
+    (tmp_path / "of mine" / "line.toml").write_text(text, encoding="utf-8")
+    gradients = (EXAMPLES / "gradients_a_160km.csv").read_text("utf-8")
+    (tmp_path / "of mine" / "gradients.csv").write_text(gradients, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return load_scenario("of mine/line.toml")
+
+
+def files_of(caught: pytest.ExceptionInfo[ScenarioError]) -> set[str]:
+    return {finding.file for finding in caught.value.findings}
+
+
+def test_faults_of_changes_name_the_file_as_it_was_given(tmp_path, monkeypatch):
+    scenario = relative(tmp_path, monkeypatch)
+    with pytest.raises(ScenarioError) as caught:
+        scenario.with_({"simulation.time_step_min": -1.0})
+    assert files_of(caught) == {str(Path("of mine/line.toml"))}
+    with pytest.raises(ScenarioError) as caught:
+        scenario.variant("none")
+    assert files_of(caught) == {str(Path("of mine/line.toml"))}
+    (tmp_path / "of mine" / "gradients.csv").write_text("position_km,permille\n0,steep\n")
+    with pytest.raises(ScenarioError) as caught:
+        scenario.with_({"simulation.time_step_min": 1.0})
+    assert files_of(caught) == {str(Path("of mine/gradients.csv"))}
+
+
+def test_faults_that_the_model_finds_name_the_file_as_it_was_given(tmp_path, monkeypatch):
+    """A station that trips has to say which overloads it bears."""
+    scenario = relative(tmp_path, monkeypatch).with_({"protection.trip": True})
+    monkeypatch.chdir("/")
+    with pytest.raises(ScenarioError, match="none trips") as caught:
+        simulate(scenario)
+    assert files_of(caught) == {str(Path("of mine/line.toml"))}

@@ -53,7 +53,7 @@ def inputs_from_scenario(file: ModelFile, scenario: Scenario) -> dict[str, Any]:
         try:
             values[name] = _value(name, design, scenario, known, first)
         except LookupError as error:
-            findings.append(Finding(str(scenario.source), name, "", *error.args))
+            findings.append(Finding(scenario.given_source, name, "", *error.args))
     findings = findings or list(_others(scenario, design, values))
     if findings:
         raise ScenarioError(findings)
@@ -78,7 +78,7 @@ def demand_same_kind(file: ModelFile, scenario: Scenario) -> None:
     predicted = {output.name for output in file.outputs}
     types = {entry.train for entry in scenario.traffic}
     braking = [name for name in sorted(types) if scenario.trains[name].regeneration is not None]
-    place, findings = str(scenario.source), []
+    place, findings = scenario.given_source, []
     if braking and FED_BACK[0] not in {*predicted, *file.untold}:
         problem = "the study had no electric brakes: an approximator cannot know what they do"
         remedy = "simulate it, or train on a study whose trains have them"
@@ -187,7 +187,7 @@ def _others(scenario: Scenario, design: Design, values: dict[str, Any]) -> Itera
     for path, (here, there) in list(rows.items())[:MOST_REPORTED]:
         problem = f"the study had {shortened(repr(there))} only: an approximator cannot know this"
         remedy = "simulate it, or vary it in a study and train on that"
-        yield Finding(str(scenario.source), path, shortened(repr(here)), problem, remedy)
+        yield Finding(scenario.given_source, path, shortened(repr(here)), problem, remedy)
     if len(rows) > MOST_REPORTED:
         problem = f"{len(rows) - MOST_REPORTED} more such differences from the study"
-        yield Finding(str(scenario.source), "", "", problem, "simulate it")
+        yield Finding(scenario.given_source, "", "", problem, "simulate it")

@@ -54,7 +54,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
     model, _ = build_model(with_step(scenario))
     build_services(scenario, model)
-    clock_of(scenario.simulation.load_flow, scenario.source)
+    clock_of(scenario.simulation.load_flow, scenario.given_source)
     for outage in scenario.outages:
         service_of(scenario, outage)
     for name in scenario.variants:

@@ -140,7 +140,7 @@ def compare_controls(
             '"Q48/Q49 with losses (estimate)"'
         )
         place = "supply.converter_stations"
-        raise ScenarioError([Finding(str(scenario.source), place, "", problem, remedy)])
+        raise ScenarioError([Finding(scenario.given_source, place, "", problem, remedy)])
     first = prepare(_with(scenario, ALL_ON))
     second = prepare(_with(first.scenario, LOADING))
     return Comparison(*(prepared.run(progress, interrupted) for prepared in (first, second)))

@@ -29,7 +29,7 @@ def _findings(scenario: Scenario) -> Iterator[Finding]:
             continue
         full_kv = limits.umax1_kv if own.full_until_kv is None else own.full_until_kv
         zero_kv = limits.umax2_kv if own.zero_from_kv is None else own.zero_from_kv
-        key, file = f"trains.{name}.regeneration", str(scenario.source)
+        key, file = f"trains.{name}.regeneration", scenario.given_source
         if zero_kv <= full_kv:
             problem = f"not below zero_from_kv, {zero_kv:g} kV"
             remedy = (

@@ -107,4 +107,4 @@ def _demand_continuous_motion(
     )
     remedy = 'use motion = "continuous", or let a station or a transformer feed it'
     value = "" if outage is None else repr(outage.name)
-    raise ScenarioError([Finding(str(scenario.source), key, value, problem, remedy)])
+    raise ScenarioError([Finding(scenario.given_source, key, value, problem, remedy)])

@@ -28,7 +28,7 @@ def relays_of(scenario: Scenario) -> tuple[Relay, ...]:
             "give rating.overloads of a type of converters or of a transformer, or leave it out"
         )
         raise ScenarioError(
-            [Finding(str(scenario.source), "protection.trip", "true", problem, remedy)]
+            [Finding(scenario.given_source, "protection.trip", "true", problem, remedy)]
         )
     return relays
 

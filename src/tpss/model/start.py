@@ -42,6 +42,6 @@ def start_of(scenario: Scenario, model: Model) -> Start:
             "let trains on the way at the start stand so that they can cross, or give crossing stations "
             'more tracks; or write "free"'
         )
-        source, key = str(scenario.source), "signalling.single_track"
+        source, key = scenario.given_source, "signalling.single_track"
         value = repr(scenario.signalling.single_track)
         raise ScenarioError([Finding(source, key, value, problem, remedy)]) from error

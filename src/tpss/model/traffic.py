@@ -57,7 +57,7 @@ def build_services(scenario: Scenario, model: Model) -> list[Service]:
         finding
         for service, route in zip(services, routes, strict=True)
         for i in range(len(service.initial))
-        for finding in _check_placed(service, route, i, model, str(scenario.source))
+        for finding in _check_placed(service, route, i, model, scenario.given_source)
     ]
     if scenario.supply.neutral_sections:
         findings += _stops_without_power(scenario, services, routes, model)
@@ -85,7 +85,7 @@ def _too_long(scenario: Scenario, routes: Sequence[Route]) -> list[Finding]:
             )
             remedy = f"shorten the train, or let nobody cross at {station.name}: tracks = 1"
             key = f"trains.{entry.train}.length_m"
-            finding = Finding(str(scenario.source), key, f"{length_m:g}", problem, remedy)
+            finding = Finding(scenario.given_source, key, f"{length_m:g}", problem, remedy)
             found.setdefault((entry.train, station.name), finding)
     return list(found.values())
 
@@ -104,7 +104,7 @@ def _stops_without_power(
                 problem = "in a neutral section, where no train can start"
                 remedy = "let its trains pass there, or correct supply.neutral_sections"
                 key = f"traffic.{number}.{key}"
-                found.append(Finding(str(scenario.source), key, repr(name), problem, remedy))
+                found.append(Finding(scenario.given_source, key, repr(name), problem, remedy))
     return found
 
 

@@ -28,7 +28,7 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
     if not named:
         problem = "the scenario has no outages"
         remedy = "add [[outages]], or take every single element with --n-1"
-        raise ScenarioError([Finding(str(scenario.source), "outages", "", problem, remedy)])
+        raise ScenarioError([Finding(scenario.given_source, "outages", "", problem, remedy)])
     return named
 
 

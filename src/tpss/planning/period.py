@@ -43,4 +43,4 @@ def _common_multiple(numbers: list[Fraction]) -> Fraction:
 
 
 def _finding(scenario: Scenario, problem: str, remedy: str) -> Finding:
-    return Finding(str(scenario.source), "evaluate.period_min", "", problem, remedy)
+    return Finding(scenario.given_source, "evaluate.period_min", "", problem, remedy)

@@ -85,7 +85,7 @@ def run_steadily(
     rule = _rule_of(scenario, model, period_s, 60.0 * evaluation.measured_min)
     until_s = rule.until_s
     start = start_of(_lasting(scenario, until_s), model)
-    run = run_of(start, clock_of(scenario.simulation.load_flow, scenario.source), memory)
+    run = run_of(start, clock_of(scenario.simulation.load_flow, scenario.given_source), memory)
     while True:
         run, status = run_on(run, start, memory)
         window = rule.window(run, start) if status == FINISHED else None

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from importlib.util import find_spec
-from pathlib import Path
 
 from tpss.errors import Finding, ScenarioError
 from tpss.run.run import Clock
@@ -22,14 +21,14 @@ CLOCKS: dict[str, Callable[[], Clock]] = {
 """Clocks by the values of `simulation.load_flow`; what they need is imported where it is asked for."""
 
 
-def clock_of(load_flow: str, file: Path) -> Clock:
+def clock_of(load_flow: str, file: str) -> Clock:
     """What runs the steps of a scenario.
 
     Parameters
     ----------
     load_flow : str
         The scenario's choice.
-    file : Path
+    file : str
         The scenario's file, for an error.
 
     Raises
@@ -41,5 +40,5 @@ def clock_of(load_flow: str, file: Path) -> Clock:
         key, value = "simulation.load_flow", f"'{load_flow}'"
         problem = "the least squares of the original program need scipy, which is not installed"
         remedy = "pip install 'tpss[least-squares]', or load_flow = \"equations\""
-        raise ScenarioError([Finding(str(file), key, value, problem, remedy)])
+        raise ScenarioError([Finding(file, key, value, problem, remedy)])
     return CLOCKS[load_flow]()

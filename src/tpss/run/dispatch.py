@@ -5,7 +5,8 @@ each asks at its time, and of those that wait the one that asked first may pass,
 track at the crossing place behind it are free; for one that waits for the stretch to be left by others,
 it is kept.  A train that has to wait is later from then on.  None is let in if those that are under way
 could not all come to their ends from there, one after another: so trains never block each other
-[Dijkstra1965]_.
+[Dijkstra1965]_.  Those that wait on one track go on in the order in which they stand, whichever way each
+of them takes behind its gate.
 """
 
 import heapq
@@ -27,8 +28,8 @@ class Passage(NamedTuple):
     """Time at which it comes to the gate and would go on; minus infinity: it has passed it. [s]"""
     clear_s: float
     """Time at which it has left the stretch. [s]"""
-    aside: bool = True
-    """Whether it waits at the gate on a track of its own."""
+    waits_on: int = -1
+    """Place on a track where it waits at the gate, with others behind it; -1: on a track of its own."""
     entry_m: float = 0.0
     """Where it comes to the stretch. [m]"""
 
@@ -72,6 +73,12 @@ class _Train:
     """Numbers of gates for which it is planned when it leaves the stretch."""
     place: int = -1
     """Crossing place at which it has a track, or to which it has been let."""
+    lined_up: bool = False
+    """Whether it has come to its next gate on a track that it shares with others."""
+
+    def waits_on(self, gate: int) -> int:
+        """Place on a track where it waits at a gate; -1: on one of its own, or there is no such gate."""
+        return self.passages[gate].waits_on if gate < len(self.passages) else -1
 
     @property
     def last_gate(self) -> object:
@@ -101,11 +108,11 @@ class Dispatcher:
         self.taken: dict[int, set[int]] = {}
         """Trains that have a track at each crossing place."""
         self.under_way: set[int] = set()
-        """Trains on any stretch, or at a crossing place."""
+        """Trains on any stretch, at a crossing place, or where others wait behind them."""
         self.queues: dict[tuple[int, int], list[int]] = {}
         """Trains on a stretch in a direction, in the order in which they leave it."""
-        self.coming: dict[tuple[int, int], list[int]] = {}
-        """Trains on their way to a gate where they stand in each other's way, in their order."""
+        self.coming: dict[int, list[int]] = {}
+        """Trains on their way to a place where they wait on one track, in their order."""
         self.behind: dict[tuple[int, int], list[_Event]] = {}
         """What trains come to once those before them have left a stretch in their direction."""
         self.turns: dict[tuple[str, int], int] = {}
@@ -175,12 +182,12 @@ class Dispatcher:
         stretch before it, otherwise by their times.
         """
         train = self.trains[i]
-        if train.next == len(train.passages) or train.passages[train.next].aside:
+        if train.waits_on(train.next) < 0 or train.lined_up:
             return
+        train.lined_up = True
+        self._note(i)
         here = train.passages[train.next]
-        queue = self.coming.setdefault((here.stretch, here.direction), [])
-        if i in queue:
-            return
+        queue = self.coming.setdefault(here.waits_on, [])
         k = len(queue)
         while k > 0:
             other = self.trains[queue[k - 1]]
@@ -202,9 +209,9 @@ class Dispatcher:
         train = self.trains[i]
         number, here = train.next, train.passages[train.next]
         self._leave_place(i)
-        coming = self.coming.get((here.stretch, here.direction), [])
-        if i in coming:
-            coming.remove(i)
+        if train.lined_up:
+            self.coming[here.waits_on].remove(i)
+            train.lined_up = False
         train.next += 1
         self.order.stretch[i].append(self._turn("stretch", here.stretch))
         self.order.place[i].append(self._turn("place", here.place) if here.place >= 0 else -1)
@@ -217,9 +224,9 @@ class Dispatcher:
         train.on[number] = here.stretch
         self.users.setdefault(here.stretch, set()).add(i)
         self._note(i)
-        self._line_up(i, number)
         if now_s > -math.inf:
             train.late_s = max(train.late_s, now_s - here.ready_s)
+        self._line_up(i, number)
         self._plan_leaving(i)
 
     def _plan_leaving(self, i: int) -> None:
@@ -279,7 +286,9 @@ class Dispatcher:
 
     def _note(self, i: int) -> None:
         """Note whether a train is under way."""
-        if self.trains[i].on or self.trains[i].place >= 0:
+        train = self.trains[i]
+        is_let_on = train.lined_up or (train.next > 0 and train.waits_on(train.next) >= 0)
+        if train.on or train.place >= 0 or is_let_on:
             self.under_way.add(i)
         else:
             self.under_way.discard(i)
@@ -299,7 +308,7 @@ class Dispatcher:
             for entry in sorted(self.waiting):
                 i = entry[1]
                 here = self.trains[i].passages[self.trains[i].next]
-                if not here.aside and self._is_behind_another(i, here):
+                if here.waits_on >= 0 and self.coming[here.waits_on][0] != i:
                     continue
                 if self._is_against_others(i, here):
                     kept.add(here.stretch)
@@ -309,13 +318,6 @@ class Dispatcher:
                     self._plan_next(i)
                     passed = True
                     break
-
-    def _is_behind_another(self, i: int, here: Passage) -> bool:
-        """Whether another train comes to a gate before this one, and does not wait for its track."""
-        first = self.coming[here.stretch, here.direction][0]
-        wanted = self.trains[first].passages[self.trains[first].next].place
-        holds = wanted >= 0 and self.taken.get(wanted, set()) == {i}
-        return first != i and not (holds and self.tracks[wanted] == 1)
 
     def _is_against_others(self, i: int, here: Passage) -> bool:
         """Whether others run on a stretch in the other direction."""
@@ -339,31 +341,52 @@ class Dispatcher:
     def _all_come_through(self, i: int) -> bool:
         """Whether all trains under way could come to their ends after a train has passed its gate.
 
-        Each can come as far as the crossing place to which it has been let; from there on it needs a
-        free track at the places on its way, one after another.
+        Each can come as far as the crossing place to which it has been let, or behind those that wait on
+        its track; from there on it needs a free track at the places on its way, and nobody who waits on
+        its way, one after another.
         """
-        at = {j: self.trains[j].place for j in self.under_way if self.trains[j].place >= 0}
-        here = self.trains[i].passages[self.trains[i].next].place
-        at.pop(i, None)
-        if here >= 0:
-            at[i] = here
-        taken = Counter(at.values())
+        left = {j: self.trains[j].next + (j == i) for j in self.under_way | {i}}
+        at = {j: self.trains[j].place for j in left}
+        at[i] = self.trains[i].passages[self.trains[i].next].place
+        waits_on = {j: self.trains[j].waits_on(gate) for j, gate in left.items()}
+        left = {j: gate for j, gate in left.items() if at[j] >= 0 or waits_on[j] >= 0}
+        taken = Counter(at[j] for j in left)
+        lines: dict[int, list[int]] = {}
+        for j in sorted(left, key=self._comes_s):
+            lines.setdefault(waits_on[j], []).append(j)
         found = True
-        while at and found:
+        while left and found:
             found = False
-            for j in list(at):
+            for j, gate in list(left.items()):
                 taken[at[j]] -= 1
-                if all(taken[p] < self.tracks[p] for p in self._places_of(j, j == i) if p >= 0):
-                    del at[j]
+                if self._finds_way(j, gate, taken, lines):
+                    del left[j]
+                    lines[waits_on[j]].remove(j)
                     found = True
                 else:
                     taken[at[j]] += 1
-        return not at
+        return not left
 
-    def _places_of(self, j: int, has_passed: bool) -> list[int]:
-        """Crossing places before a train, also beyond the gate that it is about to pass."""
+    def _comes_s(self, j: int) -> tuple[bool, float]:
+        """When a train comes to its next gate; first those that have lined up there, in their order."""
         train = self.trains[j]
-        return [each.place for each in train.passages[train.next + has_passed :]]
+        if train.lined_up:
+            return False, self.coming[train.waits_on(train.next)].index(j)
+        gate = min(train.next, len(train.passages) - 1)
+        return True, train.passages[gate].ready_s + train.late_s
+
+    def _finds_way(
+        self, j: int, gate: int, taken: Counter[int], lines: dict[int, list[int]]
+    ) -> bool:
+        """Whether a train finds its way free from a gate on, as places are taken and trains wait."""
+        for k, each in enumerate(self.trains[j].passages[gate:]):
+            if each.place >= 0 and taken[each.place] >= self.tracks[each.place]:
+                return False
+            if each.waits_on >= 0:
+                ahead = lines.get(each.waits_on, ())
+                if ahead and not (k == 0 and ahead[0] == j):
+                    return False
+        return True
 
     def _demand_no_opponent(self, i: int) -> None:
         """Refuse trains that stand on a stretch head to head."""

@@ -64,6 +64,7 @@ def _passages(run: Run) -> list[list[Passage]]:
     model, instants_s = run.model, run.instants_s
     gates = model.rules.gates
     position_m = np.asarray(run.recording.trains["route_position"][: run.step + 1])
+    numbers: dict[object, int] = {}
     found = []
     for i, train in enumerate(run.trains):
         kind = model.types[train.train_type]
@@ -73,7 +74,7 @@ def _passages(run: Run) -> list[list[Passage]]:
         ready_s = [course.time_behind(gate.from_m) for gate in own]
         found.append(
             [
-                _passage(gate, course, here_s, next_s, kind.length_m)
+                _passage(gate, course, here_s, next_s, kind.length_m, numbers)
                 for gate, here_s, next_s in zip(own, ready_s, [*ready_s, math.inf][1:], strict=True)
             ]
         )
@@ -93,6 +94,12 @@ class _Course:
         if not there.any():  # it departs after the end
             self.time_s, self.position_m = instants_s[-1:], np.array([train.position_m])
         self.fastest_m_s = fastest_m_s
+
+    def waits_on(self, gate: Gate) -> tuple[int, int, float, float]:
+        """Where a train waits at a gate: line, track, direction and place to a metre."""
+        leg = leg_of(float(gate.from_m) - AT_GATE_M, self.route, self.legs)
+        place_m = plain(place_on_line)(gate.from_m, leg)
+        return int(leg.line), int(leg.track), float(leg.sign), float(round(place_m))
 
     def place_m(self, gate: Gate) -> float:
         """Where a gate is on its line, to a metre. [m]"""
@@ -124,11 +131,17 @@ class _Course:
 
 
 def _passage(
-    gate: Gate, course: _Course, ready_s: float, next_s: float, length_m: float
-) -> Passage:
-    """What a train has planned at a gate that it passes at a time, and the next one at another. [s]"""
+    gate: Gate, course: _Course, ready_s: float, next_s: float, length_m: float,
+    numbers: dict[object, int],
+) -> Passage:  # fmt: skip
+    """What a train has planned at a gate that it passes at a time, and the next one at another [s];
+    places where trains wait on one track get numbers.
+    """
     clear_s = course.time_at(gate.until_m + length_m * gate.clears_whole)
     if not gate.clears_whole:  # it is in the crossing place before it leaves that
         clear_s = min(clear_s, next_s)
-    numbers = int(gate.stretch), int(gate.direction), int(gate.place)
-    return Passage(*numbers, ready_s, max(ready_s, clear_s), bool(gate.aside), course.place_m(gate))
+    waits_on = -1
+    if not gate.aside:
+        waits_on = numbers.setdefault(course.waits_on(gate), len(numbers))
+    behind = int(gate.stretch), int(gate.direction), int(gate.place)
+    return Passage(*behind, ready_s, max(ready_s, clear_s), waits_on, course.place_m(gate))

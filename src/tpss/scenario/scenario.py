@@ -13,6 +13,7 @@ from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
 from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
+from tpss.scenario.given_path import named_as_given
 from tpss.scenario.line import Line
 from tpss.scenario.outage_faults import outage_faults
 from tpss.scenario.outages import Outage, Outages
@@ -116,6 +117,7 @@ class Scenario(Part):
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))
+    _given: str = PrivateAttr(default="scenario")
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], source: str | Path = "scenario") -> Self:
@@ -156,13 +158,18 @@ class Scenario(Part):
             raise ScenarioError(faults)
         scenario._document = document
         # A change of the working folder must not lead to other files.
-        scenario._source = Path(source).absolute()
+        scenario._source, scenario._given = Path(source).absolute(), str(source)
         return scenario
 
     @property
     def source(self) -> Path:
         """File that the scenario was read from, or a name in its place."""
         return self._source
+
+    @property
+    def given_source(self) -> str:
+        """Its file as it was named, by which findings name it."""
+        return self._given
 
     def with_(self, changes: Mapping[str, Any]) -> Self:
         """Validated copy with some values changed.
@@ -179,8 +186,15 @@ class Scenario(Part):
         ScenarioError
             The changed scenario has faults.
         """
-        document = override(self._document, changes, self._source)
-        return type(self).from_own_document(document, self._source)
+        with named_as_given(self._source, self._given):
+            document = override(self._document, changes, self._source)
+            return self._of_own_file(document)
+
+    def _of_own_file(self, document: dict[str, Any]) -> Self:
+        """A scenario of another document, as if that stood in the file of this one."""
+        scenario = type(self).from_own_document(document, self._source)
+        scenario._given = self._given
+        return scenario
 
     def variant(self, name: str) -> Self:
         """A variant of the scenario: a scenario of its own, named after both.
@@ -193,14 +207,13 @@ class Scenario(Part):
         if name not in self.variants:
             remedy = "variants: " + (", ".join(self.variants) or "none; add [variants.NAME]")
             problem = "the scenario has no such variant"
-            raise ScenarioError(
-                [Finding(str(self._source), "variants", repr(name), problem, remedy)]
-            )
-        document = apply_variant(self._document, name, self.variants[name], self._source)
+            raise ScenarioError([Finding(self._given, "variants", repr(name), problem, remedy)])
+        with named_as_given(self._source, self._given):
+            document = apply_variant(self._document, name, self.variants[name], self._source)
         try:
-            return type(self).from_own_document(document, self._source)
+            return self._of_own_file(document)
         except ScenarioError as error:
-            place = f"{self._source} (variant {name})"
+            place = f"{self._given} (variant {name})"
             findings = [replace(finding, file=place) for finding in error.findings]
             raise ScenarioError(findings) from error
 
@@ -221,7 +234,7 @@ class Scenario(Part):
         lines = list(self.lines_by_name.values())
         if len(lines) > 1:
             problem, remedy = "several lines, where this works with one", "keep one of them"
-            raise ScenarioError([Finding(str(self._source), "lines", "", problem, remedy)])
+            raise ScenarioError([Finding(self._given, "lines", "", problem, remedy)])
         return lines[0]
 
     def line_of(self, part: OnLine) -> str:
@@ -239,9 +252,7 @@ class Scenario(Part):
         outage = next((each for each in self.outages if each.name == name), None)
         if outage is None:
             problem, remedy = no_such("outage", name, [each.name for each in self.outages])
-            raise ScenarioError(
-                [Finding(str(self._source), "outages", repr(name), problem, remedy)]
-            )
+            raise ScenarioError([Finding(self._given, "outages", repr(name), problem, remedy)])
         return self.with_({"simulation.outage": name, "name": f"{self.name}-{outage.slug}"})
 
     @property

@@ -14,17 +14,17 @@ UP, DOWN = 0, 1
 NONE = -1
 
 
-def up(start_min: float, aside: bool = True) -> list[Passage]:
+def up(start_min: float) -> list[Passage]:
     return [
-        Passage(0, UP, 0, start_min, start_min + 10.0, aside, 0.0),
-        Passage(1, UP, NONE, start_min + 10.0, start_min + 20.0, True, 1.0),
+        Passage(0, UP, 0, start_min, start_min + 10.0, NONE, 0.0),
+        Passage(1, UP, NONE, start_min + 10.0, start_min + 20.0, NONE, 1.0),
     ]
 
 
 def down(start_min: float) -> list[Passage]:
     return [
-        Passage(1, DOWN, 0, start_min, start_min + 10.0, True, 2.0),
-        Passage(0, DOWN, NONE, start_min + 10.0, start_min + 20.0, True, 1.0),
+        Passage(1, DOWN, 0, start_min, start_min + 10.0, NONE, 2.0),
+        Passage(0, DOWN, NONE, start_min + 10.0, start_min + 20.0, NONE, 1.0),
     ]
 
 
@@ -65,15 +65,15 @@ def test_a_crossing_place_of_one_track_lets_one_train_wait():
 def test_trains_that_stand_on_one_track_keep_the_order_in_which_they_are_there():
     """Both wait for down on track 0 until 20; the second one, due first by a rounding, is behind."""
     blocked = [Passage(0, DOWN, NONE, 0.0, 20.0)]
-    first = [Passage(7, UP, NONE, 1.0, 1.5), Passage(0, UP, NONE, 5.0, 15.0, aside=False)]
-    second = [Passage(7, UP, NONE, 2.0, 2.5), Passage(0, UP, NONE, 5.0 - 1e-9, 15.0, aside=False)]
+    first = [Passage(7, UP, NONE, 1.0, 1.5), Passage(0, UP, NONE, 5.0, 15.0, waits_on=0)]
+    second = [Passage(7, UP, NONE, 2.0, 2.5), Passage(0, UP, NONE, 5.0 - 1e-9, 15.0, waits_on=0)]
     assert order_of(blocked, second, first) == [[0], [1, 2], [0, 1]]
 
 
 def test_a_train_that_enters_on_the_way_is_ahead_of_one_that_has_not_come_there():
     """Of track 0 the second train takes the last half only, from 5 on: it leaves it first, at 10."""
     slow = [Passage(0, UP, 0, 0.0, 30.0), Passage(1, UP, NONE, 30.0, 40.0)]
-    enters = [Passage(0, UP, 0, 5.0, 10.0, True, 50.0), Passage(1, UP, NONE, 10.0, 20.0)]
+    enters = [Passage(0, UP, 0, 5.0, 10.0, NONE, 50.0), Passage(1, UP, NONE, 10.0, 20.0)]
     assert order_of(slow, enters) == [[0, 1], [1, 0]]
 
 
@@ -109,10 +109,10 @@ def test_who_stands_on_the_only_track_between_goes_before_one_that_waits_for_tha
 
     The other one, which comes to track 2 first, wants the place that this one has: it lets it go on.
     """
-    one = [Passage(0, UP, 0, 0.0, 10.0, True, 0.0), Passage(2, UP, NONE, 12.0, 20.0, False, 1.0)]
+    one = [Passage(0, UP, 0, 0.0, 10.0, NONE, 0.0), Passage(2, UP, NONE, 12.0, 20.0, 0, 1.0)]
     other = [
-        Passage(2, UP, 0, 11.0, 30.0, False, 5.0),
-        Passage(0, DOWN, NONE, 30.0, 40.0, True, 1.0),
+        Passage(2, UP, 0, 11.0, 30.0, 1, 5.0),
+        Passage(0, DOWN, NONE, 30.0, 40.0, NONE, 1.0),
     ]
     found = Dispatcher([one, other], [1]).run()
     assert found.stretch == [[0, 0], [1, 1]]
