@@ -63,7 +63,8 @@ from tpss.powerflow.chain import (
 from tpss.powerflow.coupled import direct_groups, evaluate_groups, is_coupled
 from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
-from tpss.sources.kinds import is_plausible, residual
+from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
+from tpss.sources.kinds import residual
 
 CLOSE = 1e-4
 """Mismatch from which one Newton step usually reaches the tolerance.  The determinant does not change
@@ -315,35 +316,6 @@ def _close_gaps(flow: Flow) -> None:
         for k in range(section.first, section.end):
             passed_m += flow.standing[at(k)].piece_m
             flow.standing[at(k)].voltage_v -= scaled(per_metre, passed_m)
-
-
-@inlined
-def voltages_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether every node and train that is fed lies in the band that a sound line never leaves."""
-    low = network.system.lowest_voltage_v**2
-    high = network.system.highest_voltage_v**2
-    for n in range(flow.nodes.size):
-        plausible = low <= squared(flow.nodes[at(n)].voltage_v) <= high
-        if not plausible and network.source_of_node[at(n)] != UNFED:
-            return False
-    for s in range(flow.sections.size):
-        for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):
-            if not low <= squared(flow.standing[at(k)].voltage_v) <= high:
-                return False
-    return True
-
-
-@inlined
-def sources_are_plausible(network: Network, flow: Flow) -> bool:
-    """Whether every source in service is in a state that its law admits."""
-    for s in range(network.sources.size):
-        source = network.sources[at(s)]
-        node, running = flow.nodes[at(source.node)], flow.sources[at(s)].running
-        if running == 0.0:
-            continue
-        if not is_plausible(node.voltage_v, node.leaving_current_a, running, source):
-            return False
-    return True
 
 
 @inlined
