@@ -6,13 +6,17 @@ other than the one that loads raised from zero lead to.  The same cases are draw
 """
 
 from collections import Counter
+from random import Random
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+import tpss
+
 from properties.crowds import crowded_scenarios
 from properties.judge import judge, warm_up
+from properties.junctions import junctions
 from properties.strategies import sound_scenarios, spoilt_scenarios
 
 CASES = settings(
@@ -58,6 +62,15 @@ def test_trains_that_meet_on_single_tracks_all_come_through():
     look()
     assert outcomes["finished"] > 0.9 * sum(outcomes.values())
     assert "deadlocked" not in outcomes
+
+
+def test_trains_that_meet_at_junctions_of_few_tracks_all_come_through():
+    """However they follow each other where they wait on one track, for different ways."""
+    for seed in range(40):
+        document = junctions(Random(seed))
+        result = tpss.simulate(tpss.Scenario.from_document(document, "junctions"))
+        assert result.status == "finished", (seed, result.summary.get("problem"))
+        assert result.trips.arrival_min.notna().all(), seed
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():

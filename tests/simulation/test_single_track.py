@@ -261,3 +261,59 @@ def test_an_order_needs_an_end_of_the_run_and_trains_that_see_each_other():
     document["signalling"]["separation"] = "none"
     with pytest.raises(tpss.ScenarioError, match="moving-block"):
         scenario_of(document)
+
+
+def at_a_fork(rule: str) -> dict[str, Any]:
+    """10 km of two tracks to a fork without a second track, from where two single tracks lead on."""
+    lines = {
+        "double": line(10.0, {"A": 0.0, "Fork": 10.0}, tracks=2),
+        "left": line(15.0, {"Fork": 0.0, "L": 15.0}),
+        "right": line(15.0, {"Fork": 0.0, "R": 15.0}),
+    }
+    traffic = [
+        service("first", "A", "L"),
+        service("second", "A", "R", departures_min=[2.0]),
+        service("third", "L", "R"),
+    ]
+    document = network(lines, traffic)
+    document["supply"]["tracks_tied"] = "everywhere"
+    document["trains"]["freight"] = {**TRAIN, "length_m": 400.0}
+    document["signalling"] = {"separation": "moving-block", "single_track": rule}
+    return document
+
+
+@pytest.mark.parametrize("rule", ["timetable-order", "first-come"])
+def test_three_trains_at_a_fork_do_not_block_each_other(rule):
+    """The first one, at the fork after 7 min, waits for the third, which comes from the left after 10.
+
+    The second one is due on the right a minute before the third, but stands behind the first: it would
+    wait for that, that for the third, and the third, in planned order, for the second.
+    """
+    result = run(at_a_fork(rule))
+    assert waits_of(result) == [("first 1", 0.0, "third 1"), ("second 1", 9.55, "first 1")]
+    assert result.trips.arrival_min.notna().all()
+    first, second, third = result.trips.arrival_min
+    assert second < first < third  # of 15 km each, left at 7, 10 and 10.6 min
+
+
+def test_a_train_reaches_its_stop_at_a_gate_that_lies_before_it_by_rounding():
+    """On the third line C is at -24 km and an offset, on the second at its beginning: 2e-12 m apart.
+
+    A train that came to rest at the gate for its stop never reached that, and stood there for ever.
+    """
+    lines = {
+        "one": line(18.51, {"B": 0.0, "A": 18.51}),
+        "two": line(16.01, {"C": 0.0, "B": 16.01}, tracks=[
+            {"from_km": 0.0, "count": 1}, {"from_km": 6.4, "count": 2}
+        ]),
+        "three": line(24.0, {"D": 0.0, "C": 24.0}),
+    }  # fmt: skip
+    for each in lines.values():
+        for station in each["stations"]:
+            station["tracks"] = 2
+    down = service("down", "A", "D", stops=[{"station": "C", "dwell_min": 1.0}])
+    document = network(lines, [down, service("up", "D", "A", departures_min=[6.0])])
+    document["supply"]["tracks_tied"] = "no"
+    document["signalling"] = {"separation": "moving-block", "single_track": "timetable-order"}
+    result = run(document)
+    assert result.trips.arrival_min.notna().all()

@@ -19,6 +19,9 @@ from tpss.scenario.line import CLOSEST_KM, Line, Station
 from tpss.step.turns import Gates
 from tpss.track.gate import Gate
 
+ROUNDING_M = 1e-6
+"""Positions along a route that differ by less are one. [m]"""
+
 
 class _Gate(NamedTuple):
     """A gate of a route, before its stretch has a number."""
@@ -54,7 +57,9 @@ def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: fl
             *_before_two_way(route, two_way, lines),
             *_at_entries(route, entries, margin_m, lines),
         ]
-        rows.append(sorted(own, key=lambda gate: gate.from_m))
+        rows.append(
+            sorted((_not_before_a_stop(g, route) for g in own), key=lambda gate: gate.from_m)
+        )
     behind = [[_place_behind(gate, row[k + 1 :]) for k, gate in enumerate(row)] for row in rows]
     stretches = _numbered(gate.stretch for row in rows for gate in row)
     places = _numbered(place for names in behind for place in names if place is not None)
@@ -65,6 +70,12 @@ def build_gates(routes: Sequence[Route], lines: Mapping[str, Line], margin_m: fl
             gates[i, k] = (*gate[:3], stretches[gate.stretch], gate.direction, place, gate.aside)
     tracks = [_tracks_at(name, lines) for name in places]
     return Gates(gates, np.array(tracks, dtype=np.int64))
+
+
+def _not_before_a_stop(gate: _Gate, route: Route) -> _Gate:
+    """A gate that lies just before a stop by rounding: at the stop, which trains have to reach."""
+    near = (stop_m for stop_m in route.stops_m if 0.0 < stop_m - gate.from_m <= ROUNDING_M)
+    return gate._replace(from_m=next(near, gate.from_m))
 
 
 def _place_behind(gate: _Gate, following: Sequence[_Gate]) -> object | None:

@@ -70,6 +70,43 @@ def test_trains_that_stand_on_one_track_keep_the_order_in_which_they_are_there()
     assert order_of(blocked, second, first) == [[0], [1, 2], [0, 1]]
 
 
+def test_trains_that_wait_on_one_track_keep_their_order_whichever_way_they_go():
+    """The first one waits for down on track 0 until 20.  The second one, behind it, could go on to track
+    1 at 6; it does so after one down there, from 10 to 20.
+    """
+    blocked = [Passage(0, DOWN, NONE, 0.0, 20.0)]
+    first = [Passage(7, UP, NONE, 1.0, 1.5), Passage(0, UP, NONE, 5.0, 15.0, waits_on=0)]
+    second = [Passage(7, UP, NONE, 2.0, 2.5), Passage(1, UP, NONE, 6.0, 16.0, waits_on=0)]
+    other = [Passage(1, DOWN, NONE, 10.0, 20.0)]
+    assert order_of(blocked, first, second, other) == [[0], [0, 1], [1, 1], [0]]
+
+
+def test_a_train_is_not_let_behind_one_that_waits_for_others_that_it_would_block():
+    """Places 0 and 1 have one track each.  One train waits on track 0 of a junction for place 1, where
+    another one is, which wants place 0.  A third one, whose way from place 0 leads behind the first,
+    may not come there before the other one has gone on.
+    """
+    before = -math.inf
+    waits = [Passage(5, UP, NONE, before, before), Passage(1, UP, 1, 5.0, 15.0, waits_on=0),
+             Passage(2, UP, NONE, 15.0, 25.0)]  # fmt: skip
+    other = [Passage(2, DOWN, 1, before, before), Passage(3, UP, 0, 12.0, 22.0),
+             Passage(4, UP, NONE, 22.0, 32.0)]  # fmt: skip
+    third = [Passage(6, UP, 0, 1.0, 11.0), Passage(7, UP, NONE, 11.0, 12.0),
+             Passage(8, UP, NONE, 13.0, 20.0, waits_on=0)]  # fmt: skip
+    found = Dispatcher([waits, other, third], [1, 1]).run()
+    assert found.place[1][1] < found.place[2][0]
+
+
+def test_a_train_that_had_to_wait_lines_up_by_when_it_goes():
+    """One enters track 0 half-way, due at 5, but waits until 26 for a place: it is out at 31.  Another
+    one, in from the begin of the track at 20.5, is out before it, at 30.5, and goes on first.
+    """
+    half = [Passage(0, UP, 0, 5.0, 10.0, NONE, 50.0), Passage(1, UP, NONE, 10.0, 20.0)]
+    whole = [Passage(0, UP, NONE, 20.5, 30.5), Passage(1, UP, NONE, 30.5, 40.0)]
+    holds_the_place = [Passage(9, UP, 0, 0.0, 1.0), Passage(8, UP, NONE, 26.0, 30.0)]
+    assert order_of(half, whole, holds_the_place, tracks=1)[:2] == [[1, 1], [0, 0]]
+
+
 def test_a_train_that_enters_on_the_way_is_ahead_of_one_that_has_not_come_there():
     """Of track 0 the second train takes the last half only, from 5 on: it leaves it first, at 10."""
     slow = [Passage(0, UP, 0, 0.0, 30.0), Passage(1, UP, NONE, 30.0, 40.0)]
