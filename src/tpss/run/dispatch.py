@@ -11,27 +11,10 @@ of them takes behind its gate.
 
 import heapq
 import math
-from collections import Counter
-from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple
 
-
-class Passage(NamedTuple):
-    """What a train has planned at a gate."""
-
-    stretch: int
-    direction: int
-    place: int
-    """Crossing place behind the stretch, or -1."""
-    ready_s: float
-    """Time at which it comes to the gate and would go on; minus infinity: it has passed it. [s]"""
-    clear_s: float
-    """Time at which it has left the stretch. [s]"""
-    waits_on: int = -1
-    """Place on a track where it waits at the gate, with others behind it; -1: on a track of its own."""
-    entry_m: float = 0.0
-    """Where it comes to the stretch. [m]"""
+from tpss.run.under_way import OnTheWay, Passage, all_come_through
 
 
 class NoOrderError(ValueError):
@@ -59,36 +42,6 @@ class _Event(NamedTuple):
     """Whether it leaves the stretch behind the gate; otherwise it comes to the gate."""
 
 
-@dataclass
-class _Train:
-    """A train on its way through its gates."""
-
-    passages: list[Passage]
-    late_s: float = 0.0
-    next: int = 0
-    """Next gate."""
-    on: dict[int, int] = field(default_factory=dict)
-    """Stretches on which it is, by the numbers of their gates."""
-    leaves: set[int] = field(default_factory=set)
-    """Numbers of gates for which it is planned when it leaves the stretch."""
-    place: int = -1
-    """Crossing place at which it has a track, or to which it has been let."""
-    lined_up: bool = False
-    """Whether it has come to its next gate on a track that it shares with others."""
-
-    def waits_on(self, gate: int) -> int:
-        """Place on a track where it waits at a gate; -1: on one of its own, or there is no such gate."""
-        return self.passages[gate].waits_on if gate < len(self.passages) else -1
-
-    @property
-    def last_gate(self) -> object:
-        """The gate that it has passed last; one that has passed none shares it with nobody."""
-        if self.next == 0:
-            return id(self)
-        last = self.passages[self.next - 1]
-        return last.stretch, last.direction
-
-
 class Dispatcher:
     """Lets trains pass; see the module.
 
@@ -101,7 +54,7 @@ class Dispatcher:
     """
 
     def __init__(self, passages: list[list[Passage]], tracks: list[int]) -> None:
-        self.trains = [_Train(each) for each in passages]
+        self.trains = [OnTheWay(each) for each in passages]
         self.tracks = tracks
         self.users: dict[int, set[int]] = {}
         """Trains on each stretch."""
@@ -328,7 +281,7 @@ class Dispatcher:
         """Whether a track is free behind a stretch, such that all come through."""
         if here.place >= 0 and len(self.taken.get(here.place, ())) >= self.tracks[here.place]:
             return False
-        return self._all_come_through(i)
+        return all_come_through(i, self.under_way, self.trains, self.coming, self.tracks)
 
     def _runs_against(self, j: int, here: Passage) -> bool:
         """Whether a train is on a stretch in the other direction."""
@@ -337,56 +290,6 @@ class Dispatcher:
             stretch == here.stretch and other.passages[gate].direction != here.direction
             for gate, stretch in other.on.items()
         )
-
-    def _all_come_through(self, i: int) -> bool:
-        """Whether all trains under way could come to their ends after a train has passed its gate.
-
-        Each can come as far as the crossing place to which it has been let, or behind those that wait on
-        its track; from there on it needs a free track at the places on its way, and nobody who waits on
-        its way, one after another.
-        """
-        left = {j: self.trains[j].next + (j == i) for j in self.under_way | {i}}
-        at = {j: self.trains[j].place for j in left}
-        at[i] = self.trains[i].passages[self.trains[i].next].place
-        waits_on = {j: self.trains[j].waits_on(gate) for j, gate in left.items()}
-        left = {j: gate for j, gate in left.items() if at[j] >= 0 or waits_on[j] >= 0}
-        taken = Counter(at[j] for j in left)
-        lines: dict[int, list[int]] = {}
-        for j in sorted(left, key=self._comes_s):
-            lines.setdefault(waits_on[j], []).append(j)
-        found = True
-        while left and found:
-            found = False
-            for j, gate in list(left.items()):
-                taken[at[j]] -= 1
-                if self._finds_way(j, gate, taken, lines):
-                    del left[j]
-                    lines[waits_on[j]].remove(j)
-                    found = True
-                else:
-                    taken[at[j]] += 1
-        return not left
-
-    def _comes_s(self, j: int) -> tuple[bool, float]:
-        """When a train comes to its next gate; first those that have lined up there, in their order."""
-        train = self.trains[j]
-        if train.lined_up:
-            return False, self.coming[train.waits_on(train.next)].index(j)
-        gate = min(train.next, len(train.passages) - 1)
-        return True, train.passages[gate].ready_s + train.late_s
-
-    def _finds_way(
-        self, j: int, gate: int, taken: Counter[int], lines: dict[int, list[int]]
-    ) -> bool:
-        """Whether a train finds its way free from a gate on, as places are taken and trains wait."""
-        for k, each in enumerate(self.trains[j].passages[gate:]):
-            if each.place >= 0 and taken[each.place] >= self.tracks[each.place]:
-                return False
-            if each.waits_on >= 0:
-                ahead = lines.get(each.waits_on, ())
-                if ahead and not (k == 0 and ahead[0] == j):
-                    return False
-        return True
 
     def _demand_no_opponent(self, i: int) -> None:
         """Refuse trains that stand on a stretch head to head."""

@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import plain, switch
-from tpss.run.dispatch import Dispatcher, Passage
+from tpss.run.dispatch import Dispatcher
 from tpss.run.run import Run, advance_to_end, run_of
 from tpss.run.services import ScheduledTrain
 from tpss.run.start import Start
+from tpss.run.under_way import Passage
 from tpss.step.model import Model, RunControl
 from tpss.step.turns import AT_GATE_M, no_turns
 from tpss.track.gate import Gate, Precedence

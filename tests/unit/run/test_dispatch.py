@@ -8,7 +8,8 @@ import math
 
 import pytest
 
-from tpss.run.dispatch import Dispatcher, NoOrderError, Passage
+from tpss.run.dispatch import Dispatcher, NoOrderError
+from tpss.run.under_way import Passage
 
 UP, DOWN = 0, 1
 NONE = -1
