@@ -34,6 +34,13 @@ def test_one_that_the_scenario_names_is_not_made_again():
     assert names == ["no East", "West out", "West, one unit out", "East, one unit out"]
 
 
+def test_one_of_a_name_that_the_scenario_has_taken_says_that_it_is_out_throughout():
+    """An outage of West for a while, which goes by the name of the single one."""
+    later = {"name": "West out", "stations": ["West"], "from_min": 4.0}
+    names = [each.name for each in outages_of(busy({"outages": [later]}), True)]
+    assert names[:3] == ["West out", "West out, throughout", "East out"]
+
+
 def test_without_outages_there_is_no_table():
     with pytest.raises(ScenarioError, match="--n-1"):
         tpss.compare_outages(short_line())

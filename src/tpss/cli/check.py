@@ -24,9 +24,10 @@ from tpss.scenario.line import Line, SpeedLimit
 from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
+from tpss.scenario.signalling import Signalling
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
-from tpss.scenario.supply import HighVoltageLine, Supply
+from tpss.scenario.supply import HighVoltageLine, Post, SectionBreak, Supply
 from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.scenario.traffic import Stop, Traffic
 from tpss.units import kilometres, on_line
@@ -82,6 +83,8 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield "train", f"{name}: {_train(train)}"
     for text in _traffic(scenario.traffic, scenario.simulation.start_s):
         yield "traffic", text
+    if scenario.signalling.separation != "none":
+        yield "signalling", _signalling(scenario.signalling)
     yield "standards", _standards(scenario.standards)
     yield "simulation", _simulation(scenario.simulation, scenario.traffic[0])
     for outage in scenario.outages:
@@ -93,6 +96,9 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
 def _line(line: Line, name: str) -> Iterator[tuple[str, str]]:
     yield "line", f"{name}{line.in_words}"
     yield "stations", _listed([f"{s.name} {kilometres(s.position_km)} km" for s in line.stations])
+    if line.most_tracks > 1:
+        counts = [f"{int(n)} from {kilometres(km)} km" for km, _, n in line.tracks_by_stretch]
+        yield "tracks", _listed(counts)
     pieces = line.gradients_between(line.begins_at_km, line.end_km)
     lowest, highest = min(p for _, _, p in pieces), max(p for _, _, p in pieces)
     climb_m = sum((end - start) * permille for start, end, permille in pieces)
@@ -125,8 +131,23 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
         yield "feeding", f"{station.name} {place}: {station.in_words}"
+    if supply.tracks_tied is not None:
+        yield "tracks tied", supply.tracks_tied
+    for kind, switches in (("posts", supply.posts), ("breaks", supply.section_breaks)):
+        if switches:
+            yield kind, _listed([_switch(each) for each in switches])
     for section in supply.neutral_sections:
         yield "neutral", section.in_words
+
+
+def _switch(switch: Post | SectionBreak) -> str:
+    place = on_line(switch.line or "", f"{kilometres(switch.position_km)} km")
+    return f"{switch.name} {place}{'' if switch.closed else ' (open)'}"
+
+
+def _signalling(signalling: Signalling) -> str:
+    blocks = f" of {signalling.block_m:g} m" if signalling.block_m else ""
+    return f"{signalling.separation}{blocks}; single tracks: {signalling.single_track}"
 
 
 def _high_voltage(supply: Supply, line: HighVoltageLine | None) -> str:

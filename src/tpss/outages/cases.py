@@ -14,7 +14,8 @@ from tpss.units import kilometres
 def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
     """Outages of a table: those of the scenario, and if asked for each of a single element.
 
-    A single one that the scenario has already, under a name of its own, is not made again.
+    A single one that the scenario has already, under a name of its own, is not made again; beside one of
+    its name, which is out for a time only, or more, it says that it is out throughout.
 
     Raises
     ------
@@ -23,8 +24,11 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
     """
     named = list(scenario.outages)
     if every:
-        known = [_content(outage) for outage in named]
-        named += [each for each in single_outages(scenario) if _content(each) not in known]
+        known, names = [_content(outage) for outage in named], [outage.name for outage in named]
+        for each in single_outages(scenario):
+            if _content(each) not in known:
+                name = f"{each.name}, throughout" if each.name in names else each.name
+                named.append(each.model_copy(update={"name": name}))
     if not named:
         problem = "the scenario has no outages"
         remedy = "add [[outages]], or take every single element with --n-1"

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from tpss.model.unfed import unfed_in_words
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
@@ -47,6 +48,7 @@ def notes(result: Result) -> list[str]:
         *_outage(result),
         *_trips(result),
         *step_warnings(result.summary),
+        *_unfed(result),
         *_stranded(result),
         *_current_limits(result),
         *_overloads(result),
@@ -83,6 +85,13 @@ def _outage(result: Result) -> Iterator[str]:
     outage = result.scenario.outage
     if outage is not None:
         yield f"outage {outage.name}: {outage.in_words}"
+
+
+def _unfed(result: Result) -> Iterator[str]:
+    """Stretches of contact line without a source."""
+    words = unfed_in_words(result.scenario)
+    if words:
+        yield words
 
 
 def _stranded(result: Result) -> Iterator[str]:

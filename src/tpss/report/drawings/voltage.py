@@ -6,11 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tpss.report.contact_line import LineVoltage, line_voltage
+from tpss.report.corridor import is_corridor, landmarks
 from tpss.report.drawings import parts
 from tpss.report.palette import STRONG_GREY
 from tpss.report.trains import chosen_train
 from tpss.results.result import Result
 from tpss.scenario.standards import VoltageLimits
+
+SAME_PLACE_KM = 1e-3
+"""Places no farther apart are one. [km]"""
 
 
 def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> parts.Drawing:
@@ -109,13 +113,23 @@ def limit_marks(limits: VoltageLimits) -> list[parts.Mark]:
 
 
 def feeding_points(results: Iterable[Result], *, named: bool = False) -> list[parts.Mark]:
-    """Marks at transformers and stations by their places; the stations with their names."""
+    """Marks at transformers and stations by their places; the stations with their names.
+
+    Where lines that are drawn as one meet or end, it is the name of the place.
+    """
     names: dict[float, str] = {}
-    for data in (result.dataset for result in results):
+    for result in results:
+        data = result.dataset
         names = dict.fromkeys((data.node_position.to_numpy() / 1e3).tolist(), "") | names
         if named:
             stations = data.station.to_numpy().astype(str).tolist()
             names |= zip((data.station_position.to_numpy() / 1e3).tolist(), stations, strict=True)
+        if named and is_corridor(result):
+            places = landmarks(result).items()
+            names |= {
+                km: name for name, at_km in places for km in names
+                if not names[km] and abs(km - at_km) < SAME_PLACE_KM
+            }  # fmt: skip
     return [parts.Mark(km, names[km], dash=parts.DOTTED, upright=True) for km in sorted(names)]
 
 
