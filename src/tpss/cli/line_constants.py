@@ -71,7 +71,8 @@ def _print_conductors(found: "LineConstants", console: Console) -> None:
         track = f" {each.track}" if several and each.group != "earth" else ""
         values = {"group": f"{each.group}{track}", "x_m": each.x_m, "height_m": each.mean_height_m}
         rows.append((each.name, values | {"r": 1e3 * z.real, "x": 1e3 * z.imag}))
-    print_table(", ".join(conditions), "conductor", _CONDUCTORS, rows, console)
+    say(console, ", ".join(conditions))
+    print_table("Conductors", "conductor", _CONDUCTORS, rows, console)
 
 
 _CONDUCTORS = (

@@ -11,8 +11,9 @@ from tpss.conductors.formulas.vacuum import Complex
 POINTS = 600
 """Points of the rule over half a circle: exact to the last digits for arguments up to 5000."""
 
-STEP, STEPS = 0.05, 500
-"""Step of the rule along the real axis, and number of steps: for arguments from 1e-9 on."""
+STEP, STEPS, WIDE = 0.05, 500, 100.0
+"""Step of the rule along the real axis up to an argument of `WIDE`, as the root of which it narrows
+beyond, and number of steps: for arguments from 1e-9 on."""
 
 
 def scaled_i(order: int, z: ArrayLike) -> Complex:
@@ -55,9 +56,10 @@ def scaled_k(order: int, z: ArrayLike) -> Complex:
     ----------
     [AbramowitzStegun1964]_, 9.6.24.
     """
-    t = STEP * np.arange(STEPS + 1)
-    weight = STEP * np.cosh(order * t)
-    weight[0] /= 2.0
     z = np.asarray(z, complex)[..., None]
+    step = STEP / np.sqrt(np.maximum(abs(z) / WIDE, 1.0))
+    t = step * np.arange(STEPS + 1)
+    weight = step * np.cosh(order * t)
+    weight[..., 0] /= 2.0
     summed: Complex = (weight * np.exp(-z * (np.cosh(t) - 1.0))).sum(axis=-1)
     return summed
