@@ -45,7 +45,7 @@ def carson(
 
     References
     ----------
-    [Carson1926]_, eq. (25) and (26).
+    [Carson1926]_.
     """
     height, across = np.broadcast_arrays(np.asarray(heights_m, float), np.asarray(across_m, float))
     wave = np.sqrt(omega_rad_s * PERMEABILITY_H_PER_M / resistivity_ohm_m)
@@ -79,7 +79,7 @@ def series(k: ArrayLike, angle_rad: ArrayLike) -> Complex:
 
     References
     ----------
-    [Carson1926]_, eq. (30) and (31); [Dommel1986]_, section 4.1.1.1, for any number of terms.
+    [Carson1926]_; [Dommel1986]_, section 4.1, for any number of terms.
     """
     k, angle = np.asarray(k, float), np.asarray(angle_rad, float)
     p: Real = np.full(k.shape, np.pi / 8.0)
@@ -115,7 +115,7 @@ def integral(k: ArrayLike, angle_rad: ArrayLike) -> Complex:
 
     References
     ----------
-    [Carson1926]_, eq. (26).
+    [Carson1926]_.
     """
     k, angle = np.asarray(k, float)[..., None], np.asarray(angle_rad, float)[..., None]
     nodes, weights = np.polynomial.legendre.leggauss(NODES)

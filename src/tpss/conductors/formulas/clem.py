@@ -26,7 +26,7 @@ def clem(
 
     References
     ----------
-    [Carson1926]_, eq. (30) and (31), first terms; [Kersting2012]_, eq. (4.39) to (4.42).
+    [Carson1926]_, the first terms; [Kersting2012]_, chapter 4.
     """
     image_m = np.hypot(np.asarray(heights_m, float), np.asarray(across_m, float))
     k = image_m * np.sqrt(omega_rad_s * PERMEABILITY_H_PER_M / resistivity_ohm_m)

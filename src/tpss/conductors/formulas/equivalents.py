@@ -17,7 +17,7 @@ def return_in_rails(impedance: Complex) -> Complex:
 
     References
     ----------
-    [Kersting2012]_, section 4.1: Kirchhoff's laws around a loop.
+    Kirchhoff's laws around the loop of two conductors, as [Kersting2012]_, chapter 4, has them.
     """
     contact, mutual, rails = impedance[:-1, :-1], impedance[:-1, -1:], impedance[-1:, -1:]
     result: Complex = contact - mutual - mutual.T + rails
@@ -54,7 +54,7 @@ def autotransformer_line(impedance: Complex, far: Real, near: Real) -> tuple[Com
 
     References
     ----------
-    Derived in the page of the theory; without :math:`Z_{ml}` in [Steimel2014]_.
+    Derived in the theory of line constants, by Kirchhoff's laws with the impedances of [Carson1926]_.
     """
     between = far.T @ impedance @ near
     within = near.T @ impedance @ near

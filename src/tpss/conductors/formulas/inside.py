@@ -28,7 +28,7 @@ def by_mean_radius(
 
     References
     ----------
-    [Kersting2012]_, section 4.1.
+    [Kersting2012]_, chapter 4.
     """
     within = omega_rad_s * PERMEABILITY_H_PER_M / (2.0 * np.pi) * np.log(radius_m / gmr_m)
     return complex(r_ohm_per_m, within)
@@ -62,7 +62,7 @@ def by_skin_effect(
 
     References
     ----------
-    [Schelkunoff1934]_, eq. (75), of a return outside; [Dommel1986]_, section 4.1.
+    [Schelkunoff1934]_, of a return outside; [Dommel1986]_, section 4.1.
     """
     resistivity = r_ohm_per_m * np.pi * (radius_m**2 - inner_radius_m**2)
     permeability = relative_permeability * PERMEABILITY_H_PER_M

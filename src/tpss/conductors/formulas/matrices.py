@@ -29,7 +29,7 @@ def distances(x_m: ArrayLike, height_m: ArrayLike, radius_m: ArrayLike) -> tuple
 
     References
     ----------
-    [Kersting2012]_, figure 4.6.
+    [Kersting2012]_, chapter 4.
     """
     x, h = np.asarray(x_m, float), np.asarray(height_m, float)
     across = np.subtract.outer(x, x)
@@ -69,7 +69,7 @@ def series_impedance(
 
     References
     ----------
-    [Carson1926]_; [Dommel1986]_, eq. (4.3) and (4.6).
+    [Carson1926]_; [Dommel1986]_, section 4.1.
     """
     inside = np.diag(np.asarray(inside_ohm_per_m, complex))
     if omega_rad_s == 0.0:
@@ -96,7 +96,7 @@ def potential_coefficients(x_m: ArrayLike, height_m: ArrayLike, radius_m: ArrayL
 
     References
     ----------
-    [Kersting2012]_, eq. (5.9) and (5.10).
+    [Kersting2012]_, chapter 5.
     """
     direct, image = distances(x_m, height_m, radius_m)
     result: Real = np.log(image / direct) / (2.0 * np.pi * PERMITTIVITY_F_PER_M)
@@ -120,7 +120,7 @@ def membership(groups: ArrayLike) -> Real:
 
     References
     ----------
-    [Dommel1986]_, section 4.1.2.
+    [Dommel1986]_, section 4.1.
     """
     number = np.asarray(groups, int)
     belongs = np.arange(number.max() + 1)[:, None] == number
@@ -145,6 +145,6 @@ def of_groups(matrix: Complex | Real, member: Real) -> Complex | Real:
 
     References
     ----------
-    [Dommel1986]_, eq. (4.18) to (4.22).
+    [Dommel1986]_, section 4.1.
     """
     return member @ np.linalg.solve(matrix, member.T.astype(matrix.dtype))
