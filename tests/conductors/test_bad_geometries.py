@@ -122,6 +122,12 @@ def test_a_fault_is_told_with_place_value_and_remedy(changes, key, value, proble
     assert remedy in finding.remedy
 
 
+def test_a_wire_of_one_s_own_with_a_fault_is_not_unknown_where_it_is_used():
+    changes = {"wires": {"mine": {**WIRE, "radius_mm": -6.0}}, "conductors.0.wire": "mine"}
+    (finding,) = findings(changes)
+    assert (finding.key, finding.problem) == ("wires.mine.radius_mm", "out of range")
+
+
 def test_all_faults_are_told_at_once():
     changes = {"conductors.3.x_m": -0.7175, "conductors.0.sag_m": 6.0, "conductors.4.track": 3}
     assert {each.key for each in findings(changes)} == {

@@ -1,5 +1,6 @@
 """What holds of the line constants of any geometry."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 import tpss
 from tpss import library
-from tpss.conductors.catenary import capacitance, catenary, chosen
+from tpss.conductors.catenary import capacitance, chosen
 from tpss.conductors.load import geometry_of
 
 from conductor_cases import CONDUCTORS
@@ -161,11 +162,26 @@ def test_like_tracks_are_alike_and_have_something_in_common():
 def test_a_catenary_with_a_feeder_is_one_of_autotransformers():
     found = at(16.7)
     assert chosen(found).name == "autotransformers"
-    table = catenary(found)
+    table = found.catenary
     assert table["r_ohm_per_km"] == pytest.approx(0.05073, abs=5e-6)
     assert table["x_ohm_per_km"] == pytest.approx(0.05108, abs=5e-6)
     # C_cc + C_ff - 2 C_cf of the case: 12.366 + 8.425 + 2 · 1.737 nF/km.
     assert table["capacitance_nf_per_km"] == pytest.approx(24.266, abs=1e-3)
+
+
+def test_what_tracks_have_in_common_is_left_out_where_it_is_negative():
+    """Feeders outside both tracks hide the reactance of one from the other, and a little more."""
+    document = tomllib.loads(DOUBLE_TRACK.read_text("utf-8"))
+    feeder = {"group": "feeder", "wire": "Al212", "height_m": 10.5}
+    document["conductors"] += [
+        feeder | {"name": f"feeder {track}", "track": track, "x_m": x_m}
+        for track, x_m in ((1, -5.75), (2, 5.75))
+    ]
+    found = tpss.line_constants(geometry_of(document, DOUBLE_TRACK))
+    mutual = chosen(found).mutual
+    assert mutual.real < 0.0 < mutual.imag
+    assert "mutual_r_ohm_per_km" not in found.catenary
+    assert found.catenary["mutual_x_ohm_per_km"] == pytest.approx(1e3 * mutual.imag, rel=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -173,5 +189,5 @@ def test_a_catenary_with_a_feeder_is_one_of_autotransformers():
 )
 def test_rails_say_which_impedance_a_catenary_has(rails, r_ohm_per_km):
     conductors = [each for each in CONDUCTORS if each["name"] != "feeder"]
-    table = catenary(at(16.7, conductors, earth_resistivity_ohm_m=250.0, rails=rails))
+    table = at(16.7, conductors, earth_resistivity_ohm_m=250.0, rails=rails).catenary
     assert table["r_ohm_per_km"] == pytest.approx(r_ohm_per_km, abs=1e-6)

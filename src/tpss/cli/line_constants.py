@@ -100,7 +100,7 @@ def _print_matrix(
 
 
 def _print_equivalents(found: "LineConstants", console: Console) -> None:
-    from tpss.conductors.catenary import capacitance, chosen, is_written
+    from tpss.conductors.catenary import capacitance, chosen, in_common
 
     rows = [(each.meaning, _in_ohm_per_km(each)) for each in found.equivalents]
     title = "What stands for all of it, its return included"
@@ -112,8 +112,9 @@ def _print_equivalents(found: "LineConstants", console: Console) -> None:
         say(console, f"Capacitance of a track to earth: {1e12 * capacitance(found):.2f} nF/km")
     if taken.spread > ALIKE:
         say(console, f"Tracks differ by up to {100 * taken.spread:.1f} % from their mean")
-    if taken.mutual is not None and not is_written(taken.mutual):
-        say(console, "What tracks have in common is negative, and left out of a catenary")
+    for axis, value in in_common(taken).items():
+        if value < 0.0:
+            say(console, f"{axis.upper()} in common is negative, and left out of a catenary")
 
 
 _EQUIVALENTS = (

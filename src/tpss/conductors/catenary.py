@@ -1,13 +1,12 @@
 """The catenary of a scenario that stands for a line of many conductors."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import tomli_w
 from pydantic import ValidationError
 
-from tpss.conductors.constants import LineConstants
 from tpss.conductors.equivalents import (
     AUTOTRANSFORMERS,
     EARTH,
@@ -19,11 +18,14 @@ from tpss.conductors.equivalents import (
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.supply import Catenary
 
+if TYPE_CHECKING:
+    from tpss.conductors.constants import LineConstants
+
 DIGITS = 6
 """Significant digits that are written."""
 
 
-def chosen(constants: LineConstants) -> Equivalent:
+def chosen(constants: "LineConstants") -> Equivalent:
     """Equivalent that a catenary is made of: autotransformers where there are, or what `rails` says."""
     found = {each.name: each for each in constants.equivalents}
     rails = EARTHED if constants.geometry.rails == "earthed" else INSULATED
@@ -32,7 +34,7 @@ def chosen(constants: LineConstants) -> Equivalent:
     )
 
 
-def capacitance(constants: LineConstants) -> float:
+def capacitance(constants: "LineConstants") -> float:
     r"""Capacitance of a track to the earth: all contact lines have one voltage. [F/m]
 
     With autotransformers the feeders have the opposite voltage, :math:`c = v^T C v / n`; without them
@@ -48,10 +50,8 @@ def capacitance(constants: LineConstants) -> float:
     return float(voltage @ charge) / len(geometry.tracks)
 
 
-def catenary(constants: LineConstants) -> dict[str, Any]:
-    """Table for `supply.catenary` of a scenario at the frequency of the constants.
-
-    What tracks have in common is in it where they have, and it is positive: a scenario knows no other.
+def catenary_of(constants: "LineConstants") -> dict[str, Any]:
+    """Table for `supply.catenary` of a scenario; see `LineConstants.catenary`.
 
     Raises
     ------
@@ -64,9 +64,11 @@ def catenary(constants: LineConstants) -> dict[str, Any]:
         "x_ohm_per_km": _rounded(1e3 * z.own.imag),
         "capacitance_nf_per_km": _rounded(1e12 * capacitance(constants)),
     }
-    if z.mutual is not None and is_written(z.mutual):
-        table["mutual_r_ohm_per_km"] = _rounded(1e3 * z.mutual.real)
-        table["mutual_x_ohm_per_km"] = _rounded(1e3 * z.mutual.imag)
+    table |= {
+        f"mutual_{axis}_ohm_per_km": _rounded(1e3 * value)
+        for axis, value in in_common(z).items()
+        if value > 0.0
+    }
     try:
         Catenary.model_validate(table)
     except ValidationError as error:
@@ -79,29 +81,30 @@ def catenary(constants: LineConstants) -> dict[str, Any]:
     return table
 
 
-def is_written(mutual: complex) -> bool:
-    """Whether a catenary can have an impedance that two tracks have in common."""
-    return mutual.real >= 0.0 and mutual.imag >= 0.0
+def in_common(equivalent: Equivalent) -> dict[str, float]:
+    """Resistance r and reactance x that two tracks have in common; of a single track none. [Ω/m]"""
+    mutual = equivalent.mutual
+    return {} if mutual is None else {"r": mutual.real, "x": mutual.imag}
 
 
 def _key(error: Any) -> str:
     return f"supply.catenary.{error['loc'][-1]}" if error["loc"] else "supply.catenary"
 
 
-def catenary_text(constants: LineConstants) -> str:
+def catenary_text(constants: "LineConstants") -> str:
     """Text of a file that `supply.catenary` of a scenario may name.
 
     Raises
     ------
     ScenarioError
-        As `catenary`.
+        As `catenary_of`.
     """
     z = chosen(constants)
     source = (
         f"line constants of {constants.geometry.source.name} at {constants.frequency_hz:g} Hz, "
         f"{constants.geometry.method}: {z.meaning}"
     )
-    return tomli_w.dumps({"source": source, **catenary(constants)})
+    return tomli_w.dumps({"source": source, **catenary_of(constants)})
 
 
 def _rounded(value: float) -> float:

@@ -3,10 +3,12 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from tpss.conductors.catenary import catenary_of
 from tpss.conductors.equivalents import Equivalent, equivalents_of
 from tpss.conductors.formulas.earth_return import METHODS
 from tpss.conductors.formulas.inside import by_mean_radius, by_skin_effect
@@ -28,7 +30,7 @@ ORDER = ("contact", "positive", "feeder", "rails")
 """Groups, in the order of rows and columns; those of a track follow each other."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LineConstants:
     """Line constants of a geometry at a frequency; tables in Ω and µS a kilometre, arrays in SI."""
 
@@ -66,6 +68,20 @@ class LineConstants:
     def equivalents(self) -> tuple[Equivalent, ...]:
         """What stands for the line as one conductor a track, its return included."""
         return equivalents_of(self.geometry, self.conductor_impedance, self.frequency_hz)
+
+    @property
+    def catenary(self) -> dict[str, Any]:
+        """Table for `supply.catenary` of a scenario of the same frequency.
+
+        Of autotransformers where every track has a feeder, otherwise of rails as the geometry says.
+        What tracks have in common is in it where that is positive: a scenario knows no other.
+
+        Raises
+        ------
+        ScenarioError
+            A catenary of a scenario cannot have these values.
+        """
+        return catenary_of(self)
 
     def _table(self, matrix: Real) -> pd.DataFrame:
         names = list(self.groups)

@@ -15,7 +15,7 @@ EARTHED, INSULATED, EARTH = "rails-earthed", "rails-insulated", "earth-return"
 AUTOTRANSFORMERS, IN_CELL = "autotransformers", "autotransformers-in-cell"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equivalent:
     """Impedance of one conductor a track, its return included."""
 
