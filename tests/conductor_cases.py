@@ -299,6 +299,29 @@ CAPACITANCE_F_PER_KM = [
     [-1.73733829e-09, -2.338101014e-09, 8.425304606e-09],
 ]
 
+RAIL_OF_THE_COURSE = {
+    "r_ohm_per_km": 0.2144,  # 0.28 / 68.5 √(0.22 · 50 · 250)
+    "radius_mm": 109.0,  # 68.5 cm around
+    "gmr_mm": 8.38,  # an internal reactance of 0.752 of the resistance
+}
+CONTACT_WIRE_OF_THE_COURSE = {"r_ohm_per_km": 0.1759, "radius_mm": 6.0, "gmr_mm": 4.673}
+MESSENGER_OF_THE_COURSE = {"r_ohm_per_km": 0.153, "radius_mm": 6.35, "gmr_mm": 4.813}
+DOUBLE_TRACK_OF_THE_COURSE = [
+    {"name": f"{name} {track}", "group": group, "track": track, "x_m": 4.0 * (track - 1) + x_m}
+    | {"height_m": height_m, "sag_m": sag_m, "wire": wire}
+    for track in (1, 2)
+    for name, group, x_m, height_m, sag_m, wire in (
+        ("contact wire", "contact", 0.0, 6.0, 0.0, CONTACT_WIRE_OF_THE_COURSE),
+        ("messenger", "contact", 0.0, 7.4, 0.702, MESSENGER_OF_THE_COURSE),
+        ("left rail", "rails", -0.7535, 0.5, 0.0, RAIL_OF_THE_COURSE),
+        ("right rail", "rails", 0.7535, 0.5, 0.0, RAIL_OF_THE_COURSE),
+    )
+]
+"""Double track of 25 kV 50 Hz over 300 Ω m, of a course at the University of Zagreb."""
+
+OWN_AND_COMMON_OF_THE_COURSE = (0.113 + 0.391j, 0.031 + 0.134j)
+"""Of a contact line, and of both, rails at earth: by the formulas of the course. [Ω/km]"""
+
 WIRES = {  # Ω/mile, ft
     "336,400 26/7": (0.306, 0.0244),
     "556,500 26/7": (0.1859, 0.0313),

@@ -76,6 +76,16 @@ def test_a_catenary_is_written_that_a_scenario_takes(tpss_command, tmp_path):
     assert "geometry_double_track.toml at 16.7 Hz, carson" in source
 
 
+@pytest.mark.parametrize("changes", [{}, {"supply.catenary": str(DOUBLE_TRACK)}])
+def test_conductors_in_place_of_a_scenario_or_a_catenary_are_told_what_to_do(tmp_path, changes):
+    scenario = tmp_path / "line.toml"
+    scenario.write_text(tomli_w.dumps(SHORT_LINE), "utf-8")
+    with pytest.raises(tpss.ScenarioError) as caught:
+        tpss.load_scenario(scenario if changes else DOUBLE_TRACK, changes)
+    words = "make a catenary of them: tpss line-constants FILE --out catenary.toml"
+    assert any(words in each.remedy for each in caught.value.findings)
+
+
 def test_a_file_is_replaced_only_with_force(tpss_command, tmp_path):
     (tmp_path / "wires.toml").write_text("mine", "utf-8")
     call = ("line-constants", DOUBLE_TRACK, "--out", "wires.toml")

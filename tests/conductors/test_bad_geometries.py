@@ -157,5 +157,5 @@ def test_first_terms_far_from_where_they_hold_give_no_passive_line():
 def test_a_scenario_is_no_file_of_conductors(tmp_path):
     file = tmp_path / "scenario.toml"
     file.write_text("[trains]\n[[traffic]]\n", "utf-8")
-    with pytest.raises(tpss.ScenarioError, match="a scenario, not conductors of a line"):
+    with pytest.raises(tpss.ScenarioError, match="a scenario, not conductors"):
         tpss.load_geometry(file)

@@ -67,8 +67,9 @@ def test_matrices_are_symmetric_and_passive(conductors, frequency_hz, earth_ohm_
         assert matrix == pytest.approx(matrix.T, rel=1e-9, abs=1e-12 * abs(matrix).max())
     assert np.linalg.eigvalsh(found.impedance.real).min() > 0.0
     assert np.linalg.eigvalsh(found.capacitance).min() > 0.0
-    for each in found.equivalents:
-        assert np.linalg.eigvalsh(each.impedance.real).min() > 0.0
+    for each in found.equivalents:  # what comes on top in a cell may be anything, its sum may not
+        if each.name != "autotransformers-in-cell":
+            assert np.linalg.eigvalsh(each.impedance.real).min() > 0.0
 
 
 def test_a_low_frequency_comes_to_the_resistances_of_direct_current():

@@ -15,10 +15,12 @@ from conductor_cases import (
     BUNDLED,
     CAPACITANCE_F_PER_KM,
     CONDUCTORS,
+    DOUBLE_TRACK_OF_THE_COURSE,
     EARTH_OHM_M,
     EQUIVALENTS,
     KRON_50_HZ,
     ORDER,
+    OWN_AND_COMMON_OF_THE_COURSE,
     PRIMITIVE_50_HZ,
     PUBLISHED,
     WIRES,
@@ -99,7 +101,18 @@ def test_the_case_s_autotransformers_are_those_of_like_contact_line_and_feeder(f
     assert 0.0 < abs(unlike) < 0.04 * abs(along)
 
 
-def test_its_capacitances():
+def test_a_double_track_of_25_kv_with_what_both_have_in_common():
+    """Its formulas are the first terms, with logarithms to base 10: three decimals are given."""
+    found = constants_of(
+        DOUBLE_TRACK_OF_THE_COURSE, 50.0, method="clem", earth_resistivity_ohm_m=300.0
+    )
+    (earthed,) = (each for each in found.equivalents if each.name == "rails-earthed")
+    own, common = OWN_AND_COMMON_OF_THE_COURSE
+    assert 1e3 * earthed.own == pytest.approx(own, abs=7e-4)
+    assert 1e3 * earthed.mutual == pytest.approx(common, abs=7e-4)
+
+
+def test_the_capacitances_of_the_2x25_kv_track():
     """Farad a kilometre; the susceptance is 2π f C."""
     found = single_track(50.0)
     capacitance = found.b_us_per_km.loc[ORDER, ORDER].to_numpy() / (2e6 * np.pi * 50.0)

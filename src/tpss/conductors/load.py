@@ -5,9 +5,8 @@ from typing import Any
 
 from tpss.conductors.faults import geometry_faults
 from tpss.conductors.geometry import Geometry
-from tpss.errors import ScenarioError
+from tpss.errors import Finding, ScenarioError
 from tpss.scenario.files import read_toml
-from tpss.scenario.load import demand_no_scenario
 from tpss.scenario.validate import validate
 
 
@@ -21,7 +20,9 @@ def load_geometry(path: str | Path) -> Geometry:
     """
     source = Path(path)
     document = read_toml(source)
-    demand_no_scenario(document, source, "conductors of a line")
+    if {"trains", "traffic"} <= document.keys():
+        remedy = "run it with tpss run, or give the file with the conductors"
+        raise ScenarioError([Finding(str(source), "", "", "a scenario, not conductors", remedy)])
     return geometry_of(document, source)
 
 
