@@ -32,7 +32,7 @@ from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
-from tpss.step.sparing import allow_currents, heat_motors, spares_motors
+from tpss.step.sparing import allow_currents, heat_motors
 from tpss.step.state import State, Status
 
 SHORTEST_MOVE = 1e-8
@@ -46,7 +46,7 @@ def advance_by_least_squares(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
     """Run steps `first` to `last` - 1, as `step.advance.advance` does."""
-    step, spares = first, spares_motors(model)
+    step, spares = first, model.control.spares_motors
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
         clock = state.clock[0]

@@ -17,7 +17,7 @@ from tpss.step.precedence import let_pass
 from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
-from tpss.step.sparing import allow_currents, heat_motors, spares_motors
+from tpss.step.sparing import allow_currents, heat_motors
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.track.gate import Precedence
@@ -315,7 +315,7 @@ def advance(
     `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
     which is not carried out.
     """
-    carry_out = run_steps_sparing if spares_motors(model) else run_steps
+    carry_out = run_steps_sparing if model.control.spares_motors else run_steps
     status, step = carry_out(first, last, model, state, recording)
     while status == Status.SEARCHING:
         now = plain(with_step)(model, state.clock[0].last_step_s)

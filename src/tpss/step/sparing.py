@@ -14,11 +14,6 @@ ROUNDING = 1e-9
 """Share of the allowed current within which a step is one in which the driver spared the motors."""
 
 
-def spares_motors(model: Model) -> bool:
-    """Whether the driver of any train spares its motors."""
-    return bool((model.types["spared"]["continuous_a"] < math.inf).any())
-
-
 @kernel
 def allow_currents(step: int, step_s: float, model: Model, state: State) -> None:
     """Find what drivers allow their motors in a step; those that were not on the line begin afresh.
