@@ -41,6 +41,14 @@ def test_a_corridor_is_told_by_its_ends_and_where_it_changes_lines(chain):
     assert "Time-distance graph: West – East" in Page(report(chain, ["West", "East"])).text
 
 
+def test_the_voltage_along_a_corridor_names_where_lines_meet_and_end(chain):
+    """The feeder at its beginning by its own name; Halt, where the contact line has no node, is none."""
+    figure = draw("voltage", chain, corridor=["West", "Mine"])
+    texts = {text.get_text() for axes in figure.axes for text in axes.texts}
+    assert {"feeder", "Fork", "Mine"} <= texts
+    assert "Halt" not in texts
+
+
 def test_a_journey_is_whole_unless_a_corridor_is_chosen(chain):
     """From West 40 km to Fork and 30 km on to Mine, of which the corridor has the last."""
     for way, begin_km in (([], 0.0), (["Fork", "Mine"], 40.0)):
