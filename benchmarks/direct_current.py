@@ -2,9 +2,9 @@
 
     python benchmarks/direct_current.py --lines 3000 --seed 1
 
-Each line is solved by the load flow, which knows nothing of it before.  A solution counts if the equations
-of a slow twin hold there, and if all eigenvalues of the twin's Jacobian are positive; where there is none,
-the twin looks for one: by Newton's method over all voltages, with a pseudo-transient on the diagonal.
+Each line is solved by the load flow, which knows nothing of it before.  A solution counts if the
+equations of a slow twin hold there, and if all eigenvalues of the twin's Jacobian are positive.  Where
+none is found, the twin looks for one: by Newton's method over all voltages, with a pseudo-transient.
 """
 
 import argparse
