@@ -5,6 +5,7 @@ from typing import Any
 
 from tpss import library
 from tpss.scenario.raw import Fault, number, table
+from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 
 UNITY = {"power_factor": 1.0, "auxiliary_power_factor": 1.0}
@@ -54,7 +55,7 @@ def _of_train(place: str, train: Mapping[str, Any], system: str) -> Iterator[Fau
                 problem = f"direct current, that of the system {system}, has no reactive power"
                 yield f"{where}.{key}", repr(part[key]), problem, "leave it out"
     for key, words in ALTERNATING.items():
-        if key in train:
+        if key in train and train[key] != Train.model_fields[key].default:
             yield f"{place}.{key}", repr(train[key]), f"{words} current", "leave it out"
     if train.get("reactive_power") == "double-bridge":
         problem = "bridges of a train for alternating current"

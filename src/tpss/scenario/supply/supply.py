@@ -31,6 +31,9 @@ Station = ConverterStation | TransformerStation | MixedStation | RectifierStatio
 STATIONS = ("converter_stations", "transformer_stations", "mixed_stations", "rectifier_stations")
 """Keys of the supply that list feeding stations, in the order of the results."""
 
+LOWEST_HZ = 10.0
+"""Lowest frequency of an alternating current. [Hz]"""
+
 TYPES = {"converter_types": "converters", "rectifier_types": "rectifiers"}
 """Keys of the supply that name own types of stations, and the kind of the library's."""
 
@@ -69,7 +72,7 @@ class Supply(Part):
     )
     frequency_hz: Real = Field(
         default_factory=_frequency_of_the_system,
-        ge=10,
+        ge=0,
         le=60,
         description="Frequency of the contact line; leave it out: that of the system.",
     )
@@ -128,17 +131,18 @@ class Supply(Part):
     @field_validator("frequency_hz", mode="before")
     @classmethod
     def _of_an_alternating_current(cls, frequency_hz: Any, info: ValidationInfo) -> Any:
+        if not isinstance(frequency_hz, int | float) or isinstance(frequency_hz, bool):
+            return frequency_hz
         if _is_direct(info.data):
-            raise fault(f"the system {info.data['system']} has no frequency", "leave it out")
-        if (
-            isinstance(frequency_hz, int | float)
-            and frequency_hz == 0
-            and frequency_hz is not False
-        ):
+            if frequency_hz != 0:
+                raise fault(f"the system {info.data['system']} has no frequency", "leave it out")
+        elif frequency_hz == 0:
             raise fault(
                 "direct current is a matter of the system",
                 'choose a system of direct current, such as system = "DC-1.5kV", and leave it out',
             )
+        elif frequency_hz < LOWEST_HZ:
+            raise PydanticKnownError("greater_than_equal", {"ge": LOWEST_HZ})
         return frequency_hz
 
     @field_validator("catenary", mode="before")
