@@ -199,6 +199,11 @@ class Supply(Part):
         return hash(tuple(value for name, value in self if name not in TYPES))
 
     @property
+    def is_direct(self) -> bool:
+        """Whether it is one of direct current."""
+        return system_named(self.system).is_direct
+
+    @property
     def stations(self) -> tuple[Station, ...]:
         """All feeding stations, in the order of the results."""
         return tuple(station for key in STATIONS for station in getattr(self, key))
@@ -211,7 +216,7 @@ class Supply(Part):
 
     @model_validator(mode="after")
     def _parts_fit_the_current(self) -> Self:
-        direct = system_named(self.system).is_direct
+        direct = self.is_direct
         for station in self.stations:
             if isinstance(station, RectifierStation) == direct:
                 continue
