@@ -69,6 +69,13 @@ class Journey:
             )
         )  # fmt: skip
         self.opposing = resistance + climb
+        self.lines = list(result.scenario.lines_by_name.values())
+        self.length_km = self.train.length_m / 1e3
+        self.km = data["position"].to_numpy()[rows, i] / 1e3
+        told = (
+            data["train_line"].to_numpy()[rows, i] if "train_line" in data else np.zeros(rows.size)
+        )
+        self.on_line = told.astype(int)
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
 
@@ -177,7 +184,8 @@ class Journey:
         """In a step that accelerates below the limit, the mean force is one that belongs to its speeds.
 
         Adhesion and machine fall with the speed, but for the ripples of the network; resistances, which
-        the rotors add a little of, change too.
+        the rotors add a little of, change too.  Where the gradient changes, the train may have been
+        faster or slower on the way.
         """
         for k in np.flatnonzero(self.state[:-1] == TrainState.MOTORING):
             here = np.searchsorted(self.limit_m, self.x[k : k + 2], side="right") - 1
@@ -190,12 +198,31 @@ class Journey:
                 continue
             if self.near_a_stop(k) or self.braking[k] > 0.0:
                 continue
-            speeds = np.linspace(v, after, 21)
+            beyond = self.beyond_both_ends_m_s(k)
+            slowest, fastest = max(0.0, v - beyond), min(after + beyond, self.limit[here[0]])
+            speeds = np.linspace(slowest, fastest, 21)
             most = [self.largest_force_n(k, speed) for speed in speeds]
             slack = 1e-3 * max(most) + 1.0
             assert min(most) - slack <= self.force[k] <= max(most) + slack, (
                 f"{self.name} gives {self.force[k]} N of {min(most)} to {max(most)} N at {self.x[k]} m"
             )
+
+    def beyond_both_ends_m_s(self, k: int) -> float:
+        """How far its speed may pass those at both ends of step `k`: no further than by a quarter of
+        its length times the range of the accelerations, which gradients differ by."""
+        line, ends_km = self.lines[self.on_line[k]], sorted(self.km[k : k + 2])
+        if self.on_line[k] != self.on_line[k + 1]:  # over the whole of all of them
+            gradients = [each.permille for other in self.lines for each in other.gradients]
+        else:
+            begin_km, end_km = ends_km[0] - self.length_km, ends_km[1] + self.length_km
+            ends = [*(each.from_km for each in line.gradients[1:]), math.inf]
+            gradients = [
+                each.permille
+                for each, until_km in zip(line.gradients, ends, strict=True)
+                if each.from_km < end_km and until_km > begin_km
+            ]
+        range_m_s2 = 9.81e-3 * (max(gradients) - min(gradients))
+        return float(range_m_s2 * (self.time_s[k + 1] - self.time_s[k]) / 4.0)
 
     def near_a_stop(self, k: int) -> bool:
         """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""

@@ -17,7 +17,10 @@ from tpss.step.state import TrainState
 
 from .given_tracks import judge_given_tracks
 from .journeys import Journey
+from .losses import judge_losses
+from .ratings import judge_ratings
 from .single_tracks import judge_single_tracks
+from .trips import judge_trips
 
 
 def keep_the_rules(result: Result) -> None:
@@ -30,6 +33,9 @@ def keep_the_rules(result: Result) -> None:
     judge_single_tracks(result)
     judge_given_tracks(result)
     judge_outage(result)
+    judge_losses(result)
+    judge_ratings(result)
+    judge_trips(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
 

@@ -37,7 +37,7 @@ def thermal(body: Body, load: Any, step_s: float = MIN, last_s: float | None = N
         coords={"time": time, "train": np.empty(0, dtype=str)},
     )
     element = Element("it", "converter", 0, 0.0, body)
-    return Thermal(dataset, [element], np.array(load, dtype=float)[:, None])
+    return Thermal.of([(element, np.array(load, dtype=float))], dataset.time.to_numpy(), dataset)
 
 
 def judged(body: Body, load: Any, **more: Any) -> Judged:

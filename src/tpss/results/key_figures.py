@@ -20,6 +20,8 @@ from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
+from tpss.results.thermal.elements import has_ratings
+from tpss.results.thermal.figures import thermal_figures
 from tpss.run.protection import run_to_end
 from tpss.run.run import Clock, Progress, Run, arrivals_s
 from tpss.run.start import Start
@@ -108,6 +110,9 @@ class KeyFigures:
     braking : dict of str to float
         Where the work of all brakes goes, as of `tpss.results.regeneration.fed_back`; empty without any
         electric ones. [MWh]
+    thermal : dict of str to float
+        What equipment with a rating comes to, as of `tpss.results.thermal.figures`; empty where nothing
+        has one.
     lowest_voltage : LowestVoltage or None
     mean_useful_voltage_kv : float
         Lowest one of the zones, by EN 50388, in the peak window.
@@ -135,6 +140,7 @@ class KeyFigures:
     drawn_from_grid_mwh: float
     fed_back_to_grid_mwh: float
     braking: dict[str, float]
+    thermal: dict[str, float]
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
     dimensioning_train_kv: float
@@ -169,6 +175,8 @@ class Frame:
     """The stations' 50 Hz sides."""
     feeds_back: bool
     """Whether trains have electric brakes."""
+    rated: Scenario | None
+    """The scenario, if something in it has a rating."""
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -185,6 +193,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         system=model.network.system,
         sides=sides_of(scenario),
         feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
+        rated=scenario if has_ratings(scenario) else None,
     )
 
 
@@ -240,6 +249,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         losses_mwh=whole["losses_j"] / J_PER_MWH,
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
         braking=braking_mwh(run, frame.sides),
+        thermal={} if frame.rated is None or not run.step else thermal_figures(run, frame.rated),
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),

@@ -1,12 +1,11 @@
 """The equipment of a scenario that has a rating, and the load of each over a run."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from tpss.model.contact_line import LineLayout, stretches_of
 from tpss.model.feeding import feedings_of
@@ -19,15 +18,38 @@ from tpss.model.supply import (
     layouts_of,
     system_of,
 )
-from tpss.results.standards.windows import Floats, step_values
+from tpss.results.grid_side import powers_of_types
+from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body, body_of
+from tpss.scenario.rating import Rating
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import ConverterStation, Supply, TransformerStation
+from tpss.scenario.supply import ConverterStation, MixedStation, Supply, TransformerStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import si
 
+CONVERTER, MOTORS = "converter", "motors"
+KINDS = (CONTACT_LINE, TRANSFORMER, CONVERTER, MOTORS)
+"""Kinds of equipment."""
+
 FORMER_MOTORS = 4.0
 """Motors whose currents the former model adds up."""
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What is recorded of a run.
+
+    Attributes
+    ----------
+    of : callable
+        Gives what is recorded by its name, shape (steps, whatever there is one of), NaN of trains that
+        are not on the line.
+    trains : sequence of (str, str)
+        Names of the trains, and of their services.
+    """
+
+    of: Callable[[str], Floats]
+    trains: Sequence[tuple[str, str]]
 
 
 class Reach(NamedTuple):
@@ -71,10 +93,10 @@ Loaded = tuple[Element, Floats]
 """A piece of equipment, and its load in each step, NaN where it is not there. [1]"""
 
 RATED_STATIONS: dict[type, tuple[str, Callable[[Any], Any]]] = {
-    ConverterStation: ("converter", lambda station: station.type.rating),
-    TransformerStation: ("transformer", lambda station: station.transformer.rating),
+    ConverterStation: (CONVERTER, lambda station: station.type.rating),
+    TransformerStation: (TRANSFORMER, lambda station: station.transformer.rating),
 }
-"""What a station's units are, and where their rating stands."""
+"""What a station's units are, and where their rating stands, if it has units of one type."""
 
 
 def has_ratings(scenario: Scenario) -> bool:
@@ -84,22 +106,23 @@ def has_ratings(scenario: Scenario) -> bool:
     given: list[Any] = [supply.catenary.rating]
     given += [each.catenary.rating for each in supply.contact_lines if each.catenary is not None]
     given += [_rating_of_station(station) for station in supply.stations]
+    given += [kind.rating for kind in supply.converters_in_use]
     given += [train.motor_rating for train in scenario.trains.values()]
     if high_voltage is not None:
         given += [high_voltage.line_transformer.rating, high_voltage.station_transformer.rating]
     return any(each is not None for each in given)
 
 
-def rated_elements(dataset: xr.Dataset, scenario: Scenario) -> list[Loaded]:
+def rated_elements(readings: Readings, scenario: Scenario) -> list[Loaded]:
     """Everything in a run that has a rating, with its load in each step."""
     laid = layout_of(scenario, scenario.outage)
     where = _Feeding.of(laid.supply, layouts_of(scenario.lines_by_name))
-    current_a = np.nan_to_num(step_values(dataset, "branch_current"))
+    current_a = np.nan_to_num(readings.of("branch_current"))
     return [
-        *_stations(dataset, scenario, where),
+        *_stations(readings, scenario, where),
         *_transformers(current_a, laid.plan, where),
         *_contact_lines(current_a, laid.plan, where),
-        *_motors(dataset, scenario),
+        *_motors(readings, scenario),
     ]
 
 
@@ -146,23 +169,42 @@ def _rating_of_station(station: Any) -> Any:
     return rating(station)
 
 
-def _stations(dataset: xr.Dataset, scenario: Scenario, where: _Feeding) -> Iterator[Loaded]:
+def _stations(readings: Readings, scenario: Scenario, where: _Feeding) -> Iterator[Loaded]:
     """Units of feeding stations: those that run share the load, and one that runs is judged."""
-    loading = np.nan_to_num(step_values(dataset, "converter_loading"))
+    loading = np.nan_to_num(readings.of("converter_loading"))
     for s, station in enumerate(scenario.supply.stations):
-        if (rating := _rating_of_station(station)) is None:
-            continue
-        kind, _ = RATED_STATIONS[type(station)]
         home = next(line.number for line in where.lines if line.holds(station.line))
         reach = tuple(
             where.around(line, own[station.name], own[station.name])
             for line, own in enumerate(where.stations_km)
             if station.name in own
         )
-        element = Element(
-            f"{kind} of {station.name}", kind, home, station.position_km, body_of(rating), reach
+        if isinstance(station, MixedStation):
+            found = _types(readings, s, station)
+        else:
+            kind, _ = RATED_STATIONS[type(station)]
+            found = [(f"{kind} of {station.name}", _rating_of_station(station), loading[:, s])]
+        for name, rating, load in found:
+            kind = name.partition(" ")[0]
+            if rating is not None:
+                body, km = body_of(rating), station.position_km
+                yield Element(name, kind, home, km, body, reach), load
+
+
+def _types(
+    readings: Readings, s: int, station: MixedStation
+) -> list[tuple[str, Rating | None, Floats]]:
+    """Name, rating and load of one converter of each type of a station."""
+    powers_va = readings.of("station_active_power") + 1j * readings.of("station_reactive_power")
+    shared = powers_of_types(np.nan_to_num(powers_va[:, s]), station)
+    return [
+        (
+            f"{CONVERTER} of {station.name}, type {i}",
+            units.type.rating,
+            np.abs(own) / (units.converters * si(units.type, "rating_mva")),
         )
-        yield element, loading[:, s]
+        for i, (units, own) in enumerate(zip(station.units, shared, strict=False), 1)
+    ]
 
 
 def _transformers(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
@@ -217,15 +259,14 @@ def _sections_of(plan: SupplyPlan, line: int) -> Iterator[tuple[int, int | None]
             yield from ((s, track) for s in range(*bounds))
 
 
-def _motors(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Loaded]:
+def _motors(readings: Readings, scenario: Scenario) -> Iterator[Loaded]:
     """Motors of each train: all of them alike, of which one is judged."""
-    trains, current_a = scenario.trains_by_service(), step_values(dataset, "motor_current")
-    names = zip(dataset.train.to_numpy(), dataset.service.to_numpy(), strict=True)
-    for i, (name, service) in enumerate(names):
-        train = trains[str(service)]
+    trains, current_a = scenario.trains_by_service(), readings.of("motor_current")
+    for i, (name, service) in enumerate(readings.trains):
+        train = trains[service]
         if train.motor_rating is None or not np.isfinite(current_a[:, i]).any():
             continue
         motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
         body = body_of(train.motor_rating)
-        element = Element(f"motors of {name}", "motors", -1, float("nan"), body, train=i)
+        element = Element(f"{MOTORS} of {name}", MOTORS, -1, float("nan"), body, train=i)
         yield element, current_a[:, i] / (motors * train.motor_rating.continuous_a)
