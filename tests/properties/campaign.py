@@ -39,7 +39,7 @@ KINDS = {
 
 
 class Campaign:
-    """What has come of the cases so far."""
+    """What has come of the cases so far; faults are printed when they are found, and at the end."""
 
     def __init__(self) -> None:
         self.tally: Counter[tuple[str, str]] = Counter()
@@ -77,6 +77,7 @@ class Campaign:
                 self.tally[title, "fault"] += 1
                 words = f"{_place_of(fault)}: {fault}".splitlines()[0]
                 self.faults.setdefault(words, found[_place_of(fault)])
+                print(f"\n{words}\n{found[_place_of(fault)]!r}", flush=True)
 
     def report(self) -> None:
         """Print tally and faults."""

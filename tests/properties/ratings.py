@@ -51,12 +51,12 @@ def of_transformers(draw: Draw, least: int = 0) -> Document:
 
 
 @st.composite
-def of_wires(draw: Draw) -> Document:
+def of_wires(draw: Draw, least: int = 0) -> Document:
     """A rating of a contact line, with or without temperatures."""
     warms = (
         {} if draw(st.booleans()) else {"reference_c": 80.0, "ambient_c": draw(numbers(-20, 70))}
     )
-    return {"continuous_a": draw(numbers(20.0, 800.0)), **draw(by_time_constant()), **warms}
+    return {"continuous_a": draw(numbers(20.0, 800.0)), **draw(by_time_constant(least)), **warms}
 
 
 MOTORS = st.builds(
@@ -71,7 +71,7 @@ def with_ratings(draw: Draw, document: Document, least: int = 0) -> None:
     """Give equipment of every kind a rating, or none; converters and transformers some overloads."""
     supply = document["supply"]
     if draw(st.booleans()):
-        own_table(supply, "catenary", "catenaries")["rating"] = draw(of_wires())
+        own_table(supply, "catenary", "catenaries")["rating"] = draw(of_wires(least))
     for kind in converter_types(document):
         if draw(st.booleans()):
             kind["rating"] = draw(by_time_constant(least))
@@ -82,7 +82,7 @@ def with_ratings(draw: Draw, document: Document, least: int = 0) -> None:
     for key, name in (("line_transformer", "16MVA"), ("station_transformer", "25MVA")):
         if high_voltage is not None and draw(st.booleans()):
             high_voltage.setdefault(key, name)
-            rating = {"rating_mva": draw(numbers(0.5, 25.0)), **draw(of_transformers())}
+            rating = {"rating_mva": draw(numbers(0.5, 25.0)), **draw(of_transformers(least))}
             own_table(high_voltage, key, "transformers")["rating"] = rating
     for train in document["trains"].values():
         knows_its_motors = "model" in train or "max_motor_voltage_v" in train

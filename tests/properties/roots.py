@@ -18,7 +18,6 @@ from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.solve import start_flat
 from tpss.run.already_running import trains_on_line
-from tpss.run.protection import without_station
 from tpss.run.relays import Trip
 from tpss.run.run import Run, run_of, switch
 from tpss.run.services import departing_trains
@@ -50,8 +49,8 @@ class Replay:
     def __init__(self, scenario: Scenario, steps: int, trips: Sequence[Trip] = ()) -> None:
         model, _ = build_model(scenario)
         start = start_of(scenario, model)
-        for trip in trips:
-            start = without_station(start, trip)
+        if trips:
+            start = start.with_trips(trips)
         self.switchings = start.switchings
         self.control = start.model.control
         model = start.model._replace(control=model.control)  # with types that use spare time

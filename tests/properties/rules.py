@@ -272,7 +272,7 @@ def units_in_service(result: Result, station: Any, step: int) -> int:
     """Units of a station that are in service in a step; none from its trip on."""
     h = result.dataset.attrs["time_step_s"] / 60.0
     for trip in result.summary.get("trips", []):
-        if trip["station"] == station.name and step * h >= trip["time_min"] - 1e-9:
+        if trip["element"] == station.name and step * h >= trip["time_min"] - 1e-9:
             return 0
     outage = result.scenario.outage
     out = outage.units_of(station) if is_out(outage, step, result) else 0

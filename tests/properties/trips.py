@@ -6,7 +6,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 from tpss import Result, Scenario, simulate
-from tpss.run.relays import Relay, Trip
+from tpss.model import build_model
+from tpss.model.outages import layout_of
+from tpss.model.rated import rated_sections, rated_transformers
+from tpss.model.start import start_of
+from tpss.model.supply import layouts_of
+from tpss.results.thermal.elements import Element
+from tpss.run.relays import Trip
 
 from .ranges import numbers
 from .ratings import with_ratings
@@ -20,7 +26,8 @@ CLOSE = 1e-6
 
 
 def with_protection(draw: Draw, document: Document) -> None:
-    """Let stations trip, some of which have converters that are weak for what they carry.
+    """Let equipment trip: stations, some of which have converters that are weak for what they carry,
+    transformers and sections of contact line.
 
     Trains that move in steps do not go with it.
     """
@@ -30,86 +37,98 @@ def with_protection(draw: Draw, document: Document) -> None:
     for kind in converter_types(document):
         if "rating" in kind and "current_limit_percent" not in kind and draw(st.booleans()):
             kind["rating_mva"] = draw(numbers(0.5, 8.0))
-    if any("rating" in each for each in _rated(document)):
+    if any("rating" in each for each in _protected(document)):
         document["protection"] = {"trip": True}
 
 
-def _rated(document: Document) -> list[Document]:
-    """What may bear overloads: types of converters, and transformers of stations."""
+def _protected(document: Document) -> list[Document]:
+    """Tables of all that may have overloads, as far as they are tables."""
     supply = document["supply"]
     transformers = [each["transformer"] for each in supply.get("transformer_stations", ())]
-    return [*converter_types(document), *transformers]
+    high_voltage = supply.get("high_voltage_line", {})
+    others = [
+        supply["catenary"],
+        *map(high_voltage.get, ("line_transformer", "station_transformer")),
+    ]
+    tables = [each for each in others if isinstance(each, dict)]
+    return [*converter_types(document), *transformers, *tables]
 
 
 def judge_trips(result: Result) -> None:
-    """No station bears more than it may, but up to its trip; and a run with one outage is the same.
+    """Nothing bears more than it may, but up to its trip; and a run with one outage is the same.
 
     Loads are seen at instants; before the run there was none.
     """
     if not result.scenario.protection.trip:
         return
     trips = result.summary.get("trips", [])
-    names = [trip["station"] for trip in trips]
-    assert len(set(names)) == len(names), "a station trips twice"
+    names = [trip["element"] for trip in trips]
+    assert len(set(names)) == len(names), "something trips twice"
     times_min = [trip["time_min"] for trip in trips]
     assert times_min == sorted(times_min), "trips are not in the order of time"
-    found = {trip["station"]: trip for trip in trips}
-    for s, station in enumerate(result.scenario.supply.stations):
-        judge_station(result, s, station, found.get(station.name))
+    found = {trip["element"]: trip for trip in trips}
+    over_at_trip = set()
+    own = result.equipment
+    for element, load in zip(own.elements, own.load.T, strict=True):
+        name = protected(element)
+        if name and judge_element(result, element, np.nan_to_num(load), found.get(name)):
+            over_at_trip.add(name)
+    assert over_at_trip == set(names), "something trips without reason"
     if trips:
         judge_what_follows(result)
 
 
-def judge_station(result: Result, s: int, station: Any, trip: Document | None) -> None:
-    """A station passes none of its overloads before the instant at which it trips, and one there."""
-    data = result.dataset
-    instants_min = data.time.to_numpy() / 60.0
-    load = np.nan_to_num(data.converter_loading.to_numpy()[:-1, s])
+def protected(element: Element) -> str:
+    """What trips if a piece of equipment bears too much; nothing of motors, which do not."""
+    name = element.name
+    if element.kind == "contact line":
+        return name.rpartition(", ")[0]
+    return "" if element.train >= 0 else name.rpartition(" of ")[2].partition(", type ")[0]
+
+
+def judge_element(result: Result, element: Element, load: Any, trip: Document | None) -> bool:
+    """Equipment passes none of its overloads before the instant at which it trips; whether one there."""
+    instants_min = result.dataset.time.to_numpy() / 60.0
     over_at_trip = False
-    for percent, minutes in overloads_of(station):
+    for allowed, lasts_s in element.body.overloads:
+        minutes = lasts_s / 60.0
         for k, until_min in enumerate(instants_min[1:]):
             if trip is not None and until_min > trip["time_min"] + 1e-6:
                 break
             within_min = np.diff(np.clip(instants_min, until_min - minutes, until_min))
             square = float(load[: k + 1] ** 2 @ within_min[: k + 1]) / minutes
             at_trip = trip is not None and until_min > trip["time_min"] - 1e-6
-            allowed = (percent / 100.0) ** 2
-            over_at_trip |= at_trip and square > allowed * (1.0 - CLOSE)
-            assert at_trip or square <= allowed * (1.0 + CLOSE), (
-                f"{station.name} bears more than {percent} % over {minutes} min at {until_min} min"
+            over_at_trip |= at_trip and square > allowed**2 * (1.0 - CLOSE)
+            assert at_trip or square <= allowed**2 * (1.0 + CLOSE), (
+                f"{element.name} bears more than {allowed} over {minutes} min at {until_min} min"
             )
-    assert trip is None or over_at_trip, f"{station.name} trips without reason"
+    return over_at_trip
 
 
 def trips_of(result: Result) -> list[Trip]:
     """Trips of a run, as the load flow asks for them."""
-    stations = [station.name for station in result.scenario.supply.stations]
+    model, _ = build_model(result.scenario)
+    relays = start_of(result.scenario, model).relays
+    known = {relay.protected.name: relay for relay in relays}
     found = []
     for each in result.summary.get("trips", []):
-        station, highest = stations.index(each["station"]), each["allowed_percent"] / 100.0
-        relay = Relay(station, 60.0 * each["window_min"], highest)
-        found.append(Trip(station, 60.0 * each["time_min"], each["load_percent"] / 100.0, relay))
+        relay = known[each["element"]]
+        load = each["load_percent"] / 100.0
+        found.append(Trip(relay.protected, 60.0 * each["time_min"], load, relay))
     return found
-
-
-def overloads_of(station: Any) -> list[tuple[float, float]]:
-    """What a station bears and for how long. [%], [min]"""
-    kinds = [getattr(station, "type", None), getattr(station, "transformer", None)]
-    ratings = [kind.rating for kind in kinds if kind is not None and kind.rating is not None]
-    return [(each.percent, each.minutes) for rating in ratings for each in rating.overloads]
 
 
 def judge_what_follows(result: Result) -> None:
     """Up to the second trip, all is as in a run without protection in which the first one is an outage.
 
-    Not where there is an outage already, which has times of its own.
+    Not where there is an outage already, which has times of its own.  Contact lines that may trip have
+    further nodes, and so other roundings.
     """
     scenario, trips = result.scenario, result.summary["trips"]
     if scenario.outage is not None or trips[0]["time_min"] >= result.summary["duration_min"]:
         return
     document = scenario.as_document()
-    first = {"name": "first", "stations": [trips[0]["station"]], "from_min": trips[0]["time_min"]}
-    document |= {"protection": {"trip": False}, "outages": [first]}
+    document |= {"protection": {"trip": False}, "outages": [outage_of(scenario, trips[0])]}
     document["simulation"]["outage"] = "first"
     other = simulate(Scenario.from_document(document, "without protection"))
     steps = min(result.dataset.sizes["time"], other.dataset.sizes["time"]) - 1
@@ -118,7 +137,34 @@ def judge_what_follows(result: Result) -> None:
         steps = min(steps, int(np.searchsorted(result.dataset.time, until_s - 1e-3)))
     else:
         assert other.status == result.status
+    exact = result.dataset.sizes["node"] == other.dataset.sizes["node"]
     for name in ("position", "pantograph_voltage", "station_active_power", "converter_loading"):
         one, again = (each.dataset[name].to_numpy()[:steps] for each in (result, other))
         trains = slice(0, min(one.shape[1], again.shape[1]))
-        assert np.array_equal(one[:, trains], again[:, trains], equal_nan=True), name
+        if exact:
+            assert np.array_equal(one[:, trains], again[:, trains], equal_nan=True), name
+        else:
+            scale = np.nanmax(np.abs(one), initial=1.0)
+            np.testing.assert_allclose(
+                one[:, trains], again[:, trains], rtol=0.0, atol=1e-5 * scale
+            )
+
+
+def outage_of(scenario: Scenario, trip: Document) -> Document:
+    """The outage that takes out from a time on what has tripped."""
+    name, laid = trip["element"], layout_of(scenario, None)
+    lines = layouts_of(scenario.lines_by_name)
+    found: Document = {"name": "first", "from_min": trip["time_min"]}
+    if name in [station.name for station in scenario.supply.stations]:
+        return {**found, "stations": [name]}
+    for each in rated_transformers(laid.plan, laid.supply):
+        if laid.plan.branch_names[each.branch] == name:
+            return {**found, "transformers_km": [each.position_km]}
+    for section in rated_sections(laid.plan, laid.supply, lines):
+        if laid.plan.section_names[section.section] == name:
+            begin_km, end_km = section.ends_km
+            cut: Document = {"from_km": begin_km, "to_km": end_km}
+            cut |= {} if section.track is None else {"track": section.track}
+            cut |= {"line": lines[section.line].name} if len(lines) > 1 else {}
+            return {**found, "sections": [cut]}
+    raise AssertionError(f"nothing is named {name}")

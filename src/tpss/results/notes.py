@@ -59,10 +59,10 @@ def notes(result: Result) -> list[str]:
 
 
 def _trips(result: Result) -> Iterator[str]:
-    """Stations that tripped, in the order of time."""
+    """What tripped, in the order of time."""
     for number, trip in enumerate(result.summary.get("trips", []), 1):
         yield (
-            f"protection, {number}: {trip['station']} tripped at {trip['time_min']:.2f} min, loaded to "
+            f"protection, {number}: {trip['element']} tripped at {trip['time_min']:.2f} min, loaded to "
             f"{trip['load_percent']:.0f} % over {trip['window_min']:g} min, "
             f"{trip['allowed_percent']:.0f} % allowed; the run went on without it"
         )

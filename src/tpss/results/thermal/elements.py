@@ -7,17 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tpss.model.contact_line import LineLayout, stretches_of
+from tpss.model.contact_line import LineLayout
 from tpss.model.feeding import feedings_of
 from tpss.model.outages import layout_of
-from tpss.model.supply import (
-    CONTACT_LINE,
-    NOTHING_PARTED,
-    TRANSFORMER,
-    SupplyPlan,
-    layouts_of,
-    system_of,
-)
+from tpss.model.rated import rated_sections, rated_transformers
+from tpss.model.supply import CONTACT_LINE, NOTHING_PARTED, TRANSFORMER, SupplyPlan, layouts_of
 from tpss.results.grid_side import powers_of_types
 from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body, body_of
@@ -209,54 +203,22 @@ def _types(
 
 def _transformers(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
     """Transformers of the high-voltage line, whose rated current is at the system's base voltage."""
-    high_voltage = where.supply.high_voltage_line
-    if high_voltage is None:
-        return
-    base_v = system_of(where.supply).base_voltage_v
-    for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True)):
-        if kind != TRANSFORMER:
-            continue
-        line, km = plan.node_line[branch.end_node], plan.node_km[branch.end_node]
-        at_station = km in where.stations_km[line].values()
-        unit = high_voltage.station_transformer if at_station else high_voltage.line_transformer
-        if unit.rating is None:
-            continue
-        load = current_a[:, b] * base_v / si(unit.rating, "rating_mva")
-        reach = (where.around(line, km, km),)
-        yield Element(plan.branch_names[b], kind, line, km, body_of(unit.rating), reach), load
+    for each in rated_transformers(plan, where.supply):
+        line, km = each.line, each.position_km
+        reach, body = (where.around(line, km, km),), body_of(each.rating)
+        element = Element(plan.branch_names[each.branch], TRANSFORMER, line, km, body, reach)
+        yield element, current_a[:, each.branch] / each.rated_a
 
 
 def _contact_lines(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
-    """Both ends of each section of contact line: there the currents of all its trains add up.
-
-    Tracks that are tied everywhere share the current alike.
-    """
+    """Both ends of each section of contact line: there the currents of all its trains add up."""
     first = len(plan.branches)
-    for line in where.lines:
-        stretches = stretches_of(line, where.supply)
-        for s, track in _sections_of(plan, line.number):
-            section, name = plan.sections[s], plan.section_names[s]
-            ends_km = section.start_m / 1e3, section.end_m / 1e3
-            middle_km = sum(ends_km) / 2.0
-            stretch = next(each for each in stretches if each.begin_km <= middle_km < each.end_km)
-            rating = stretch.catenary.rating
-            if rating is None:
-                continue
-            rated_a = rating.continuous_a * stretch.tracks / stretch.conductors
-            reach = (where.around(line.number, *ends_km, track),)
-            for k, (km, end) in enumerate(zip(ends_km, ("start", "end"), strict=True)):
-                element = Element(
-                    f"{name}, {end}", CONTACT_LINE, line.number, km, body_of(rating), reach
-                )
-                yield element, current_a[:, first + 2 * s + k] / rated_a
-
-
-def _sections_of(plan: SupplyPlan, line: int) -> Iterator[tuple[int, int | None]]:
-    """Sections of a line, with the track of each, None where they are of all tracks."""
-    for run in plan.runs[line]:
-        for conductor, bounds in enumerate(run.sections):
-            track = None if len(run.sections) == 1 else conductor + 1
-            yield from ((s, track) for s in range(*bounds))
+    for each in rated_sections(plan, where.supply, where.lines):
+        name, body = plan.section_names[each.section], body_of(each.rating)
+        reach = (where.around(each.line, *each.ends_km, each.track),)
+        for k, (km, end) in enumerate(zip(each.ends_km, ("start", "end"), strict=True)):
+            element = Element(f"{name}, {end}", CONTACT_LINE, each.line, km, body, reach)
+            yield element, current_a[:, first + 2 * each.section + k] / each.rated_a
 
 
 def _motors(readings: Readings, scenario: Scenario) -> Iterator[Loaded]:
