@@ -9,6 +9,8 @@ import tpss
 from faults import faults_of, finding_at
 from lines import BOTH_WAYS, double_track, run
 from tpss import library
+from tpss.outages.report import outages_report
+from tpss.outages.row import Verdict
 from tpss.results.notes import notes
 
 from properties.rules import keep_the_rules
@@ -226,6 +228,36 @@ def test_a_station_of_several_types_trips_once_one_of_them_bears_too_much():
     load = result.equipment.load[:, k]
     assert trip["time_min"] == pytest.approx(slow_trip_min(load, 0.1, 110.0, 2.0))
     assert (load[round(trip["time_min"] / 0.1) :] == 0.0).all()
+
+
+def test_a_table_of_outages_says_what_trips_and_what_converters_lose():
+    """The trips of each case are those of its own run."""
+    document = copy.deepcopy(THREE)
+    document["simulation"]["duration_min"] = 20.0
+    stations = [
+        station("West", 0.0, 900.0),
+        station("Middle", 40.0, 120.0, mva=11.0),
+        station("East", 80.0, 900.0),
+    ]
+    for each in stations:
+        each["type"]["losses"] = {"idle_kw": 100.0}
+    document["supply"]["converter_stations"] = stations
+    document["protection"] = {"trip": True}
+    document["outages"] = [{"name": "no West", "stations": ["West"], "from_min": 2.0}]
+    scenario = tpss.Scenario.from_document(document, "three")
+    found = tpss.compare_outages(scenario, threads=1)
+    result = tpss.simulate(scenario.with_outage("no West"))
+    (trip,) = result.summary["trips"]
+    table = found.table().set_index("outage")
+    assert table.trips["intact"] == ""
+    assert table.trips["no West"] == f"Middle {trip['time_min']:.1f} min"
+    losses = result.summary["converter_losses"]["losses_mwh"]
+    assert table.converter_losses_mwh["no West"] == pytest.approx(losses)
+    assert table.converter_losses_mwh_change["no West"] < 0.0
+    assert Verdict.TRIPPED < Verdict.OVERLOAD < Verdict.KEPT
+    page = outages_report(found)
+    assert f"Middle {trip['time_min']:.1f} min" in page
+    assert "converter losses [MWh]" in page
 
 
 def test_without_overloads_and_with_steps_protection_is_a_fault():

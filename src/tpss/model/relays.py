@@ -31,7 +31,9 @@ def with_relays(start: Start, scenario: Scenario, outage: Outage | None) -> Star
     relays = (*_stations(scenario), *_transformers(laid), *_sections(laid, scenario))
     if not relays:
         problem = "nothing of the supply has a rating with overloads, so nothing trips"
-        remedy = "give rating.overloads of a converter type, a transformer or a catenary, or leave it out"
+        remedy = (
+            "give rating.overloads of a converter type, transformer or catenary, or leave it out"
+        )
         raise ScenarioError(
             [Finding(str(scenario.source), "protection.trip", "true", problem, remedy)]
         )

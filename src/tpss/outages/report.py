@@ -12,7 +12,7 @@ import tomli_w
 from tpss import units
 from tpss.files.refusals import explained
 from tpss.files.whole import write_file
-from tpss.outages.row import Row, Verdict
+from tpss.outages.row import LOSSES, TRIPS, Row, Verdict
 from tpss.report import tables
 from tpss.report.drawings.outages import voltages_of_cases
 from tpss.report.html import check_target
@@ -34,6 +34,9 @@ HEADINGS = (
     "in zone", "peak loading [%]", "15 min [%]", "of", "arrived", "late or missing", "lost [min]",
     "stranded", "energy [MWh]", "out of service",
 )  # fmt: skip
+
+TOLD = {LOSSES: "converter losses [MWh]", TRIPS: "tripped"}
+"""Headings of figures that only some scenarios have."""
 
 LOADINGS = {"peak_loading": "peak"} | {
     f"loading_{window:g}_min": f"{window:g} min" for window in WINDOWS_MIN
@@ -109,7 +112,9 @@ def outages_report(found: "Comparison") -> str:
         mistrusted=[row.outage for row in rows if row.verdict == Verdict.AUDIT_FAILED],
         intact=Counted(rows[0].verdict_in_words, rows[0].verdict == Verdict.KEPT),
         verdicts=list(_counted(rows[1:])),
-        ranked=Table("outages", "Outages", HEADINGS, [_cells(row, rows[0]) for row in rows]),
+        ranked=Table(
+            "outages", "Outages", _headings(rows[0]), [_cells(row, rows[0]) for row in rows]
+        ),
         tables=[
             tables.of_frame("trains", "Trains", shown[[name for name in TRAINS if name in shown]]),
             _loadings(trusted),
@@ -125,6 +130,12 @@ def _counted(rows: Sequence[Row]) -> Iterable[Counted]:
         names = [row.outage for row in rows if row.verdict == verdict]
         if names:
             yield Counted(verdict.words, verdict == Verdict.KEPT, names)
+
+
+def _headings(intact: Row) -> list[str]:
+    """Of the ranked table: what only some scenarios tell stands before what is out."""
+    more = [words for key, words in TOLD.items() if key in intact.figures]
+    return [*HEADINGS[:-1], *more, HEADINGS[-1]]
 
 
 def _cells(row: Row, intact: Row) -> list[Cell]:
@@ -149,6 +160,8 @@ def _cells(row: Row, intact: Row) -> list[Cell]:
         tables.cell(lost.get("lost_min"), "min"),
         tables.cell(own.get("stranded"), ""),
         _compared("energy_mwh", own, base),
+        *([_compared(LOSSES, own, base)] if LOSSES in intact.figures else []),
+        *([_text(own.get(TRIPS, ""))] if TRIPS in intact.figures else []),
         _text(row.out),
     ]
 
