@@ -116,6 +116,27 @@ def test_a_trip_does_not_depend_on_the_step():
     assert times[1] == pytest.approx(times[0], abs=0.2)
 
 
+@pytest.mark.parametrize(("percent", "is_over"), [(260.0, True), (268.3, False)])
+def test_what_trips_is_what_is_over_without_protection(percent, is_over):
+    """By the same windows, 20 min and 1 min: the r.m.s. load over 20 min is 268 %.  Over 5 min, between
+    the two, it is 268.5 %, which neither judges: that is left to the thermal state."""
+    rating = {
+        "time_constant_min": 30.0, "overloads": [
+            {"percent": percent, "minutes": 20.0}, {"percent": 400.0, "minutes": 1.0},
+        ],
+    }  # fmt: skip
+    weak = station("Middle", 40.0, percent, mva=4.0)
+    weak["type"] = {**weak["type"], "rating": rating}
+    ample = [station(name, km, 900.0, mva=20.0) for name, km in (("West", 0.0), ("East", 80.0))]
+    free, tripped = simulated(*ample, weak, trip=False), simulated(*ample, weak)
+    windows = free.thermal_windows.query("element == 'converter of Middle'")
+    judged = windows.dropna(subset=["allowed_rms_percent"])
+    assert judged.window_min.tolist() == [1.0, 20.0]
+    assert (judged.highest_rms_percent > judged.allowed_rms_percent).any() == is_over
+    assert ("trips" in tripped.summary) == is_over
+    assert windows.highest_rms_percent[windows.window_min == 5.0].item() > 268.4
+
+
 def test_trips_follow_an_outage():
     """With West out from the second step on, Middle carries more, and trips earlier than without."""
     outage = {"name": "no West", "stations": ["West"], "from_min": 0.1}
