@@ -162,9 +162,14 @@ def outage_of(scenario: Scenario, trip: Document) -> Document:
             return {**found, "transformers_km": [each.position_km]}
     for section in rated_sections(laid.plan, laid.supply, lines):
         if laid.plan.section_names[section.section] == name:
-            begin_km, end_km = section.ends_km
+            begin_km, end_km = (_place(km, laid.plan.node_km) for km in section.ends_km)
             cut: Document = {"from_km": begin_km, "to_km": end_km}
             cut |= {} if section.track is None else {"track": section.track}
             cut |= {"line": lines[section.line].name} if len(lines) > 1 else {}
             return {**found, "sections": [cut]}
     raise AssertionError(f"nothing is named {name}")
+
+
+def _place(km: float, places_km: list[float]) -> float:
+    """A place as it is written, which is the same but for a rounding. [km]"""
+    return min(places_km, key=lambda place_km: abs(place_km - km))
