@@ -7,6 +7,7 @@ is known why it does not get to t = 1.
 """
 
 import cmath
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -81,8 +82,13 @@ class Homotopy:
         return equations.jacobian(voltage, share), np.concatenate([by_t.real, by_t.imag])
 
     def tangent(self, voltage: "Complexes", t: float) -> "tuple[Floats, float]":
-        """Unit tangent towards growing arcs, and sign of the determinant."""
+        """Unit tangent towards growing arcs, and sign of the determinant.
+
+        NaN where a law ends: types of one station that find no way to share a load.
+        """
         jacobian, by_t = self.slopes(voltage, t)
+        if not (np.isfinite(jacobian).all() and np.isfinite(by_t).all()):
+            return np.full(by_t.size + 1, np.nan), math.nan
         sign = float(np.linalg.slogdet(jacobian)[0])
         found = np.append(-np.linalg.solve(jacobian, by_t), 1.0)
         return sign * found / np.linalg.norm(found), sign
@@ -101,6 +107,8 @@ class Homotopy:
                 return point
             jacobian, by_t = self.slopes(voltage, t)
             whole = np.block([[jacobian, by_t[:, None]], [tangent[None, :]]])
+            if not np.isfinite(whole).all():
+                return None
             right = np.concatenate([left.real, left.imag, [across]])
             point = point - np.linalg.solve(whole, right)
         return None
@@ -109,6 +117,8 @@ class Homotopy:
         """Follow the path from t = 0 to t = 1, or to where it ends."""
         point = np.concatenate([voltage.real, voltage.imag, [0.0]])
         tangent, begun = self.tangent(voltage, 0.0)
+        if math.isnan(begun):
+            return Found(End.LOST)
         tangent, arc, farthest = tangent * begun, FIRST_ARC, 0.0
         for _ in range(MOST_POINTS):
             found = self.correct(point + arc * tangent, tangent)
@@ -129,6 +139,8 @@ class Homotopy:
             if np.abs(voltage).min() < LOWEST or np.abs(voltage).max() > HIGHEST:
                 return Found(End.FAR_OFF if t < farthest else End.ASTRAY)
             tangent, _ = self.tangent(voltage, t)
+            if not np.isfinite(tangent).all():
+                break
             tangent, point, farthest = tangent * begun, found, max(farthest, t)
             arc = min(LONGEST_ARC, 1.5 * arc)
         return Found(End.LOST)

@@ -70,6 +70,8 @@ class Journey:
         )  # fmt: skip
         self.opposing = resistance + climb
         self.lines = list(result.scenario.lines_by_name.values())
+        self.line_names = list(result.scenario.lines_by_name)
+        self.neutral_sections = result.scenario.supply.neutral_sections
         self.length_km = self.train.length_m / 1e3
         self.km = data["position"].to_numpy()[rows, i] / 1e3
         told = (
@@ -196,7 +198,7 @@ class Journey:
                 or after >= self.limit[here[0]] - ROUNDING_M_S
             ):
                 continue
-            if self.near_a_stop(k) or self.braking[k] > 0.0:
+            if self.near_a_stop(k) or self.braking[k] > 0.0 or self.meets_a_neutral_section(k):
                 continue
             beyond = self.beyond_both_ends_m_s(k)
             slowest, fastest = max(0.0, v - beyond), min(after + beyond, self.limit[here[0]])
@@ -223,6 +225,17 @@ class Journey:
             ]
         range_m_s2 = 9.81e-3 * (max(gradients) - min(gradients))
         return float(range_m_s2 * (self.time_s[k + 1] - self.time_s[k]) / 4.0)
+
+    def meets_a_neutral_section(self, k: int) -> bool:
+        """Whether its power may be off in a part of step `k`: in a neutral section, or behind it."""
+        begin_km, end_km = sorted(self.km[k : k + 2])
+        names = (None, self.line_names[self.on_line[k]], self.line_names[self.on_line[k + 1]])
+        return any(
+            section.line in names
+            and begin_km < section.to_km + (fastest_km := self.limit.max() * section.raise_s / 1e3)
+            and end_km > section.from_km - fastest_km
+            for section in self.neutral_sections
+        )
 
     def near_a_stop(self, k: int) -> bool:
         """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""

@@ -106,7 +106,8 @@ class Thermal:
         cls, loaded: Sequence[Loaded], instants_s: Floats, dataset: xr.Dataset | None = None
     ) -> "Thermal":
         """Judgement of equipment and its loads."""
-        load = np.column_stack([each for _, each in loaded]) if loaded else np.empty((0, 0))
+        none = np.empty((len(instants_s) - 1, 0))
+        load = np.column_stack([each for _, each in loaded]) if loaded else none
         return cls([element for element, _ in loaded], load, instants_s, dataset)
 
     @cached_property
