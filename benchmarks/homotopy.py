@@ -16,7 +16,7 @@ import numpy as np
 
 from tpss.kernel import plain
 from tpss.record import copy_of_records
-from tpss.sources.kinds import SourceKind, set_unloaded, unloaded
+from tpss.sources.kinds import SourceKind, is_plausible, set_unloaded, unloaded
 
 if TYPE_CHECKING:
     from continuation import Complexes, Equations, Floats
@@ -232,7 +232,20 @@ def is_sound(equations: "Equations", voltage: "Complexes") -> bool:
 def are_in_step(equations: "Equations", voltage: "Complexes") -> bool:
     """Whether no machine's load angle is beyond 90 degrees, nor its voltage turned."""
     own_v, _, along = sides(equations, voltage)
-    return bool((own_v > 0.0).all() and (along > 0.0).all())
+    return bool((own_v > 0.0).all() and (along > 0.0).all()) and others_are_in_step(
+        equations, voltage
+    )
+
+
+def others_are_in_step(equations: "Equations", voltage: "Complexes") -> bool:
+    """The same of stations with a law of another kind, as that says it."""
+    sources, base_v = equations.network.sources, equations.system.base_voltage_v
+    fed = equations.admittance @ voltage * equations.system.base_power_va / base_v
+    return all(
+        plain(is_plausible)(base_v * voltage[source.node], fed[source.node], units.running, source)
+        for source, units in zip(sources, equations.running, strict=True)
+        if source.kind != SourceKind.CONVERTER
+    )
 
 
 def triangles_left(equations: "Equations", voltage: "Complexes") -> "Floats":

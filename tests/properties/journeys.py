@@ -200,6 +200,8 @@ class Journey:
                 continue
             if self.near_a_stop(k) or self.braking[k] > 0.0 or self.meets_a_neutral_section(k):
                 continue
+            if self.spares_time and not self.goes_on_accelerating(k):
+                continue
             beyond = self.beyond_both_ends_m_s(k)
             slowest, fastest = max(0.0, v - beyond), min(after + beyond, self.limit[here[0]])
             speeds = np.linspace(slowest, fastest, 21)
@@ -208,6 +210,17 @@ class Journey:
             assert min(most) - slack <= self.force[k] <= max(most) + slack, (
                 f"{self.name} gives {self.force[k]} N of {min(most)} to {max(most)} N at {self.x[k]} m"
             )
+
+    @property
+    def spares_time(self) -> bool:
+        """Whether it may hold less speed than the limit, or coast."""
+        given = self.entry.supplement_percent, self.entry.supplement_min_per_100km
+        return self.entry.spare_time is not None or any(given)
+
+    def goes_on_accelerating(self, k: int) -> bool:
+        """Whether it does so in the step after step `k`: it has not come to a speed that it holds."""
+        again = k + 2 < len(self.v) and self.v[k + 2] > self.v[k + 1] + ROUNDING_M_S
+        return bool(again and self.state[k + 1] == TrainState.MOTORING)
 
     def beyond_both_ends_m_s(self, k: int) -> float:
         """How far its speed may pass those at both ends of step `k`: no further than by a quarter of
