@@ -88,6 +88,10 @@ def test_a_station_trips_when_its_overload_is_passed_and_the_others_carry_its_lo
     before_mw = free.dataset.station_active_power.to_numpy()[:-1] / 1e6
     assert power_mw[step, [0, 2]].sum() > before_mw[step, [0, 2]].sum() + 1.0
     assert any("protection, 1: Middle tripped" in note for note in notes(tripped))
+    (loaded,) = (note for note in notes(tripped) if note.startswith("Middle was loaded"))
+    assert loaded.endswith("it trips by its overloads")
+    (loaded,) = (note for note in notes(free) if note.startswith("Middle was loaded"))
+    assert loaded.endswith("the equipment would not")
 
 
 def test_a_cascade_darkens_the_line_one_station_after_the_other():

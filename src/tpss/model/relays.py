@@ -28,7 +28,7 @@ def with_relays(start: Start, scenario: Scenario, outage: Outage | None) -> Star
     if not scenario.protection.trip:
         return start
     laid = layout_of(scenario, outage)
-    relays = (*_stations(scenario), *_transformers(laid), *_sections(laid, scenario))
+    relays = (*station_relays(scenario), *_transformers(laid), *_sections(laid, scenario))
     if not relays:
         problem = "nothing of the supply has a rating with overloads, so nothing trips"
         remedy = (
@@ -44,7 +44,7 @@ def with_relays(start: Start, scenario: Scenario, outage: Outage | None) -> Star
     return replace(start, relays=relays, cut=cut)
 
 
-def _stations(scenario: Scenario) -> Iterator[Relay]:
+def station_relays(scenario: Scenario) -> Iterator[Relay]:
     """Relays of feeding stations, which trip as a whole."""
     for number, station in enumerate(scenario.supply.stations):
         protected = Protected(station.name, station=number)

@@ -35,9 +35,6 @@ HEADINGS = (
     "stranded", "energy [MWh]", "out of service",
 )  # fmt: skip
 
-TOLD = {LOSSES: "converter losses [MWh]", TRIPS: "tripped"}
-"""Headings of figures that only some scenarios have."""
-
 LOADINGS = {"peak_loading": "peak"} | {
     f"loading_{window:g}_min": f"{window:g} min" for window in WINDOWS_MIN
 }
@@ -133,9 +130,12 @@ def _counted(rows: Sequence[Row]) -> Iterable[Counted]:
 
 
 def _headings(intact: Row) -> list[str]:
-    """Of the ranked table: what only some scenarios tell stands before what is out."""
-    more = [words for key, words in TOLD.items() if key in intact.figures]
-    return [*HEADINGS[:-1], *more, HEADINGS[-1]]
+    """Of the ranked table: what trips stands behind the verdict, losses before what is out."""
+    trips, losses = (
+        [words] if key in intact.figures else []
+        for key, words in ((TRIPS, "tripped"), (LOSSES, "converter losses [MWh]"))
+    )
+    return [*HEADINGS[:2], *trips, *HEADINGS[2:-1], *losses, HEADINGS[-1]]
 
 
 def _cells(row: Row, intact: Row) -> list[Cell]:
@@ -147,6 +147,7 @@ def _cells(row: Row, intact: Row) -> list[Cell]:
     return [
         _text(row.outage),
         _text(row.verdict_in_words),
+        *([_text(own.get(TRIPS, ""))] if TRIPS in intact.figures else []),
         _compared("lowest_voltage_kv", own, base),
         _text(on_line(own.get("lowest_voltage_line", ""), _at(own.get("lowest_voltage_km")))),
         tables.cell(own.get("lowest_voltage_min"), "min"),
@@ -161,7 +162,6 @@ def _cells(row: Row, intact: Row) -> list[Cell]:
         tables.cell(own.get("stranded"), ""),
         _compared("energy_mwh", own, base),
         *([_compared(LOSSES, own, base)] if LOSSES in intact.figures else []),
-        *([_text(own.get(TRIPS, ""))] if TRIPS in intact.figures else []),
         _text(row.out),
     ]
 
