@@ -41,7 +41,8 @@ KINDS = {
 class Campaign:
     """What has come of the cases so far; faults are printed when they are found, and at the end."""
 
-    def __init__(self) -> None:
+    def __init__(self, shrink: bool = True) -> None:
+        self.phases = [Phase.generate, Phase.shrink] if shrink else [Phase.generate]
         self.tally: Counter[tuple[str, str]] = Counter()
         self.faults: dict[str, Document] = {}
         self.slowest_s = 0.0
@@ -55,7 +56,7 @@ class Campaign:
             max_examples=cases,
             database=None,
             deadline=None,
-            phases=[Phase.generate, Phase.shrink],
+            phases=self.phases,
             suppress_health_check=list(HealthCheck),
             print_blob=False,
         )
@@ -104,10 +105,14 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", choices=list(KINDS), help="only cases of this kind")
+    parser.add_argument(
+        "--shrink", action=argparse.BooleanOptionalAction, default=True,
+        help="whether faults are made smaller, which may take minutes each",
+    )  # fmt: skip
     asked = parser.parse_args()
     warnings.simplefilter("error")
     warm_up()
-    campaign = Campaign()
+    campaign = Campaign(asked.shrink)
     for begun in range(0, asked.cases, BATCH):
         number = begun // BATCH
         title = asked.kind or list(KINDS)[number % len(KINDS)]

@@ -14,6 +14,8 @@ from tpss.results.grid_side import sides_of
 from tpss.scenario.supply.mixed_station import MOST_TYPES
 from tpss.sources.mixed import TYPES, split_all
 
+from slow_audit import assert_agree, audit_of
+
 ROTARY = "Q48/Q49 with losses (estimate)"
 STATIC = {
     **library.values("converters", "static 15 MVA with losses (estimate)"),
@@ -103,6 +105,18 @@ def test_losses_are_those_of_each_type_s_own_part() -> None:
     np.testing.assert_allclose(found.idle, 2 * 300e3 + 120e3, rtol=1e-12)
     fed = result.dataset.station_active_power.to_numpy()[:-1, 0]
     np.testing.assert_allclose(found.from_grid - found.to_grid, fed + found.losses, rtol=1e-12)
+
+
+def test_the_audit_and_its_slow_twin_agree() -> None:
+    """The twin finds how the types share every load by another method."""
+    third = {**STATIC, "droop_kv_per_mvar": 0.1, "rating_mva": 3.0}
+    scenario = scenario_of(mixed(units=[*UNITS, {"type": third, "converters": 2}]))
+    expected, limits = audit_of(scenario)
+    told = tpss.simulate(scenario).audit
+    assert told["converter_residual"] < 1e-9
+    found = type(expected)(**{name: told[name] for name in vars(expected)})
+    # As near as the library's method comes, 1e-9 kV.
+    assert_agree(found, expected, {**limits, "converter_residual": 1e-6})
 
 
 def test_the_law_has_as_many_types_as_a_scenario() -> None:
