@@ -147,6 +147,8 @@ MEANINGS = {
     "thermal.hot_spot_c": "hottest hot spot of a transformer; null unless its rating has `cooling`",
     "thermal.loss_of_life_min": "longest life that the paper of a transformer lost; null likewise",
     "thermal.over": "pieces of equipment beyond what they bear; null unless something has a rating",
+    "trips": "how much equipment tripped; null unless `protection` lets it",
+    "tripped": "which, in the order of time; null if nothing did",
     "lowest_voltage_kv": "lowest voltage at a pantograph",
     "lowest_voltage_km": "where it was",
     "lowest_voltage_min": "when it was",

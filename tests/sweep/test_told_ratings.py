@@ -74,9 +74,27 @@ def test_summary_and_report_show_them(told):
     assert all(label in page for label in LABELS)
 
 
+def test_a_case_tells_what_trips(tmp_path):
+    """Loads grow with the traffic; of what it may, each case trips what its own run does."""
+    found = rated()
+    found["protection"] = {"trip": True}
+    for station in found["supply"]["converter_stations"]:
+        station["type"]["rating"]["overloads"] = [{"percent": 101.0, "minutes": 1.0}]
+        station["type"]["rating_mva"] = 0.4
+    small = feeding_back.study(tmp_path, found)
+    tpss.run_study(small, tmp_path / "out", workers=1)
+    table = tpss.load_table(tmp_path / "out")
+    for row in table.to_dict("records"):
+        result = tpss.simulate(scenario_of(design_of(small), row["case"]))
+        names = [trip["element"] for trip in result.summary.get("trips", [])]
+        assert row["trips"] == len(names)
+        assert row["tripped"] == ("; ".join(names) or None)
+    assert table.trips.sum() > 0
+
+
 def test_they_are_absent_where_nothing_has_a_rating(tmp_path):
     small = feeding_back.study(tmp_path, feeding_back.document(PLAIN, {}))
     tpss.run_study(small, tmp_path / "out", workers=1)
     table = tpss.load_table(tmp_path / "out")
-    assert table[COLUMNS].isna().all().all()
+    assert table[[*COLUMNS, "trips", "tripped"]].isna().all().all()
     assert LABELS.isdisjoint(summarise(table, 2).spread.index)

@@ -40,7 +40,7 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """One row per station that describes losses: what it loses in a day, and what switching saves.
 
-        A day is one with the traffic of the run all through.  Stations with one converter, or with several
+        A day is one with the traffic of the run all through.  Stations with one converter, or several
         types, are in it too: nothing is switched there, but power moves from one station to another.
         """
         lost = {key: self._per_day(run, "losses_mwh") for key, run in self.runs.items()}

@@ -113,6 +113,8 @@ class KeyFigures:
     thermal : dict of str to float
         What equipment with a rating comes to, as of `tpss.results.thermal.figures`; empty where nothing
         has one.
+    tripped : tuple of str or None
+        What tripped, in the order of time; None where nothing can.
     lowest_voltage : LowestVoltage or None
     mean_useful_voltage_kv : float
         Lowest one of the zones, by EN 50388, in the peak window.
@@ -141,6 +143,7 @@ class KeyFigures:
     fed_back_to_grid_mwh: float
     braking: dict[str, float]
     thermal: dict[str, float]
+    tripped: tuple[str, ...] | None
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
     dimensioning_train_kv: float
@@ -250,6 +253,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
         braking=braking_mwh(run, frame.sides),
         thermal={} if frame.rated is None or not run.step else thermal_figures(run, frame.rated),
+        tripped=tuple(trip.protected.name for trip in run.trips) if start.relays else None,
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),

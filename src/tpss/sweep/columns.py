@@ -43,6 +43,8 @@ OUTPUTS = {
     "fed_back_to_grid_mwh": pa.float64(),
     **{f"braking.{name}": pa.float64() for name in TOTALS},
     **{f"thermal.{name}": pa.float64() for name in FIGURES},
+    "trips": pa.int64(),
+    "tripped": pa.string(),
     "lowest_voltage_kv": pa.float64(),
     "lowest_voltage_km": pa.float64(),
     "lowest_voltage_min": pa.float64(),
@@ -131,6 +133,8 @@ def output_columns(figures: KeyFigures) -> dict[str, Any]:
         **{f"limited.{name}": count for name, count in figures.limited.items()},
         **{f"braking.{name}": energy for name, energy in figures.braking.items()},
         **{f"thermal.{name}": value for name, value in figures.thermal.items()},
+        "trips": None if figures.tripped is None else len(figures.tripped),
+        "tripped": "; ".join(figures.tripped or ()) or None,
         **_figures_of_each("station", figures.stations),
         **_figures_of_each("service", figures.services),
     }

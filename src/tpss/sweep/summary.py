@@ -24,6 +24,7 @@ SHOWN = {
     "thermal.motor_use_percent": "of what motors bear [%]",
     "thermal.hot_spot_c": "hottest transformer [°C]",
     "thermal.loss_of_life_min": "life lost by a transformer [min]",
+    "trips": "trips [1]",
     "lowest_voltage_kv": "lowest voltage [kV]",
     "mean_useful_voltage_kv": "mean useful voltage [kV]",
     "peak_loading": "peak loading [1]",
