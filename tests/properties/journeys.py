@@ -105,7 +105,8 @@ class Journey:
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
         free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
-        free &= not self.kept_apart
+        rating = self.train.motor_rating
+        free &= not self.kept_apart and not (rating is not None and rating.spared)
         if regulated and free and self.continuous:
             self.gives_all_it_can_between_two_speeds()
         elif regulated and free:

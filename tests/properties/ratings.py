@@ -88,6 +88,9 @@ def with_ratings(draw: Draw, document: Document, least: int = 0) -> None:
         knows_its_motors = "model" in train or "max_motor_voltage_v" in train
         if knows_its_motors and "regeneration" not in train and draw(st.booleans()):
             train["motor_rating"] = draw(MOTORS)
+            if train.get("motor_voltage", "new") == "new" and draw(st.booleans()):
+                warm = draw(st.sampled_from([0.0, 70.0, 100.0]))
+                train["motor_rating"] |= {"spared": True, "preload_percent": warm}
 
 
 def judge_ratings(result: Result) -> None:
@@ -103,8 +106,17 @@ def judge_ratings(result: Result) -> None:
         load = judgement.load[:, k]
         if element.body.cooling is None:
             judge_state(element, row, load, instants_s)
+        if element.train >= 0 and _spares_its_motors(result, element.train):
+            assert row.verdict == "within", f"{element.name} are spared, and too hot"
         for window in windows.get_group(element.name).itertuples():
             judge_window(element.name, window, np.nan_to_num(load), instants_s)
+
+
+def _spares_its_motors(result: Result, train: int) -> bool:
+    """Whether the driver of a train keeps its motors from getting too hot."""
+    service = str(result.dataset.service.to_numpy()[train])
+    rating = result.scenario.trains_by_service()[service].motor_rating
+    return rating is not None and rating.spared
 
 
 def judge_state(element: Element, row: Any, load: Any, instants_s: Any) -> None:
