@@ -52,7 +52,7 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
         y[j, i] -= series
 
     for branch in network.branches:
-        stamp(branch.start_node, branch.end_node, 1 / branch.impedance_ohm, 0)
+        stamp(branch.start_node, branch.end_node, branch.admittance_s, 0)  # 0 of one that is out
     coupled = {s for group in sections_of(network.groups) for s in group}
     for s, (section, found) in enumerate(zip(network.sections, flow.sections, strict=True)):
         before = section.start_node

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -112,7 +112,7 @@ class KeyFigures:
         electric ones. [MWh]
     thermal : dict of str to float
         What equipment with a rating comes to, as of `tpss.results.thermal.figures`; empty where nothing
-        has one.
+        has one, or where a `Result` has it.
     tripped : tuple of str or None
         What tripped, in the order of time; None where nothing can.
     lowest_voltage : LowestVoltage or None
@@ -229,11 +229,14 @@ def run_for_figures(
         The recording would not fit into memory.
     """
     run, status = run_to_end(start, clock, memory, report, interrupted)
-    return key_figures_of(run, status, start, frame)
+    figures = key_figures_of(run, status, start, frame)
+    if frame.rated is None or not run.step:
+        return figures
+    return replace(figures, thermal=thermal_figures(run, frame.rated))
 
 
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
-    """Key figures of a run that has ended with a status."""
+    """Key figures of a run that has ended with a status, without `thermal`, which takes its time."""
     figures = _gather(run, frame)
     whole = dict(zip(RunFigures.dtype.names or (), figures.run.tolist()[0], strict=True))
     studied = start.studied if start.studied < run.departed else -1
@@ -252,7 +255,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         losses_mwh=whole["losses_j"] / J_PER_MWH,
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
         braking=braking_mwh(run, frame.sides),
-        thermal={} if frame.rated is None or not run.step else thermal_figures(run, frame.rated),
+        thermal={},
         tripped=tuple(trip.protected.name for trip in run.trips) if start.relays else None,
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),

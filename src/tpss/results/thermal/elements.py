@@ -223,12 +223,16 @@ def _contact_lines(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iter
 
 def _motors(readings: Readings, scenario: Scenario) -> Iterator[Loaded]:
     """Motors of each train: all of them alike, of which one is judged."""
-    trains, current_a = scenario.trains_by_service(), readings.of("motor_current")
+    trains = scenario.trains_by_service()
+    if all(train.motor_rating is None for train in scenario.trains.values()):
+        return
+    current_a = np.ascontiguousarray(readings.of("motor_current").T)  # a train is read at a time
+    known = [bool(np.isfinite(own).any()) for own in current_a]
     for i, (name, service) in enumerate(readings.trains):
         train = trains[service]
-        if train.motor_rating is None or not np.isfinite(current_a[:, i]).any():
+        if train.motor_rating is None or not known[i]:
             continue
         motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
         body = body_of(train.motor_rating)
         element = Element(f"{MOTORS} of {name}", MOTORS, -1, float("nan"), body, train=i)
-        yield element, current_a[:, i] / (motors * train.motor_rating.continuous_a)
+        yield element, current_a[i] / (motors * train.motor_rating.continuous_a)

@@ -1,14 +1,14 @@
 """Figures of a run on its equipment, from its recording: its use, how hot it gets, how old."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from tpss.model.outages import layout_of
 from tpss.model.supply import CONTACT_LINE, TRANSFORMER
 from tpss.results.standards.windows import Floats
-from tpss.results.thermal.elements import CONVERTER, MOTORS, Readings, rated_elements
+from tpss.results.thermal.elements import CONVERTER, MOTORS, Element, Readings, rated_elements
 from tpss.results.thermal.judge import ROUNDING, Thermal
 from tpss.run.run import Run
 from tpss.scenario.scenario import Scenario
@@ -47,24 +47,43 @@ def thermal_figures(run: Run, scenario: Scenario) -> dict[str, float]:
         return np.asarray(rows[: run.step][name], dtype=float)
 
     trains = [(train.name, train.service) for train in run.trains[: run.departed]]
-    own = Thermal.of(rated_elements(Readings(recorded, trains), scenario), run.instants_s)
-    kinds = [element.kind for element in own.elements]
-    bodies = [element.body for element in own.elements]
-    hot_spots_c = (
-        body.ambient_c + body.rise_k * state
-        for body, state in zip(bodies, own.states.highest.tolist(), strict=True)
-        if body.cooling is not None
-    )
+    loaded = rated_elements(Readings(recorded, trains), scenario)
+    fixed = [each for each in loaded if each[0].train < 0]
+    instants_s = run.instants_s
+    parts = [Thermal.of(fixed, instants_s)] if fixed else []
+    parts += [_while_there(*each, instants_s) for each in loaded if each[0].train >= 0]
+    uses = [
+        (element.kind, use)
+        for part in parts
+        for element, use in zip(part.elements, part.uses, strict=True)
+    ]
     return {
         **{
-            name: 100.0
-            * _highest(use for use, of in zip(own.uses, kinds, strict=True) if of == kind)
+            name: 100.0 * _highest(use for of, use in uses if of == kind)
             for name, kind in USES.items()
         },
-        "hot_spot_c": _highest(hot_spots_c),
-        "loss_of_life_min": _highest(own.states.aged_s.tolist()) / 60.0,
-        "over": float(sum(use > 1.0 + ROUNDING for use in own.uses)),
+        "hot_spot_c": _highest(celsius for part in parts for celsius in _hot_spots_c(part)),
+        "loss_of_life_min": _highest(s for part in parts for s in part.states.aged_s.tolist())
+        / 60.0,
+        "over": float(sum(use > 1.0 + ROUNDING for _, use in uses)),
     }
+
+
+def _while_there(element: Element, load: Floats, instants_s: Floats) -> Thermal:
+    """Judgement of equipment on a train over the time that it is on the line, and its windows around."""
+    there = np.flatnonzero(np.isfinite(load))
+    widest_s = max((lasts_s for _, lasts_s in element.body.overloads), default=0.0)
+    ends_s = instants_s[there[0]] - widest_s, instants_s[there[-1] + 1] + widest_s
+    first, last = np.searchsorted(instants_s, ends_s)
+    steps = slice(max(first - 1, 0), last)
+    return Thermal.of([(element, load[steps])], instants_s[steps.start : steps.stop + 1])
+
+
+def _hot_spots_c(part: Thermal) -> Iterator[float]:
+    """Highest temperatures of transformers whose cooling is known. [°C]"""
+    for element, state in zip(part.elements, part.states.highest.tolist(), strict=True):
+        if element.body.cooling is not None:
+            yield element.body.ambient_c + element.body.rise_k * state
 
 
 def _highest(values: Iterable[float]) -> float:

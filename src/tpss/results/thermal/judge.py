@@ -141,11 +141,31 @@ class Thermal:
     @cached_property
     def uses(self) -> list[float]:
         """What each has of what it bears, as a highest state or load: above 1 it is over. [1]"""
-        states = zip(self.states.highest.tolist(), self.elements, self._windows, strict=True)
         return [
-            max(state / each.body.allowed_state, _share(_worst(windows)))
-            for state, each, windows in states
+            max(state / each.body.allowed_state, share)
+            for state, each, share in zip(
+                self.states.highest.tolist(), self.elements, self._shares, strict=True
+            )
         ]
+
+    @cached_property
+    def _shares(self) -> list[float]:
+        """Highest r.m.s. load over the window of an overload of each, over what that allows. [1]
+
+        Only these windows are looked at, which takes less time than all that the tables have.
+        """
+        shares = [0.0] * len(self.elements)
+        by_window: dict[float, list[tuple[int, float]]] = {}
+        for k, each in enumerate(self.elements):
+            for load, lasts_s in each.body.overloads:
+                by_window.setdefault(lasts_s, []).append((k, load))
+        for lasts_s, own in by_window.items():
+            square = np.nan_to_num(self.load[:, [k for k, _ in own]]) ** 2
+            ((highest, _),) = highest_means_between(square, self.instants_s, [lasts_s])
+            for (k, load), mean in zip(own, highest.tolist(), strict=True):
+                if not math.isnan(mean):
+                    shares[k] = max(shares[k], math.sqrt(mean) / load)
+        return shares
 
     @cached_property
     def _windows(self) -> list[list[Window]]:
