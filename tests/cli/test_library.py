@@ -7,18 +7,25 @@ from importlib.resources import files
 import pytest
 
 import tpss
+from direct_scenarios import direct_document
 from tpss import library
 from tpss.cli.library import KINDS, usage
+from tpss.conductors.geometry import Geometry
 
 from scenarios import SHORT_LINE
 
 ENTRIES = [(kind, name) for kind in library.KINDS for name in library.entries(kind)]
+IN_SCENARIOS = [(kind, name) for kind, name in ENTRIES if KINDS[kind].file == "scenario"]
 
 
 def test_every_file_of_the_library_is_a_kind():
     names = {file.name for file in files(library).iterdir()}
     assert {f"{kind}.toml" for kind in library.KINDS} == {n for n in names if n.endswith(".toml")}
     assert set(KINDS) == set(library.KINDS)
+
+
+SYSTEM_OF = {"3kV-": "DC-3kV", "1.5k": "DC-1.5kV", "750V": "DC-0.75kV"}
+"""Systems of the rectifiers, by the beginnings of their names."""
 
 
 def test_everything_is_listed_with_its_source(tpss_command):
@@ -65,11 +72,14 @@ def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
     assert "generator_reactance_pu 0.53 p.u. q-axis reactance of the generator." in reactance
 
 
-@pytest.mark.parametrize(("kind", "name"), ENTRIES)
+@pytest.mark.parametrize(("kind", "name"), IN_SCENARIOS)
 def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     """The lines are put into a scenario that names something else in that place, or nothing."""
-    document = copy.deepcopy(SHORT_LINE)
-    document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
+    if name.startswith("DC-") or kind == "rectifiers":
+        document = direct_document(name if name.startswith("DC-") else SYSTEM_OF[name[:4]])
+    else:
+        document = copy.deepcopy(SHORT_LINE)
+        document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
     used = tomllib.loads(usage(kind, name))
     for table, part in used.items():
         document.setdefault(table, {})
@@ -80,7 +90,17 @@ def test_the_shown_usage_is_that_of_a_scenario(kind, name):
                 document[table].setdefault(key, {}).update(value)
             else:
                 document[table][key] = value
-    assert tpss.Scenario.from_document(document).name == "short-line"
+    assert tpss.Scenario.from_document(document).name == document["name"]
+
+
+@pytest.mark.parametrize("name", library.entries("wires"))
+def test_a_wire_is_shown_as_it_stands_in_a_file_of_conductors(tpss_command, name):
+    used = tomllib.loads(usage("wires", name))
+    place = {"name": "wire", "group": "contact", "x_m": 0.0, "height_m": 6.0}
+    document = {"conductors": [{**place, **used["conductors"][0]}]}
+    (conductor,) = Geometry.model_validate(document).conductors
+    assert conductor.wire.r_ohm_per_km == library.values("wires", name)["r_ohm_per_km"]
+    assert "In a file of conductors:" in tpss_command("library", "wires", name).out
 
 
 def test_a_table_of_one_s_own_is_shown_with_the_entry_s_values(tpss_command):

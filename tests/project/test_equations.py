@@ -88,10 +88,12 @@ def test_every_citation_stands_in_the_bibliography():
 
 COMPUTE_NO_EQUATION = {
     "physics": {"bridge_outside_training"},
+    "conductors/formulas": set(),
     "sources": {
         "residual", "is_plausible", "losses", "reserve",
         "unloaded", "unloaded_converter", "unloaded_grid", "unloaded_mixed",
         "set_unloaded", "set_unloaded_converter", "set_unloaded_grid", "set_unloaded_mixed",
+        "unloaded_rectifier", "set_unloaded_rectifier",
         "rounded",
         # Of several types of converters each is asked.
         "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",

@@ -23,6 +23,9 @@ from tpss.results.waits import waits_in_words
 from tpss.step.recorded import RECORDED
 from tpss.units import on_line
 
+REACTIVE = "reactive_energy_mvarh"
+"""Column of stations of which a line of direct current has none."""
+
 MOST_TRAINS = 30
 MOST_VIOLATIONS = 5
 
@@ -33,13 +36,10 @@ def print_result(result: Result, console: Console) -> None:
     title = f"\n[bold]{summary['name']}[/bold]  {escape(summary['description'])}"
     console.print(title, highlight=False, soft_wrap=True)
     _print_trains(result, console)
-    _print_table(
-        "Feeding stations",
-        "station",
-        _STATION_COLUMNS,
-        named_rows(result.stations, "station"),
-        console,
-    )
+    direct = result.scenario.supply.is_direct
+    columns = [each for each in _STATION_COLUMNS if not (direct and each.key == REACTIVE)]
+    rows = named_rows(result.stations, "station")
+    print_table("Feeding stations", "station", columns, rows, console)
     if len(result.converter_losses):
         _print_losses(result.converter_losses, console)
     for line in key_figures(result):
@@ -73,7 +73,7 @@ _STATION_COLUMNS = (
     Column("line", "on", "", 0),
     Column("position_km", "at", "km", 1),
     Column("energy_mwh", "energy", "MWh", 3),
-    Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
+    Column(REACTIVE, "reactive", "Mvarh", 3),
     Column("peak_power_mw", "peak P", "MW", 2),
     Column("mean_loading", "mean load", "%", 1, 100.0),
     Column("peak_loading", "peak load", "%", 1, 100.0),
@@ -109,7 +109,7 @@ _STEP_COLUMNS = [
 def _print_trains(result: Result, console: Console) -> None:
     trips = result.trips
     rows = named_rows(trips.head(MOST_TRAINS), "train")
-    _print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
+    print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
     if len(trips) > MOST_TRAINS:
         say(console, f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result")
 
@@ -118,10 +118,10 @@ def _print_losses(found: pd.DataFrame, console: Console) -> None:
     """Print the 50 Hz side of stations, without columns of what does not occur."""
     occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
     title = "50 Hz side of converter stations"
-    _print_table(title, "station", occurs, named_rows(found, "station"), console)
+    print_table(title, "station", occurs, named_rows(found, "station"), console)
 
 
-def _print_table(
+def print_table(
     title: str,
     first: str,
     columns: Sequence[Column],

@@ -55,14 +55,10 @@ def station_relays(scenario: Scenario) -> Iterator[Relay]:
                     relay._replace(type_number=i, rated_va=rated_va)
                     for relay in _relays(protected, units.type.rating)
                 )
-        else:
-            yield from _relays(protected, _rating_of(station))
-
-
-def _rating_of(station: ConverterStation | TransformerStation) -> Rating | TransformerRating | None:
-    if isinstance(station, ConverterStation):
-        return station.type.rating
-    return station.transformer.rating
+        elif isinstance(station, ConverterStation):
+            yield from _relays(protected, station.type.rating)
+        elif isinstance(station, TransformerStation):
+            yield from _relays(protected, station.transformer.rating)
 
 
 def _transformers(laid: Laid) -> Iterator[Relay]:

@@ -176,7 +176,7 @@ def _stations(readings: Readings, scenario: Scenario, where: _Feeding) -> Iterat
         if isinstance(station, MixedStation):
             found = _types(readings, s, station)
         else:
-            kind, _ = RATED_STATIONS[type(station)]
+            kind, _ = RATED_STATIONS.get(type(station), ("", None))
             found = [(f"{kind} of {station.name}", _rating_of_station(station), loading[:, s])]
         for name, rating, load in found:
             kind = name.partition(" ")[0]
