@@ -52,7 +52,7 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
         y[j, i] -= series
 
     for branch in network.branches:
-        stamp(branch.start_node, branch.end_node, 1 / branch.impedance_ohm, 0)
+        stamp(branch.start_node, branch.end_node, branch.admittance_s, 0)  # 0 of one that is out
     coupled = {s for group in sections_of(network.groups) for s in group}
     for s, (section, found) in enumerate(zip(network.sections, flow.sections, strict=True)):
         before = section.start_node
@@ -134,15 +134,16 @@ class Equations:
 
     @classmethod
     def of(cls, network: Network, flow: Flow, loads: Loads) -> "Equations":
-        """Equations of a network with the trains placed in `flow`."""
+        """Equations of a network with the trains placed in `flow`; stations that are out ask nothing."""
         system = network.system
         base_admittance_s = system.base_power_va / system.base_voltage_v**2
+        serves = network.sources["installed"] > 0
         return cls(
             admittance=admittance_matrix(network, flow) / base_admittance_s,
-            network=network,
+            network=network._replace(sources=network.sources[serves]),
             loads=loads,
             standing=flow.standing.copy(),
-            running=flow.sources.copy(),
+            running=flow.sources[serves],
         )
 
     @property

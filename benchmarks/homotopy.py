@@ -7,6 +7,7 @@ is known why it does not get to t = 1.
 """
 
 import cmath
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ import numpy as np
 
 from tpss.kernel import plain
 from tpss.record import copy_of_records
-from tpss.sources.kinds import SourceKind, set_unloaded, unloaded
+from tpss.sources.kinds import SourceKind, is_plausible, set_unloaded, unloaded
 
 if TYPE_CHECKING:
     from continuation import Complexes, Equations, Floats
@@ -81,8 +82,13 @@ class Homotopy:
         return equations.jacobian(voltage, share), np.concatenate([by_t.real, by_t.imag])
 
     def tangent(self, voltage: "Complexes", t: float) -> "tuple[Floats, float]":
-        """Unit tangent towards growing arcs, and sign of the determinant."""
+        """Unit tangent towards growing arcs, and sign of the determinant.
+
+        NaN where a law ends: types of one station that find no way to share a load.
+        """
         jacobian, by_t = self.slopes(voltage, t)
+        if not (np.isfinite(jacobian).all() and np.isfinite(by_t).all()):
+            return np.full(by_t.size + 1, np.nan), math.nan
         sign = float(np.linalg.slogdet(jacobian)[0])
         found = np.append(-np.linalg.solve(jacobian, by_t), 1.0)
         return sign * found / np.linalg.norm(found), sign
@@ -101,6 +107,8 @@ class Homotopy:
                 return point
             jacobian, by_t = self.slopes(voltage, t)
             whole = np.block([[jacobian, by_t[:, None]], [tangent[None, :]]])
+            if not np.isfinite(whole).all():
+                return None
             right = np.concatenate([left.real, left.imag, [across]])
             point = point - np.linalg.solve(whole, right)
         return None
@@ -109,6 +117,8 @@ class Homotopy:
         """Follow the path from t = 0 to t = 1, or to where it ends."""
         point = np.concatenate([voltage.real, voltage.imag, [0.0]])
         tangent, begun = self.tangent(voltage, 0.0)
+        if math.isnan(begun):
+            return Found(End.LOST)
         tangent, arc, farthest = tangent * begun, FIRST_ARC, 0.0
         for _ in range(MOST_POINTS):
             found = self.correct(point + arc * tangent, tangent)
@@ -129,6 +139,8 @@ class Homotopy:
             if np.abs(voltage).min() < LOWEST or np.abs(voltage).max() > HIGHEST:
                 return Found(End.FAR_OFF if t < farthest else End.ASTRAY)
             tangent, _ = self.tangent(voltage, t)
+            if not np.isfinite(tangent).all():
+                break
             tangent, point, farthest = tangent * begun, found, max(farthest, t)
             arc = min(LONGEST_ARC, 1.5 * arc)
         return Found(End.LOST)
@@ -220,7 +232,20 @@ def is_sound(equations: "Equations", voltage: "Complexes") -> bool:
 def are_in_step(equations: "Equations", voltage: "Complexes") -> bool:
     """Whether no machine's load angle is beyond 90 degrees, nor its voltage turned."""
     own_v, _, along = sides(equations, voltage)
-    return bool((own_v > 0.0).all() and (along > 0.0).all())
+    return bool((own_v > 0.0).all() and (along > 0.0).all()) and others_are_in_step(
+        equations, voltage
+    )
+
+
+def others_are_in_step(equations: "Equations", voltage: "Complexes") -> bool:
+    """The same of stations with a law of another kind, as that says it."""
+    sources, base_v = equations.network.sources, equations.system.base_voltage_v
+    fed = equations.admittance @ voltage * equations.system.base_power_va / base_v
+    return all(
+        plain(is_plausible)(base_v * voltage[source.node], fed[source.node], units.running, source)
+        for source, units in zip(sources, equations.running, strict=True)
+        if source.kind != SourceKind.CONVERTER
+    )
 
 
 def triangles_left(equations: "Equations", voltage: "Complexes") -> "Floats":

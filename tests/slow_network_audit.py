@@ -5,10 +5,12 @@ forms the current of every piece of line and every branch from the voltages at i
 admittance equations), and compares the powers that this asks for with the recorded ones.
 """
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import fsolve
 
 from slow_figures import intervals_s, largest, nan_is_largest
 from tpss.audit.balances import ALLOWED_BALANCE
@@ -16,6 +18,7 @@ from tpss.powerflow.groups import sections_of
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
 from tpss.run.run import Outcome
 from tpss.sources.kinds import SourceKind
+from tpss.sources.mixed import TYPES
 from tpss.step.model import Model
 from tpss.step.state import TrainState
 
@@ -203,6 +206,7 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
         (SourceKind.CONVERTER, converter_phasor),
         (SourceKind.GRID, grid_phasor),
         (SourceKind.BOUNDED, bounded_phasor),
+        (SourceKind.MIXED, mixed_phasor),
         (SourceKind.RECTIFIER, rectifier_voltage),
     ):
         own = sources.kind == kind
@@ -250,6 +254,43 @@ def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any
     generator = np.arctan(x_generator * p / (voltage**2 + x_generator * q))
     angle = law.grid_angle_rad - grid - motor - generator
     return np.asarray(voltage * np.exp(1j * angle))
+
+
+def mixed_phasor(p: Floats, q: Floats, _: Floats, node_v: Complexes, sources: Any) -> Complexes:
+    """Phasor that converters of several types ask for, each by `converter_phasor` of its part. [V]
+
+    The parts are found by a library's method for any equations, from those by rated power.
+    """
+    asked_v = np.empty_like(node_v)
+    for step, s in np.ndindex(*node_v.shape):
+        law, power_va = sources.mixed[s], complex(p[step, s], q[step, s])
+        kinds = [
+            (SimpleNamespace(converter=getattr(law, name)), getattr(law, f"{name}_units"))
+            for name in TYPES
+            if getattr(law, f"{name}_units") > 0
+        ]
+        shares = [getattr(law, f"{name}_share") * power_va for name in TYPES[: len(kinds)]]
+
+        def asked_by(powers: Complexes, kinds: Any = kinds) -> Complexes:
+            return np.array(
+                [
+                    converter_phasor(own.real, own.imag, units, own, kind)
+                    for own, (kind, units) in zip(powers, kinds, strict=True)
+                ]
+            )
+
+        def unequal(x: Floats, power_va: complex = power_va) -> Floats:
+            """Voltages less that of the first type, and what is missing of the power. [kV], [MW]"""
+            powers = 1e6 * (x[0::2] + 1j * x[1::2])
+            voltages = asked_by(powers)
+            left = np.append(voltages[1:] - voltages[0], 1e-3 * (power_va - powers.sum())) / 1e3
+            return left.view(float)
+
+        start = np.array(shares).view(float) / 1e6
+        found, more, *_ = fsolve(unequal, start, xtol=1e-13, full_output=True)
+        assert np.abs(more["fvec"]).max() < 1e-9
+        asked_v[step, s] = asked_by(1e6 * (found[0::2] + 1j * found[1::2]))[0]
+    return asked_v
 
 
 def bounded_phasor(p: Floats, q: Floats, n: Floats, node_v: Complexes, sources: Any) -> Complexes:

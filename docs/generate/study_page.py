@@ -138,6 +138,17 @@ MEANINGS = {
     "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",
     "braking.to_grid_mwh": "of that, what stations take back, on the railway's side",
     "braking.burnt_in_stations_mwh": "of that, what resistors of stations burn",
+    "thermal.contact_line_use_percent": "highest use of what contact lines bear: thermal state, or "
+    "their r.m.s. load over a window, of what is allowed; this and the next three are null unless their "
+    "kind of equipment has a `rating`",
+    "thermal.transformer_use_percent": "likewise of transformers",
+    "thermal.converter_use_percent": "likewise of converters",
+    "thermal.motor_use_percent": "likewise of the motors of a train",
+    "thermal.hot_spot_c": "hottest hot spot of a transformer; null unless its rating has `cooling`",
+    "thermal.loss_of_life_min": "longest life that the paper of a transformer lost; null likewise",
+    "thermal.over": "pieces of equipment beyond what they bear; null unless something has a rating",
+    "trips": "how much equipment tripped; null unless `protection` lets it",
+    "tripped": "which, in the order of time; null if nothing did",
     "lowest_voltage_kv": "lowest voltage at a pantograph",
     "lowest_voltage_km": "where it was",
     "lowest_voltage_min": "when it was",

@@ -1,6 +1,7 @@
 """Many random scenarios, some spoilt, some crowded, each judged; a tally of outcomes, and the faults.
 
     python -m tests.properties.campaign --cases 10000 --seed 1
+    python -m tests.properties.campaign --cases 10000 --seed 1 --kind "feeding back"
 
 The same seed gives the same cases.  A fault is shrunk to its smallest scenario, which is printed as
 a Python literal: `judge` of it shows the fault again.  The exit code is 1 if there were faults.
@@ -22,7 +23,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from .crowds import crowded_scenarios
 from .judge import judge, warm_up
-from .strategies import sound_scenarios, spoilt_scenarios
+from .strategies import scenarios_that_feed_back, sound_scenarios, spoilt_scenarios
 
 Document = dict[str, Any]
 
@@ -33,13 +34,15 @@ KINDS = {
     "sound": sound_scenarios,
     "spoilt": spoilt_scenarios,
     "crowded": crowded_scenarios,
+    "feeding back": scenarios_that_feed_back,
 }
 
 
 class Campaign:
-    """What has come of the cases so far."""
+    """What has come of the cases so far; faults are printed when they are found, and at the end."""
 
-    def __init__(self) -> None:
+    def __init__(self, shrink: bool = True) -> None:
+        self.phases = [Phase.generate, Phase.shrink] if shrink else [Phase.generate]
         self.tally: Counter[tuple[str, str]] = Counter()
         self.faults: dict[str, Document] = {}
         self.slowest_s = 0.0
@@ -53,7 +56,7 @@ class Campaign:
             max_examples=cases,
             database=None,
             deadline=None,
-            phases=[Phase.generate, Phase.shrink],
+            phases=self.phases,
             suppress_health_check=list(HealthCheck),
             print_blob=False,
         )
@@ -75,6 +78,7 @@ class Campaign:
                 self.tally[title, "fault"] += 1
                 words = f"{_place_of(fault)}: {fault}".splitlines()[0]
                 self.faults.setdefault(words, found[_place_of(fault)])
+                print(f"\n{words}\n{found[_place_of(fault)]!r}", flush=True)
 
     def report(self) -> None:
         """Print tally and faults."""
@@ -100,13 +104,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=list(KINDS), help="only cases of this kind")
+    parser.add_argument(
+        "--shrink", action=argparse.BooleanOptionalAction, default=True,
+        help="whether faults are made smaller, which may take minutes each",
+    )  # fmt: skip
     asked = parser.parse_args()
     warnings.simplefilter("error")
     warm_up()
-    campaign = Campaign()
+    campaign = Campaign(asked.shrink)
     for begun in range(0, asked.cases, BATCH):
         number = begun // BATCH
-        title = list(KINDS)[number % len(KINDS)]
+        title = asked.kind or list(KINDS)[number % len(KINDS)]
         campaign.run_batch(title, 100_000 * asked.seed + number, min(BATCH, asked.cases - begun))
         print(f"\r{begun + BATCH} cases, {len(campaign.faults)} faults", end="", file=sys.stderr)
     campaign.report()

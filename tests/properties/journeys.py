@@ -69,6 +69,15 @@ class Journey:
             )
         )  # fmt: skip
         self.opposing = resistance + climb
+        self.lines = list(result.scenario.lines_by_name.values())
+        self.line_names = list(result.scenario.lines_by_name)
+        self.neutral_sections = result.scenario.supply.neutral_sections
+        self.length_km = self.train.length_m / 1e3
+        self.km = data["position"].to_numpy()[rows, i] / 1e3
+        told = (
+            data["train_line"].to_numpy()[rows, i] if "train_line" in data else np.zeros(rows.size)
+        )
+        self.on_line = told.astype(int)
         self.wet = result.scenario.simulation.rail == "wet"
         self.adhesion_in_km_h = result.scenario.simulation.adhesion_speed_unit == "km/h"
 
@@ -96,7 +105,8 @@ class Journey:
         self.moves_forwards()
         self.brakes_no_harder_than_it_may()
         free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
-        free &= not self.kept_apart
+        rating = self.train.motor_rating
+        free &= not self.kept_apart and not (rating is not None and rating.spared)
         if regulated and free and self.continuous:
             self.gives_all_it_can_between_two_speeds()
         elif regulated and free:
@@ -177,7 +187,8 @@ class Journey:
         """In a step that accelerates below the limit, the mean force is one that belongs to its speeds.
 
         Adhesion and machine fall with the speed, but for the ripples of the network; resistances, which
-        the rotors add a little of, change too.
+        the rotors add a little of, change too.  Where the gradient changes, the train may have been
+        faster or slower on the way.
         """
         for k in np.flatnonzero(self.state[:-1] == TrainState.MOTORING):
             here = np.searchsorted(self.limit_m, self.x[k : k + 2], side="right") - 1
@@ -188,14 +199,57 @@ class Journey:
                 or after >= self.limit[here[0]] - ROUNDING_M_S
             ):
                 continue
-            if self.near_a_stop(k) or self.braking[k] > 0.0:
+            if self.near_a_stop(k) or self.braking[k] > 0.0 or self.meets_a_neutral_section(k):
                 continue
-            speeds = np.linspace(v, after, 21)
+            if self.spares_time and not self.goes_on_accelerating(k):
+                continue
+            beyond = self.beyond_both_ends_m_s(k)
+            slowest, fastest = max(0.0, v - beyond), min(after + beyond, self.limit[here[0]])
+            speeds = np.linspace(slowest, fastest, 21)
             most = [self.largest_force_n(k, speed) for speed in speeds]
             slack = 1e-3 * max(most) + 1.0
             assert min(most) - slack <= self.force[k] <= max(most) + slack, (
                 f"{self.name} gives {self.force[k]} N of {min(most)} to {max(most)} N at {self.x[k]} m"
             )
+
+    @property
+    def spares_time(self) -> bool:
+        """Whether it may hold less speed than the limit, or coast."""
+        given = self.entry.supplement_percent, self.entry.supplement_min_per_100km
+        return self.entry.spare_time is not None or any(given)
+
+    def goes_on_accelerating(self, k: int) -> bool:
+        """Whether it does so in the step after step `k`: it has not come to a speed that it holds."""
+        again = k + 2 < len(self.v) and self.v[k + 2] > self.v[k + 1] + ROUNDING_M_S
+        return bool(again and self.state[k + 1] == TrainState.MOTORING)
+
+    def beyond_both_ends_m_s(self, k: int) -> float:
+        """How far its speed may pass those at both ends of step `k`: no further than by a quarter of
+        its length times the range of the accelerations, which gradients differ by."""
+        line, ends_km = self.lines[self.on_line[k]], sorted(self.km[k : k + 2])
+        if self.on_line[k] != self.on_line[k + 1]:  # over the whole of all of them
+            gradients = [each.permille for other in self.lines for each in other.gradients]
+        else:
+            begin_km, end_km = ends_km[0] - self.length_km, ends_km[1] + self.length_km
+            ends = [*(each.from_km for each in line.gradients[1:]), math.inf]
+            gradients = [
+                each.permille
+                for each, until_km in zip(line.gradients, ends, strict=True)
+                if each.from_km < end_km and until_km > begin_km
+            ]
+        range_m_s2 = 9.81e-3 * (max(gradients) - min(gradients))
+        return float(range_m_s2 * (self.time_s[k + 1] - self.time_s[k]) / 4.0)
+
+    def meets_a_neutral_section(self, k: int) -> bool:
+        """Whether its power may be off in a part of step `k`: in a neutral section, or behind it."""
+        begin_km, end_km = sorted(self.km[k : k + 2])
+        names = (None, self.line_names[self.on_line[k]], self.line_names[self.on_line[k + 1]])
+        return any(
+            section.line in names
+            and begin_km < section.to_km + (fastest_km := self.limit.max() * section.raise_s / 1e3)
+            and end_km > section.from_km - fastest_km
+            for section in self.neutral_sections
+        )
 
     def near_a_stop(self, k: int) -> bool:
         """Whether a train may brake for a stop or limit, or have stood at one, in step `k`."""

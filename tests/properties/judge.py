@@ -27,6 +27,7 @@ from tpss.step.model import Model
 
 from .roots import Replay, follow_paths
 from .rules import keep_the_rules
+from .trips import trips_of
 
 Document = dict[str, Any]
 
@@ -191,7 +192,7 @@ def judge_roots(result: Result) -> None:
     if (volts > 0.0).any():
         lowest = np.where(volts > 0.0, volts, np.inf).argmin()
         picks.add(int(lowest // volts.shape[1]))
-    replay = Replay(result.scenario, steps + 1)
+    replay = Replay(result.scenario, steps + 1, trips_of(result))
     for step in sorted(picks & set(range(steps))):
         length_s = data.attrs["last_step_s"] if step == steps - 1 else data.attrs["time_step_s"]
         share, again = replay.root_of_step(step, length_s)

@@ -2,7 +2,7 @@
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +18,7 @@ from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.raising import start_flat
 from tpss.run.already_running import trains_on_line
+from tpss.run.relays import Trip
 from tpss.run.run import Run, run_of, switch
 from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
@@ -45,9 +46,11 @@ without a source, or that follow others."""
 class Replay:
     """A scenario's run, done again, to look into single steps of it in ascending order."""
 
-    def __init__(self, scenario: Scenario, steps: int) -> None:
+    def __init__(self, scenario: Scenario, steps: int, trips: Sequence[Trip] = ()) -> None:
         model, _ = build_model(scenario)
         start = start_of(scenario, model)
+        if trips:
+            start = start.with_trips(trips)
         self.switchings = start.switchings
         self.control = start.model.control
         model = start.model._replace(control=model.control)  # with types that use spare time

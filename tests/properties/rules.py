@@ -17,7 +17,10 @@ from tpss.step.state import TrainState
 
 from .given_tracks import judge_given_tracks
 from .journeys import Journey
+from .losses import judge_losses
+from .ratings import judge_ratings
 from .single_tracks import judge_single_tracks
+from .trips import judge_trips
 
 
 def keep_the_rules(result: Result) -> None:
@@ -30,6 +33,9 @@ def keep_the_rules(result: Result) -> None:
     judge_single_tracks(result)
     judge_given_tracks(result)
     judge_outage(result)
+    judge_losses(result)
+    judge_ratings(result)
+    judge_trips(result)
     for train in result.dataset.train.to_numpy():
         Journey(result, str(train)).judge()
 
@@ -266,7 +272,7 @@ def units_in_service(result: Result, station: Any, step: int) -> int:
     """Units of a station that are in service in a step; none from its trip on."""
     h = result.dataset.attrs["time_step_s"] / 60.0
     for trip in result.summary.get("trips", []):
-        if trip["station"] == station.name and step * h >= trip["time_min"] - 1e-9:
+        if trip["element"] == station.name and step * h >= trip["time_min"] - 1e-9:
             return 0
     outage = result.scenario.outage
     out = outage.units_of(station) if is_out(outage, step, result) else 0

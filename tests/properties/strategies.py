@@ -17,13 +17,17 @@ from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .given_tracks import give_tracks
 from .kilometres import moved
+from .losses import with_losses
 from .machines import EMUS, ODD_TRAINS, TRAINS
+from .mixed import with_mixed_stations
 from .networks import into_network
 from .neutral import with_neutral_section
 from .outages import outages
 from .ranges import numbers
+from .ratings import with_ratings
 from .single_tracks import with_single_tracks
 from .spare_time import with_spare_time
+from .trips import with_protection
 
 Draw = Any
 Document = dict[str, Any]
@@ -260,17 +264,18 @@ def with_one_retardation(trains: Document) -> None:
 
 
 @st.composite
-def sound_scenarios(draw: Draw) -> Document:
+def sound_scenarios(draw: Draw, feed_back: bool = False) -> Document:
     """A scenario without faults, but for trains that may be placed too fast to stop.
 
-    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.
+    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.  All trains
+    have electric brakes if they are to feed back, and half of the equipment says more of itself.
     """
     begin_km = draw(BEGINNINGS_KM)
     line = draw(lines())
     document: Document = {
         "format": 1,
         "name": "random",
-        "simulation": draw(SIMULATIONS),
+        "simulation": draw(CONTINUOUS if feed_back else SIMULATIONS),
         "line": line,
         "supply": draw(supplies(line["length_km"])),
         "trains": {
@@ -306,13 +311,20 @@ def sound_scenarios(draw: Draw) -> Document:
         document["simulation"]["outage"] = "random"
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
         with_neutral_section(draw, document)
-    if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
+    if feed_back or (moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3):
         with_electric_brakes(draw, document)
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
         with_spare_time(draw, document)
-    if draw(st.integers(0, 7)) == 7:
-        with_bounds(draw, document)
+    rarely = st.sampled_from([False, True] if feed_back else [False, False, False, True])
+    for say_more in (with_bounds, with_mixed_stations, with_losses, with_ratings, with_protection):
+        if draw(rarely):
+            say_more(draw, document)
     return document
+
+
+def scenarios_that_feed_back() -> st.SearchStrategy[Document]:
+    """Sound scenarios all of whose trains have electric brakes."""
+    return sound_scenarios(feed_back=True)
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]

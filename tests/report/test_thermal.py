@@ -8,6 +8,7 @@ import pytest
 import tpss
 from tpss.report.drawings.thermal import MOST_OF_A_KIND, thermal
 from tpss.report.html import comparison, report
+from tpss.report.render import interactive, static
 from tpss.report.trains import NothingToDrawError
 
 from pages import Page
@@ -45,6 +46,20 @@ def test_states_are_drawn_in_percent_and_temperatures_below(warm):
     wires = [each for each in states.items[:-1] if each.name.startswith("contact line")]
     assert [each.name for each in wires] == [each.name for each in temperatures.items]
     np.testing.assert_allclose(temperatures.items[0].y, 40.0 + 0.4 * wires[0].y)
+
+
+def test_one_piece_alone_is_named():
+    """A curve without a name would leave open what gets hot."""
+    alone = rated(**{
+        "supply.catenary": "BT", "trains.freight.motor_rating": MOTOR,
+        "traffic.0.headway_min": 1000.0, "traffic.0.initial_trains": [],
+    })  # fmt: skip
+    drawing = thermal({"": alone})
+    (name,) = alone.thermal.element
+    assert [each.name for each in drawing.panels[0].items[:-1]] == [name]
+    assert interactive.render(drawing, 300).layout.showlegend
+    (shown,) = static.render(drawing).legends
+    assert [text.get_text() for text in shown.get_texts()] == [name]
 
 
 def test_of_many_trains_few_are_drawn(warm):

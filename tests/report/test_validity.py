@@ -36,6 +36,20 @@ def test_the_method_is_told_of_every_run():
     assert "No transients" in said(LIMITS)
 
 
+def test_what_trips_and_what_is_refused_is_told_of_those_that_know_it():
+    """Nothing is said to be left out that the run has."""
+    rating = {"time_constant_min": 5.0, "overloads": [{"percent": 120.0, "minutes": 2.0}]}
+    wire = {"r_ohm_per_km": 0.2, "x_ohm_per_km": 0.2, "rating": {"continuous_a": 500.0, **rating}}
+    moves = {"simulation.motion": None, "simulation.braking": None}
+    protected = said({**moves, "supply.catenary": wire, "protection": {"trip": True}})
+    assert "Nothing trips" in said({})
+    assert "Nothing trips" not in protected
+    assert "trips; equipment without overloads" in protected
+    brakes = {"max_force_kn": 100.0, "max_power_kw": 2000.0}
+    assert "the line refuses" not in said({})
+    assert "the line refuses" in said({**moves, **LIMITS, "trains.freight.regeneration": brakes})
+
+
 def test_motors_with_a_rating_are_monitored_and_judged_once_a_run_has_ended():
     motor = {"continuous_a": 1250.0, "short_time_a": 2080.0, "short_time_min": 6.0}
     assert "not monitored" in said({})

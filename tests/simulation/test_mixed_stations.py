@@ -9,10 +9,13 @@ import pytest
 import tpss
 from lines import line, network, run, scenario_of, service
 from tpss import Finding, ScenarioError, library
+from tpss.converter_control.compare import compare_controls
 from tpss.results.converter_losses import station_powers
 from tpss.results.grid_side import sides_of
 from tpss.scenario.supply.mixed_station import MOST_TYPES
 from tpss.sources.mixed import TYPES, split_all
+
+from slow_audit import assert_agree, audit_of
 
 ROTARY = "Q48/Q49 with losses (estimate)"
 STATIC = {
@@ -103,6 +106,30 @@ def test_losses_are_those_of_each_type_s_own_part() -> None:
     np.testing.assert_allclose(found.idle, 2 * 300e3 + 120e3, rtol=1e-12)
     fed = result.dataset.station_active_power.to_numpy()[:-1, 0]
     np.testing.assert_allclose(found.from_grid - found.to_grid, fed + found.losses, rtol=1e-12)
+
+
+def test_it_is_told_beside_stations_that_are_switched() -> None:
+    """Nothing is switched in it, but it takes part of what stations with fewer converters leave it."""
+    document = mixed()
+    document["supply"]["converter_stations"] = [
+        {"name": "East", "line": "main", "position_km": 40.0, "type": ROTARY, "converters": 3}
+    ]
+    table = compare_controls(scenario_of(document)).table.set_index("station")
+    assert table.converters.to_dict() == {"East": 3, "West": 3}
+    assert table.starts["West"] == 0.0
+    assert table.saved_mwh["East"] > 10.0 * abs(table.saved_mwh["West"]) > 0.0
+
+
+def test_the_audit_and_its_slow_twin_agree() -> None:
+    """The twin finds how the types share every load by another method."""
+    third = {**STATIC, "droop_kv_per_mvar": 0.1, "rating_mva": 3.0}
+    scenario = scenario_of(mixed(units=[*UNITS, {"type": third, "converters": 2}]))
+    expected, limits = audit_of(scenario)
+    told = tpss.simulate(scenario).audit
+    assert told["converter_residual"] < 1e-9
+    found = type(expected)(**{name: told[name] for name in vars(expected)})
+    # As near as the library's method comes, 1e-9 kV.
+    assert_agree(found, expected, {**limits, "converter_residual": 1e-6})
 
 
 def test_the_law_has_as_many_types_as_a_scenario() -> None:

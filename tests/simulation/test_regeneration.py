@@ -151,6 +151,34 @@ def test_another_train_uses_what_one_feeds_back() -> None:
     assert not [note for note in notes(result) if "circulates" in note]
 
 
+def test_trains_share_what_becomes_of_it_by_what_each_feeds_back() -> None:
+    """Two trains down and one up, step by step: what the station takes, over what both give, is the
+    share of each that reaches the grid; the rest goes to the other train and the line."""
+    scenario = document(max_force_kn=150.0)
+    scenario["traffic"][0]["departures_min"] = [0.0, 3.0]
+    scenario["traffic"].append(service("up", "B", "A", departures_min=[6.0]))
+    scenario["simulation"] = {"time_step_min": 0.1, "duration_min": 20.0}
+    result = run(scenario)
+    data, hours = result.dataset, np.diff(result.dataset.time) / 3600.0
+    given = np.maximum(-np.nan_to_num(data.active_power.to_numpy()[:-1]), 0.0)
+    station = data.station_active_power.to_numpy()[:-1]
+    to_grid_mwh = np.zeros(data.sizes["train"])
+    for k, length_h in enumerate(hours):
+        taken = -np.minimum(station[k], 0.0).sum()
+        if taken > 0.0:
+            to_grid_mwh += given[k] * length_h * taken / max(given[k].sum(), taken) / 1e6
+    table = result.regeneration.set_index("train")
+    assert (given > 0.0).any(axis=0).sum() >= 2
+    np.testing.assert_allclose(table.to_grid_mwh, to_grid_mwh, rtol=1e-9, atol=1e-12)
+    uses = table.used_by_others_mwh + table.to_grid_mwh + table.burnt_in_stations_mwh
+    np.testing.assert_allclose(uses, table.fed_back_mwh, rtol=1e-12)
+    assert table.used_by_others_mwh.max() > 0.0
+    totals = fed_back(result.dataset, result.scenario)
+    assert totals is not None
+    for name, total in totals.items():
+        assert table[name].sum() == pytest.approx(total), name
+
+
 def test_a_station_with_a_resistor_burns_what_it_takes() -> None:
     """The load flow is the same; the energy is booked as burnt."""
     grid, resistor = document(max_force_kn=150.0), document(max_force_kn=150.0)

@@ -225,6 +225,16 @@ def test_other_criteria_of_standards_keep_the_judgement(judged):
     assert other.summary["thermal"] == judged.summary["thermal"]
 
 
+def test_motors_of_trains_that_never_come_are_nothing_to_judge():
+    """Only motors have a rating, and the first train would depart after the end."""
+    found = document(rated=False)
+    found["trains"]["freight"]["motor_rating"] = MOTOR
+    found["traffic"] = [service("up", "A", "B", departures_min=[100.0])]
+    result = run(found)
+    assert len(result.thermal) == 0
+    assert "thermal" not in result.summary
+
+
 def test_a_run_without_a_step_has_nothing_to_judge(judged):
     found = tpss.Result(judged.scenario, judged.dataset.isel(time=slice(1)), judged.figures)
     assert len(found.thermal) == 0

@@ -138,15 +138,18 @@ def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
 COLUMNS = (
     ("verdict", ""), ("low U", "kV"), ("at", "km"), ("at", "min"), ("useful U", "kV"), ("in zone", ""),
     ("peak load", "%"), ("15 min", "%"), ("of", ""), ("arrived", ""), ("late", ""), ("lost", "min"),
+    ("losses", "MWh"), ("tripped", ""),
 )  # fmt: skip
-"""Headings and units of the columns, but for the first one."""
+"""Headings and units of the columns, but for the first one; the last two where there are any."""
 
-TEXTS = ("verdict", "in zone", "of")
+TEXTS = ("verdict", "in zone", "of", "tripped")
 """Columns that are not numbers."""
 
 
 def print_table(found: "Comparison", console: Console) -> None:
     """Print a row per case, with what differs from the intact supply in brackets; in parts that fit."""
+    from tpss.outages.row import LOSSES, TRIPS
+
     rows = [(row.outage, [row.verdict_in_words, *_cells(row, found.intact)]) for row in found.rows]
 
     def table_of(chosen: Sequence[int]) -> Table:
@@ -160,7 +163,9 @@ def print_table(found: "Comparison", console: Console) -> None:
             table.add_row(escape(name), *(cells[k] for k in chosen))
         return table
 
-    for k, part in enumerate(parts_that_fit(range(len(COLUMNS)), table_of, console)):
+    told = [key in found.intact.figures for key in (LOSSES, TRIPS)]
+    shown = [*range(len(COLUMNS) - 2), *(len(COLUMNS) - 2 + k for k in range(2) if told[k])]
+    for k, part in enumerate(parts_that_fit(shown, table_of, console)):
         say(console, "" if k else "Outages")
         console.print(table_of(part))
 
@@ -179,6 +184,8 @@ def _cells(row: "Row", intact: "Row") -> list[str]:
         str(row.lost["arrived"]),
         str(row.lost["late"] + row.lost["missing"]),
         "" if row is intact else f"{round(row.lost['lost_min'], 2) + 0.0:.2f}",
+        _compared("converter_losses_mwh", own, base),
+        escape(own.get("trips", "")),
     ]
 
 

@@ -40,16 +40,14 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """One row per station that describes losses: what it loses in a day, and what switching saves.
 
-        A day is one with the traffic of the run all through.  Stations with one converter are in it too:
-        nothing is switched there, but power moves from one station to another.
+        A day is one with the traffic of the run all through.  Stations with one converter, or several
+        types, are in it too: nothing is switched there, but power moves from one station to another.
         """
         lost = {key: self._per_day(run, "losses_mwh") for key, run in self.runs.items()}
         switched = self.by_loading.converter_losses
         loading = self.by_loading.stations.set_index("station").peak_loading
-        installed = {
-            each.name: each.converters
-            for each in self.by_loading.scenario.supply.converter_stations
-        }
+        stations = self.by_loading.scenario.supply.stations
+        installed = {station.name: station.installed for station in stations}
         return pd.DataFrame(
             {
                 "station": switched.station,

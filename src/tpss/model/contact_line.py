@@ -19,6 +19,9 @@ from tpss.scenario.outages import OutSection
 from tpss.scenario.supply import Catenary, Post, Supply
 from tpss.units import kilometres, si
 
+OUT = ", out"
+"""Ends the words of nodes of sections that are out."""
+
 
 class LineLayout(NamedTuple):
     """What the supply has to know of a line."""
@@ -130,6 +133,8 @@ class Laid(NamedTuple):
     runs: list[Run]
     joints: list[Joint]
     """Pairs of nodes that are one where nothing is parted."""
+    guards: list[Joint]
+    """Likewise nodes, and those of the ends of sections that may trip."""
 
     def coupled(self, first_section: int) -> list[tuple[int, ...]]:
         """Numbers of sections side by side that have an impedance in common, from a first number on."""
@@ -173,28 +178,32 @@ def lay_contact_line(
     starts: list[list[int]] = []
     stops: list[list[int]] = []
     joints: list[Joint] = []
+    guards: list[Joint] = []
     for km, before, behind in zip(points, [None, *pieces], [*pieces, None], strict=True):
         sides = [each for each in (before, behind) if each is not None]
         words, parted = _words_at(km, sides, marks)
         tied = len({each for side in words for each in side}) == 1
-        if marks.out:
-            are_out = [[marks.is_out(each, k) for k in range(each.conductors)] for each in sides]
-            words, more = set_apart(words, are_out, km in feeding_km)
-            parted += more
+        guarded: list[tuple[str, str]] = []
+        if marks.out or marks.guarded:
+            apart = [[marks.words_of(each, k) for k in range(each.conductors)] for each in sides]
+            words, more = set_apart(words, apart, km in feeding_km)
+            parted += [pair for pair in more if pair[0].endswith(OUT)]
+            guarded = [(other, own) for own, other in more if not own.endswith(OUT)]
         # In the order of the words: what is drawn along the line goes from one to the next.
         known = [each for side in words for each in side]
-        known += [each for pair in parted for each in pair]
+        known += [each for pair in (*parted, *guarded) for each in pair]
         named = {each: make_node(km, each) for each in dict.fromkeys(known)}
         if tied:
             node[km] = named[""]
         joints += [(named[one], named[other]) for one, other in parted]
+        guards += [(named[one], named[other]) for one, other in guarded]
         made = [[named[each] for each in side] for side in words]
         if before is not None:
             stops.append(made[0])
         if behind is not None:
             starts.append(made[-1])
     between = list(zip(pieces, starts, stops, strict=True))
-    return Laid(node, *_sections(line, supply, between, first_section), joints)
+    return Laid(node, *_sections(line, supply, between, first_section), joints, guards)
 
 
 class _Marks(NamedTuple):
@@ -212,12 +221,18 @@ class _Marks(NamedTuple):
     """Names of those breaks that are open for a part of the run only."""
     out: list[OutSection]
     """Sections that are out."""
+    guarded: bool
+    """Whether pieces may trip."""
 
-    def is_out(self, piece: "_Piece", conductor: int) -> bool:
-        """Whether a conductor of a piece is out."""
+    def words_of(self, piece: "_Piece", conductor: int) -> str:
+        """What tells the nodes of a conductor of a piece that is out, or may trip; otherwise nothing."""
         stretch = piece.stretch
         track = None if stretch.conductors < stretch.tracks else conductor + 1
-        return any(each.covers(piece.begin_km, piece.end_km, track) for each in self.out)
+        if any(each.covers(piece.begin_km, piece.end_km, track) for each in self.out):
+            return OUT
+        if not (self.guarded and bears_overloads(stretch.catenary)):
+            return ""
+        return f", of {kilometres(piece.begin_km)}-{kilometres(piece.end_km)} km"
 
 
 def _marks_of(
@@ -245,7 +260,12 @@ def _marks_of(
     ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}
     ends_km |= {km for each in out for km in each.ends_km(line.begin_km, line.end_km)}
     points_km = sorted({*ends_km, *ties_km, *posts_km, *breaks})
-    return _Marks(points_km, ties_km, posts_km, breaks, parting.switches, out)
+    return _Marks(points_km, ties_km, posts_km, breaks, parting.switches, out, parting.guarded)
+
+
+def bears_overloads(catenary: Catenary) -> bool:
+    """Whether the rating of a contact line says which overloads it bears, and for how long."""
+    return catenary.rating is not None and bool(catenary.rating.overloads)
 
 
 def _words_at(

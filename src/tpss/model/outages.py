@@ -1,19 +1,22 @@
 """What of a scenario's supply is in service, and when."""
 
+import math
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from tpss.errors import Finding, ScenarioError
 from tpss.model.parting import parting_of
 from tpss.model.supply import (
-    NOTHING_PARTED,
     TRANSFORMER,
     SupplyPlan,
     build_supply,
+    joined_network,
     layouts_of,
-    whole_network,
 )
+from tpss.powerflow.following import following
 from tpss.powerflow.in_service import in_service
 from tpss.powerflow.network import UNFED, Network
+from tpss.run.relays import Protected, Trip
 from tpss.run.switching import Switching
 from tpss.scenario.outages import SAME_PLACE_KM, Outage
 from tpss.scenario.scenario import Scenario
@@ -27,8 +30,17 @@ class Service(NamedTuple):
     switchings: tuple[Switching, ...] = ()
 
 
-def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
+def service_of(
+    scenario: Scenario, outage: Outage | None = None, trips: Sequence[Trip] = ()
+) -> Service:
     """Networks of a run with an outage; by default with the one that the scenario asks for, if any.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    outage : Outage, optional
+    trips : sequence of Trip, optional
+        What trips during the run, in the order of time.
 
     Raises
     ------
@@ -37,18 +49,31 @@ def service_of(scenario: Scenario, outage: Outage | None = None) -> Service:
     """
     outage = outage or scenario.outage
     laid = layout_of(scenario, outage)
+    begins_s, ends_s = _times_s(outage)
+    is_out = begins_s <= 0.0 < ends_s
+    first = laid.network_with(outage if is_out else None)
+    with_outage = first if is_out or outage is None else laid.network_with(outage)
+    _demand_continuous_motion(with_outage, laid.plan, outage, scenario)
+    times_s = {trip.time_s for trip in trips} | {begins_s, ends_s}
+    later = [
+        Switching(
+            time_s,
+            laid.network_with(
+                outage if begins_s <= time_s < ends_s else None,
+                [trip.protected for trip in trips if trip.time_s <= time_s],
+            ),
+        )
+        for time_s in sorted(times_s)
+        if 0.0 < time_s < math.inf
+    ]
+    return Service(first, tuple(later))
+
+
+def _times_s(outage: Outage | None) -> tuple[float, float]:
+    """When an outage begins and ends; one that there is not begins never. [s]"""
     if outage is None:
-        _demand_continuous_motion(laid.network, laid.plan, None, scenario)
-        return Service(laid.network)
-    reduced = reduced_network(laid.network, laid.plan, laid.supply, outage)
-    _demand_continuous_motion(reduced, laid.plan, outage, scenario)
-    if outage.is_throughout:
-        return Service(reduced)
-    intact = whole_network(*laid)
-    ending = () if outage.to_min is None else (Switching(60.0 * outage.to_min, intact),)
-    if outage.from_min == 0.0:
-        return Service(reduced, ending)
-    return Service(intact, (Switching(60.0 * outage.from_min, reduced), *ending))
+        return math.inf, math.inf
+    return 60.0 * outage.from_min, math.inf if outage.to_min is None else 60.0 * outage.to_min
 
 
 class Laid(NamedTuple):
@@ -58,28 +83,53 @@ class Laid(NamedTuple):
     plan: SupplyPlan
     supply: Supply
 
+    def network_with(self, outage: Outage | None, out: Collection[Protected] = ()) -> Network:
+        """The network with all that an outage names out of service, if there is one, and all trips."""
+        plan = self.plan
+        apart = {
+            node
+            for each in out
+            if each.section >= 0
+            for node in (
+                plan.sections[each.section].start_node,
+                plan.sections[each.section].end_node,
+            )
+        }
+        joints = [] if outage is not None else plan.joints
+        joints = [*joints, *(joint for joint in plan.guards if joint[1] not in apart)]
+        network, leaders = joined_network(*self, joints)
+        if outage is not None or out:
+            units = {} if outage is None else _units_left(outage, self.supply)
+            units |= {each.station: 0 for each in out if each.station >= 0}
+            opened = [] if outage is None else _transformers_out(outage, plan)
+            opened += [each.transformer for each in out if each.transformer >= 0]
+            network = in_service(network, units, opened)
+        return following(network, leaders) if leaders else network
+
 
 def layout_of(scenario: Scenario, outage: Outage | None) -> Laid:
     """Network of a scenario that is parted as an outage parts it, and its parts."""
-    supply, parting = scenario.supply, NOTHING_PARTED
-    if outage is not None:
-        supply, parting = outage.switched(supply), parting_of(outage, supply)
+    parting = parting_of(outage, scenario.supply, scenario.protection.trip)
+    supply = scenario.supply if outage is None else outage.switched(scenario.supply)
     return Laid(*build_supply(supply, layouts_of(scenario.lines_by_name), parting), supply)
 
 
-def reduced_network(intact: Network, plan: SupplyPlan, supply: Supply, outage: Outage) -> Network:
-    """The network with all that an outage names out of service."""
-    units = {
+def _units_left(outage: Outage, supply: Supply) -> dict[int, int]:
+    """Units in service of the stations of which an outage takes some out."""
+    return {
         s: station.installed - out
         for s, station in enumerate(supply.stations)
         if (out := outage.units_of(station))
     }
-    opened = [
+
+
+def _transformers_out(outage: Outage, plan: SupplyPlan) -> list[int]:
+    """Numbers of the branches of transformers that an outage takes out."""
+    return [
         b
         for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True))
         if kind == TRANSFORMER and _is_at(plan.node_km[branch.start_node], outage)
     ]
-    return in_service(intact, units, opened)
 
 
 def _is_at(position_km: float, outage: Outage) -> bool:

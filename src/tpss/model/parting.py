@@ -2,9 +2,11 @@
 
 A layout has the parted state: an open switch has a node on either side, and a section of contact line
 that is out has nodes of its own.  In the whole state, before and after an outage, such nodes are joined.
+So are those of a section that may trip, until it does.
 """
 
 from collections.abc import Iterable, Sequence
+from itertools import product
 from typing import NamedTuple, TypeVar
 
 from tpss.powerflow.network import BranchPart, SectionPart
@@ -27,10 +29,14 @@ class Parting(NamedTuple):
     """Names of posts and section breaks that are open for a part of the run only."""
     sections: tuple[OutSection, ...] = ()
     """Sections of the contact line that are out."""
+    guarded: bool = False
+    """Whether each section whose rating has overloads has nodes of its own, as it may trip."""
 
 
-def parting_of(outage: Outage, supply: Supply) -> Parting:
-    """What an outage of a supply parts."""
+def parting_of(outage: Outage | None, supply: Supply, guarded: bool) -> Parting:
+    """What an outage of a supply parts, and what may trip."""
+    if outage is None:
+        return Parting(guarded=guarded)
     listed = {post.name: post.closed for post in supply.posts}
     listed |= {each.name: each.closed for each in supply.section_breaks}
     closed = {name for name in outage.opens if listed.get(name, False)}
@@ -38,6 +44,7 @@ def parting_of(outage: Outage, supply: Supply) -> Parting:
         feeds=frozenset(name for name in outage.opens if name not in listed),
         switches=frozenset() if outage.is_throughout else frozenset(closed),
         sections=outage.sections,
+        guarded=guarded,
     )
 
 
@@ -49,16 +56,17 @@ def joined_over(before: Sequence[str], behind: Sequence[str]) -> list[tuple[str,
 
 
 def set_apart(
-    words: Sequence[Sequence[str]], out: Sequence[Sequence[bool]], anchored: bool
+    words: Sequence[Sequence[str]], apart: Sequence[Sequence[str]], anchored: bool
 ) -> tuple[list[list[str]], list[tuple[str, str]]]:
-    """Give conductors that are out nodes of their own at a place, where they share one with others.
+    """Give conductors nodes of their own at a place, where they share one with others.
 
     Parameters
     ----------
     words : sequence of sequences of str
         What tells the nodes of the conductors before the place and behind it.
-    out : sequence of sequences of bool
-        Whether each of these conductors is out on that side.
+    apart : sequence of sequences of str
+        What tells the node of its own of each conductor on that side; empty: it needs none.  Conductors
+        of the same words stay together.
     anchored : bool
         Whether the line is fed there, or meets others.
 
@@ -67,16 +75,18 @@ def set_apart(
     list of lists of str, list of pairs of str
         As `words`, and pairs of new ones with those that they take the place of.
     """
-    sides = [list(zip(*side, strict=True)) for side in zip(words, out, strict=True)]
-    live = {each for side in sides for each, is_out in side if not is_out}
+    sides = [list(zip(*side, strict=True)) for side in zip(words, apart, strict=True)]
+    users: dict[str, set[str]] = {}
+    for each, more in (conductor for side in sides for conductor in side):
+        users.setdefault(each, set()).add(more)
     pairs: dict[str, str] = {}
     found = []
     for side in sides:
         row = []
-        for k, (each, is_out) in enumerate(side):
+        for k, (each, more) in enumerate(side):
             own = each
-            if is_out and (anchored or each in live):
-                own = f", track {k + 1}, out" if len(side) > 1 else ", out"
+            if more and (anchored or len(users[each]) > 1):
+                own = f", track {k + 1}{more}" if len(side) > 1 else more
                 pairs[own] = each
             row.append(own)
         found.append(row)
@@ -127,3 +137,24 @@ def edges_of_both(edges: Sequence[Joint], node: Sequence[int]) -> list[Joint]:
         return []
     in_whole = [(node[a], node[b]) for a, b in edges]
     return [*edges, *((a, b) for a, b in in_whole if a != b), *pairs]
+
+
+def edges_of_any(edges: Sequence[Joint], states: Sequence[Sequence[int]]) -> list[Joint]:
+    """Nodes that are coupled in any mixture of states, for which all have room.
+
+    Parameters
+    ----------
+    edges : sequence of pairs of nodes
+        That are coupled in the parted state.
+    states : sequence of sequences of int
+        The node that each node is one with in each of the states.
+    """
+    names = [{n, *(state[n] for state in states)} for n in range(len(states[0]))]
+    coupled = {
+        (min(a, b), max(a, b))
+        for start, end in edges
+        for a, b in product(names[start], names[end])
+        if a != b
+    }
+    coupled |= {(min(n, a), max(n, a)) for n, own in enumerate(names) for a in own if a != n}
+    return sorted(coupled)

@@ -1,11 +1,9 @@
 """What a run of a model begins with."""
 
-from dataclasses import replace
-
 from tpss.errors import Finding, ScenarioError
 from tpss.model.build import steps_of
 from tpss.model.outages import service_of
-from tpss.model.relays import relays_of
+from tpss.model.relays import with_relays
 from tpss.model.supplements import with_supplements
 from tpss.model.traffic import build_services
 from tpss.run.dispatch import NoOrderError
@@ -32,7 +30,7 @@ def start_of(scenario: Scenario, model: Model) -> Start:
     if scenario.simulation.duration_min is not None:
         steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
     start = begin(model, services, steps, service_of(scenario).switchings)
-    start = replace(start, relays=relays_of(scenario))
+    start = with_relays(start, scenario, scenario.outage)
     try:
         return with_order(start)
     except NoOrderError as error:

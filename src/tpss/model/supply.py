@@ -15,9 +15,15 @@ from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.feeding import Feeding, feedings_of
-from tpss.model.parting import Joint, Parting, edges_of_both, renamed, representatives
+from tpss.model.parting import (
+    Joint,
+    Parting,
+    edges_of_any,
+    edges_of_both,
+    renamed,
+    representatives,
+)
 from tpss.model.sources import build_sources
-from tpss.powerflow.following import following
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
@@ -60,6 +66,8 @@ class SupplyPlan:
     """Index of the line of each node."""
     joints: list[Joint] = field(default_factory=list)
     """Pairs of nodes that are one in the whole state, see `model.parting`."""
+    guards: list[Joint] = field(default_factory=list)
+    """Pairs of nodes, the second one at the end of a section, that are one until that trips."""
 
     @property
     def edges(self) -> list[tuple[int, int]]:
@@ -68,9 +76,16 @@ class SupplyPlan:
         within = edges_within(self.coupled, ends)
         return ends + within + [(branch.start_node, branch.end_node) for branch in self.branches]
 
-    def in_whole(self) -> list[int]:
-        """The node that each node is one with in the whole state."""
-        return representatives(len(self.nodes), self.joints, self.sources)
+    def one_with(self, joints: Sequence[Joint]) -> list[int]:
+        """The node that each node is one with where some pairs are joined."""
+        return representatives(len(self.nodes), joints, self.sources)
+
+    def room(self) -> list[tuple[int, int]]:
+        """Pairs of nodes that are coupled in any state."""
+        whole = self.one_with([*self.joints, *self.guards])
+        if not self.guards:
+            return edges_of_both(self.edges, whole)
+        return edges_of_any(self.edges, [whole, self.one_with(self.guards)])
 
     def add_node(
         self, kind: str, line: LineLayout, position_km: float, level: float = 1.0, words: str = ""
@@ -131,12 +146,13 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    room = edges_of_both(plan.edges, plan.in_whole())
-    return mark_unfed(assemble(*parts, room=room, groups=plan.coupled)), plan
+    return mark_unfed(assemble(*parts, room=plan.room(), groups=plan.coupled)), plan
 
 
-def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
-    """The network of the shapes of a parted one in which nothing is parted.
+def joined_network(
+    parted: Network, plan: SupplyPlan, supply: Supply, joints: Sequence[Joint]
+) -> tuple[Network, dict[int, int]]:
+    """The network of the shapes of a parted one in which some pairs of nodes are one.
 
     Parameters
     ----------
@@ -145,21 +161,29 @@ def whole_network(parted: Network, plan: SupplyPlan, supply: Supply) -> Network:
         Its parts.
     supply : Supply
         Of which it is.
+    joints : sequence of pairs of nodes
+        Some of those of the plan.
+
+    Returns
+    -------
+    network : Network
+        None of whose nodes follows.
+    leaders : dict of int to int
+        Nodes to which nothing is joined, and those that they are one with: see `following`.
     """
-    if not plan.joints:
-        return parted
-    node = plan.in_whole()
+    if not joints:
+        return parted, {}
+    node = plan.one_with(joints)
     network = assemble(
         len(node),
         renamed(plan.sections, node),
         renamed(plan.branches, node),
         build_sources([node[n] for n in plan.sources], supply.stations),
         parted.system,
-        room=edges_of_both(plan.edges, node),
+        room=plan.room(),
         groups=plan.coupled,
     )
-    leader = {n: other for n, other in enumerate(node) if n != other}
-    return following(mark_unfed(network), leader)
+    return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
 
 
 def system_of(supply: Supply) -> System:
@@ -306,6 +330,7 @@ def _lay_line(
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
     plan.runs.append(laid.runs)
     plan.joints += laid.joints
+    plan.guards += laid.guards
     return laid.node
 
 

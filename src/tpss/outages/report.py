@@ -12,7 +12,7 @@ import tomli_w
 from tpss import units
 from tpss.files.refusals import explained
 from tpss.files.whole import write_file
-from tpss.outages.row import Row, Verdict
+from tpss.outages.row import LOSSES, TRIPS, Row, Verdict
 from tpss.report import tables
 from tpss.report.drawings.outages import voltages_of_cases
 from tpss.report.html import check_target
@@ -109,7 +109,9 @@ def outages_report(found: "Comparison") -> str:
         mistrusted=[row.outage for row in rows if row.verdict == Verdict.AUDIT_FAILED],
         intact=Counted(rows[0].verdict_in_words, rows[0].verdict == Verdict.KEPT),
         verdicts=list(_counted(rows[1:])),
-        ranked=Table("outages", "Outages", HEADINGS, [_cells(row, rows[0]) for row in rows]),
+        ranked=Table(
+            "outages", "Outages", _headings(rows[0]), [_cells(row, rows[0]) for row in rows]
+        ),
         tables=[
             tables.of_frame("trains", "Trains", shown[[name for name in TRAINS if name in shown]]),
             _loadings(trusted),
@@ -127,6 +129,15 @@ def _counted(rows: Sequence[Row]) -> Iterable[Counted]:
             yield Counted(verdict.words, verdict == Verdict.KEPT, names)
 
 
+def _headings(intact: Row) -> list[str]:
+    """Of the ranked table: what trips stands behind the verdict, losses before what is out."""
+    trips, losses = (
+        [words] if key in intact.figures else []
+        for key, words in ((TRIPS, "tripped"), (LOSSES, "converter losses [MWh]"))
+    )
+    return [*HEADINGS[:2], *trips, *HEADINGS[2:-1], *losses, HEADINGS[-1]]
+
+
 def _cells(row: Row, intact: Row) -> list[Cell]:
     """A row of the ranked table."""
     own = {} if row.verdict == Verdict.AUDIT_FAILED else row.figures
@@ -136,6 +147,7 @@ def _cells(row: Row, intact: Row) -> list[Cell]:
     return [
         _text(row.outage),
         _text(row.verdict_in_words),
+        *([_text(own.get(TRIPS, ""))] if TRIPS in intact.figures else []),
         _compared("lowest_voltage_kv", own, base),
         _text(on_line(own.get("lowest_voltage_line", ""), _at(own.get("lowest_voltage_km")))),
         tables.cell(own.get("lowest_voltage_min"), "min"),
@@ -149,6 +161,7 @@ def _cells(row: Row, intact: Row) -> list[Cell]:
         tables.cell(lost.get("lost_min"), "min"),
         tables.cell(own.get("stranded"), ""),
         _compared("energy_mwh", own, base),
+        *([_compared(LOSSES, own, base)] if LOSSES in intact.figures else []),
         _text(row.out),
     ]
 

@@ -1,7 +1,7 @@
 """A row of a table of outages: what a run with one of them came to, in figures."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
@@ -30,8 +30,9 @@ class Verdict(IntEnum):
     STRANDED = 5
     VOLTAGE = 6
     USEFUL_VOLTAGE = 7
-    OVERLOAD = 8
-    KEPT = 9
+    TRIPPED = 8
+    OVERLOAD = 9
+    KEPT = 10
 
     @property
     def words(self) -> str:
@@ -45,6 +46,7 @@ class Verdict(IntEnum):
             Verdict.STRANDED: "trains stranded",
             Verdict.VOLTAGE: "voltage limit violated",
             Verdict.USEFUL_VOLTAGE: "useful voltage too low",
+            Verdict.TRIPPED: "tripped",
             Verdict.OVERLOAD: "station overloaded",
             Verdict.KEPT: "limits kept",
         }[self]
@@ -56,9 +58,12 @@ ENDINGS = {
     "deadlocked": Verdict.DEADLOCKED,
 }
 
+LOSSES, TRIPS = "converter_losses_mwh", "trips"
+"""Figures that there are where converters say what they lose, and where equipment may trip."""
+
 FIGURES = (
     "lowest_voltage_kv", "useful_voltage_kv", "train_useful_voltage_kv", "peak_loading",
-    *(f"loading_{window:g}_min" for window in WINDOWS_MIN), "energy_mwh",
+    *(f"loading_{window:g}_min" for window in WINDOWS_MIN), "energy_mwh", LOSSES,
 )  # fmt: skip
 """Figures that are compared with those of the intact supply."""
 
@@ -96,6 +101,10 @@ def row_of(outage: str, out: str, result: Result) -> Row:
     """Row of a run that has ended."""
     figures = {**_voltages(result), **_loadings(result)}
     figures["energy_mwh"] = result.summary["total_energy_mwh"]
+    if (losses := result.figures.get("converter_losses")) is not None:
+        figures[LOSSES] = losses["losses_mwh"]
+    if result.scenario.protection.trip:
+        figures[TRIPS] = trips_in_words(result.figures.get(TRIPS, []))
     figures["stranded"] = len({each.train for each in stranded_trains(result.dataset)})
     arrived = result.trips.dropna(subset=["arrival_min"])
     return Row(
@@ -120,10 +129,17 @@ def _verdict(result: Result, figures: Mapping[str, Any]) -> Verdict:
         return Verdict.VOLTAGE
     if violated:
         return Verdict.USEFUL_VOLTAGE
+    if figures.get(TRIPS):
+        return Verdict.TRIPPED
     loading = figures[f"loading_{OVERLOAD_MIN:g}_min"]
     if math.isnan(loading):  # a run that is shorter
         loading = figures["peak_loading"]
     return Verdict.OVERLOAD if loading > 1.0 else Verdict.KEPT
+
+
+def trips_in_words(trips: Sequence[Mapping[str, Any]]) -> str:
+    """What tripped and when, in the order of time; empty if nothing did."""
+    return ", ".join(f"{trip['element']} {trip['time_min']:.1f} min" for trip in trips)
 
 
 def _voltages(result: Result) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from tpss.errors import ScenarioError
 from tpss.many import in_threads
 from tpss.model.legs import build_legs
 from tpss.model.outages import layout_of, service_of
+from tpss.model.relays import with_relays
 from tpss.outages.cases import outages_of
 from tpss.outages.row import FIGURES, Row, Verdict, lost_against, row_of
 from tpss.run.run import INTERRUPTED
@@ -137,10 +138,11 @@ def with_outage(prepared: Prepared, outage: Outage) -> Prepared:
     if plan is not layout.supply:  # a network with other sections above the trains
         legs = build_legs(layout.routes, scenario.lines_by_name, plan.runs)
     model = start.model._replace(network=service.network, legs=legs)
+    start = replace(start, model=model, switchings=service.switchings)
     return replace(
         prepared,
         layout=replace(layout, supply=plan, legs=legs),
-        start=replace(start, model=model, switchings=service.switchings),
+        start=with_relays(start, scenario, outage),
     )
 
 

@@ -266,4 +266,4 @@ def cell(value: Any, unit_of_it: str) -> Cell:
     if not isinstance(value, int | float):
         return Cell(str(value), str(value), is_number=False)
     digits = 0 if isinstance(value, int) else DIGITS.get(unit_of_it, 2)
-    return Cell(f"{value:.{digits}f}", f"{value:.7g}", is_number=True)
+    return Cell(f"{value:z.{digits}f}", f"{value:.7g}", is_number=True)

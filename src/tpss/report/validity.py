@@ -9,21 +9,35 @@ from tpss.scenario.scenario import Scenario
 
 ALWAYS = (
     "Quasi-stationary: voltages and currents are phasors, forces and powers constant within a time "
-    "step, or means of it. No transients, no harmonics, no protection.",
+    "step, or means of it. No transients, no harmonics.",
     "Results depend on the time step; run the scenario with half of it to see by how much.",
-    "Drivers hold the speed limit and make no mistakes. No regenerative braking.",
+    "Drivers hold the speed limit and make no mistakes.",
+)
+
+NOTHING_TRIPS = (
+    "Nothing trips: equipment without a limit of its own is shown with its loading, and above 100 % the "
+    "model continues where it would not."
+)
+
+TRIPS = (
+    "What passes an overload of its rating trips; equipment without overloads continues above 100 %. "
+    "Before the run there was no load."
+)
+
+REFUSED = (
+    "What trains feed back and the line refuses, friction brakes or resistors on the train take; motion "
+    "does not depend on it."
 )
 
 SUPPLY = (
-    "Converters have no limit but are shown with their loading: above 100 % the model continues, a "
-    "converter would not.",
     "Between trains and feeding points the voltage is interpolated, which leaves out the contact "
     "line's capacitance. Voltages are judged at the pantograph.",
 )
 
 OF_RATINGS = (
-    "Equipment with a rating is judged once a run has ended: what is too hot has carried its load all "
-    "the same. How warm it was before is an assumption, which the table of thermal states tells."
+    "Equipment with a rating is judged once a run has ended: what is too hot, and has not tripped, has "
+    "carried its load all the same. How warm it was before is an assumption, which the table of thermal "
+    "states tells."
 )
 
 
@@ -37,6 +51,7 @@ def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
         for name in dict.fromkeys(entry.train for entry in scenario.traffic)
         for sentence in _of_train(name, scenario.trains[name])
     ]
+    sentences += [TRIPS if scenario.protection.trip else NOTHING_TRIPS for scenario in told]
     rated = [OF_RATINGS] if any(has_ratings(scenario) for scenario in told) else []
     return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *rated]
 
@@ -58,6 +73,8 @@ def _of_traffic(scenario: Scenario) -> str:
 
 def _of_train(name: str, train: Train) -> Iterator[str]:
     """What the description of a train leaves out."""
+    if train.regeneration is not None:
+        yield REFUSED
     effort = train.tractive_effort
     if isinstance(effort, EffortTable):
         low, high = effort.speed_kmh[0], effort.speed_kmh[-1]

@@ -178,6 +178,18 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
     return Powers(active_w, from_grid, to_grid, burnt, idle, by_load, auxiliaries)
 
 
+def powers_of_types(powers_va: Complexes, station: MixedStation) -> list[Complexes]:
+    """Powers of each of the types of a station in all steps. [VA]
+
+    Parameters
+    ----------
+    powers_va : array of complex, shape (steps,)
+        P + jQ that the station feeds. [VA]
+    station : MixedStation
+    """
+    return _shared(powers_va, MixedLaw.array([mixed_law(station.units)]))
+
+
 def _shared(powers_va: Complexes, law: Records[MixedLaw]) -> list[Complexes]:
     """Powers of each of several types in all steps."""
     shared = np.zeros((powers_va.size, len(TYPES)), dtype=complex)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,8 @@ from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
+from tpss.results.thermal.elements import has_ratings
+from tpss.results.thermal.figures import thermal_figures
 from tpss.run.protection import run_to_end
 from tpss.run.run import Clock, Progress, Run, arrivals_s
 from tpss.run.start import Start
@@ -108,6 +110,11 @@ class KeyFigures:
     braking : dict of str to float
         Where the work of all brakes goes, as of `tpss.results.regeneration.fed_back`; empty without any
         electric ones. [MWh]
+    thermal : dict of str to float
+        What equipment with a rating comes to, as of `tpss.results.thermal.figures`; empty where nothing
+        has one, or where a `Result` has it.
+    tripped : tuple of str or None
+        What tripped, in the order of time; None where nothing can.
     lowest_voltage : LowestVoltage or None
     mean_useful_voltage_kv : float
         Lowest one of the zones, by EN 50388, in the peak window.
@@ -135,6 +142,8 @@ class KeyFigures:
     drawn_from_grid_mwh: float
     fed_back_to_grid_mwh: float
     braking: dict[str, float]
+    thermal: dict[str, float]
+    tripped: tuple[str, ...] | None
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
     dimensioning_train_kv: float
@@ -169,6 +178,8 @@ class Frame:
     """The stations' 50 Hz sides."""
     feeds_back: bool
     """Whether trains have electric brakes."""
+    rated: Scenario | None
+    """The scenario, if something in it has a rating."""
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -185,6 +196,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         system=model.network.system,
         sides=sides_of(scenario),
         feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
+        rated=scenario if has_ratings(scenario) else None,
     )
 
 
@@ -217,11 +229,14 @@ def run_for_figures(
         The recording would not fit into memory.
     """
     run, status = run_to_end(start, clock, memory, report, interrupted)
-    return key_figures_of(run, status, start, frame)
+    figures = key_figures_of(run, status, start, frame)
+    if frame.rated is None or not run.step:
+        return figures
+    return replace(figures, thermal=thermal_figures(run, frame.rated))
 
 
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
-    """Key figures of a run that has ended with a status."""
+    """Key figures of a run that has ended with a status, without `thermal`, which takes its time."""
     figures = _gather(run, frame)
     whole = dict(zip(RunFigures.dtype.names or (), figures.run.tolist()[0], strict=True))
     studied = start.studied if start.studied < run.departed else -1
@@ -240,6 +255,8 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         losses_mwh=whole["losses_j"] / J_PER_MWH,
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
         braking=braking_mwh(run, frame.sides),
+        thermal={},
+        tripped=tuple(trip.protected.name for trip in run.trips) if start.relays else None,
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),
         dimensioning_train_kv=_dimensioning_train_kv(figures, run.model.options.step_s),

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from tpss.model.relays import station_relays
 from tpss.model.unfed import unfed_in_words
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
@@ -24,6 +25,9 @@ take. [1]"""
 
 CLOSE_M = SHORTEST_PIECE_M
 """Distance below which the load flow sets a train apart. [m]"""
+
+BEYOND = "the model continues, the equipment would not"
+"""Said of what is loaded beyond its rating, and does not trip."""
 
 APART_M = 1e8
 """What lies between the places on one line and those on the next; no line is so long. [m]"""
@@ -61,10 +65,10 @@ def notes(result: Result) -> list[str]:
 
 
 def _trips(result: Result) -> Iterator[str]:
-    """Stations that tripped, in the order of time."""
+    """What tripped, in the order of time."""
     for number, trip in enumerate(result.summary.get("trips", []), 1):
         yield (
-            f"protection, {number}: {trip['station']} tripped at {trip['time_min']:.2f} min, loaded to "
+            f"protection, {number}: {trip['element']} tripped at {trip['time_min']:.2f} min, loaded to "
             f"{trip['load_percent']:.0f} % over {trip['window_min']:g} min, "
             f"{trip['allowed_percent']:.0f} % allowed; the run went on without it"
         )
@@ -103,11 +107,19 @@ def _stranded(result: Result) -> Iterator[str]:
         yield f"stranded without power: {listed}{more}; voltages are those of trains that are fed"
 
 
+def _stations_that_trip(result: Result) -> set[str]:
+    """Names of the stations that protection disconnects if they bear too much."""
+    if not result.scenario.protection.trip:
+        return set()
+    return {relay.protected.name for relay in station_relays(result.scenario)}
+
+
 def _overloads(result: Result) -> Iterator[str]:
     """Stations whose running converters or transformers were above their rating for several steps."""
     data, h = result.dataset, step_s(result.dataset) / 60.0
     loading = step_values(data, "converter_loading")
     apparent_mva = np.hypot(*_station_powers_mw(result))
+    tripping = _stations_that_trip(result)
     for i, name in enumerate(data.station.to_numpy()):
         above = loading[:, i] > 1.0
         if above.sum() < 2:
@@ -118,7 +130,7 @@ def _overloads(result: Result) -> Iterator[str]:
             f"{name} was loaded to {100.0 * loading[worst, i]:.0f} % of its rating "
             f"({apparent_mva[worst, i]:.1f} MVA at {worst * h:.2f} min), and above 100 % for "
             f"{above.sum() * h:.2f} min between {times[0] * h:.2f} and {(times[-1] + 1) * h:.2f} min; "
-            "the model continues, the equipment would not"
+            f"{'it trips by its overloads' if name in tripping else BEYOND}"
         )
 
 

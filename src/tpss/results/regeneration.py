@@ -34,24 +34,22 @@ RECORDED_POWERS = (
 """Recorded powers of trains from which the parts follow."""
 
 
-def regeneration(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row per train: the work of all its brakes, and its parts, which add up to it.
+def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
+    """One row per train: the work of all its brakes, its parts, and where what it feeds back goes.
 
     Friction brakes give what electric ones do not.  Of the work of these the machine loses a part; of
     what it offers the line may refuse some, which friction brakes or a resistor take; the rest feeds the
     train itself first, its auxiliaries, and its motors in the same step; then the line.  Empty unless
     trains have electric brakes.
+
+    Of what all trains feed back in a step, stations take some, into the grid or resistors, and the rest
+    is used by other trains or lost on the line.  Trains share these uses in proportion to what each one
+    feeds back, wherever they are: power has no sender.
     """
     if REGENERATED not in dataset:
-        return pd.DataFrame(columns=["train", "service", "braked_mwh", *PARTS])
-    powers = parts_of(_recorded(dataset))
-    return pd.DataFrame(
-        {
-            "train": dataset.train.to_numpy(),
-            "service": dataset.service.to_numpy(),
-            **{name: over_time(power, dataset) / J_PER_MWH for name, power in powers.items()},
-        }
-    )
+        return pd.DataFrame(columns=["train", "service", *TOTALS])
+    of_trains = {name: dataset[name].to_numpy() for name in ("train", "service")}
+    return pd.DataFrame({**of_trains, **_energies_mwh(dataset, scenario)})
 
 
 def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, float] | None:

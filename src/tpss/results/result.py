@@ -88,7 +88,7 @@ class Result:
     @cached_property
     def regeneration(self) -> pd.DataFrame:
         """One row per train: what it brakes and where that goes; empty without electric brakes."""
-        return regeneration(self.dataset)
+        return regeneration(self.dataset, self.scenario)
 
     @cached_property
     def converter_losses(self) -> pd.DataFrame:

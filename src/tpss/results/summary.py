@@ -3,7 +3,6 @@
 import datetime as dt
 import math
 import platform
-from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -39,20 +38,20 @@ def summarise(
         "load_flow_passes": {"mean": figures.mean_passes, "most": figures.most_passes},
         "limited": figures.limited,
         **({"current_limits": limits} if limits else {}),
-        **({"trips": _trips(outcome, stations)} if outcome.trips else {}),
+        **({"trips": _trips(outcome)} if outcome.trips else {}),
         "audit": figures.audit.as_dict(),
     }
 
 
-def _trips(outcome: Outcome, stations: Sequence[str]) -> list[dict[str, Any]]:
-    """Stations that tripped, in the order of time."""
+def _trips(outcome: Outcome) -> list[dict[str, Any]]:
+    """What tripped, in the order of time."""
     return [
         {
-            "station": stations[trip.station],
+            "element": trip.protected.name,
             "time_min": trip.time_s / 60.0,
             "load_percent": 100.0 * trip.load,
             "window_min": trip.relay.window_s / 60.0,
-            "allowed_percent": 100.0 * trip.relay.highest,
+            "allowed_percent": round(100.0 * trip.relay.highest, 9),
         }
         for trip in outcome.trips
     ]

@@ -1,24 +1,43 @@
-"""What stations bear for a while, and stations that have tripped because they bore more."""
+"""What equipment bears for a while, and what has tripped because it bore more."""
 
 from typing import NamedTuple
 
 
-class Relay(NamedTuple):
-    """What a station bears over a window."""
+class Protected(NamedTuple):
+    """What trips: one of these by its number, -1 of the others."""
 
-    station: int
-    """Index of its source."""
+    name: str
+    station: int = -1
+    """Feeding station, by its source."""
+    transformer: int = -1
+    """Transformer of a high-voltage line, by its branch."""
+    section: int = -1
+    """Section of the contact line."""
+
+
+class Relay(NamedTuple):
+    """What equipment bears over a window."""
+
+    protected: Protected
     window_s: float
     highest: float
-    """R.m.s. load of a unit, over its rating. [1]"""
+    """R.m.s. load, over the rated one. [1]"""
+    current: int = -1
+    """Number of the recorded current that is the load; -1: it is that of a unit of the station."""
+    rated_a: float = 1.0
+    """Rated current. [A]"""
+    type_number: int = -1
+    """Type of the units in a station with several; -1: it has one."""
+    rated_va: float = 1.0
+    """Rated power of all units of that type. [VA]"""
 
 
 class Trip(NamedTuple):
-    """A station that has tripped."""
+    """Equipment that has tripped."""
 
-    station: int
+    protected: Protected
     time_s: float
     load: float
-    """R.m.s. load of a unit over the window, over its rating. [1]"""
+    """R.m.s. load over the window, over the rated one. [1]"""
     relay: Relay
     """What it has passed."""

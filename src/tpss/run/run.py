@@ -69,7 +69,7 @@ class Outcome:
     recording: Recording
     state: State
     trips: tuple[Trip, ...] = ()
-    """Stations that tripped, in the order of time."""
+    """What tripped, in the order of time."""
 
 
 Clock = Callable[[int, int, Model, State, Recording], tuple[int, int]]
@@ -103,7 +103,7 @@ class Run:
         self.networks = [(0, model.network)]
         """Steps from which networks hold, and these."""
         self.trips: tuple[Trip, ...] = ()
-        """Stations that tripped, in the order of time."""
+        """What tripped, in the order of time."""
 
     def advance_to(self, step: int) -> None:
         """Advance to a step no further than the capacity, or to the run's end before it."""

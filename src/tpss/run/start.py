@@ -1,12 +1,13 @@
 """What a run begins with: who stands on the line, who departs, and how many steps are foreseen."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from tpss.record import Records
 from tpss.run.already_running import trains_on_line
 from tpss.run.limits import demand_room
-from tpss.run.relays import Relay
+from tpss.run.relays import Relay, Trip
 from tpss.run.services import ScheduledTrain, Service, departing_trains, train_records
 from tpss.run.switching import Switching
 from tpss.step.model import Model, RunControl
@@ -48,7 +49,15 @@ class Start:
     turns: Records[Turn] | None = None
     """Planned order at gates, if trains keep one."""
     relays: tuple[Relay, ...] = ()
-    """What stations bear that trip otherwise; none: they do not."""
+    """What equipment bears that trips otherwise; none: nothing does."""
+    cut: Callable[[Sequence[Trip]], tuple[Switching, ...]] | None = None
+    """Gives the switchings of a run in which something trips."""
+
+    def with_trips(self, trips: Sequence[Trip]) -> "Start":
+        """The start of a run in which these trip, in the order of time."""
+        if self.cut is None:
+            raise ValueError("nothing of this run can trip")
+        return replace(self, switchings=self.cut(trips))
 
 
 def begin(

@@ -10,6 +10,7 @@ class Protection(Part):
 
     trip: Flag = Field(
         default=False,
-        description="Whether a feeding station trips whose units pass an overload of their `rating`: "
-        "the run goes on without it, and others have to carry its load.",
+        description="Whether feeding stations, transformers of the high-voltage line and sections of "
+        "contact line trip that pass an overload of their `rating`: the run goes on without them, and "
+        "others have to carry their load.",
     )

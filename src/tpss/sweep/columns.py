@@ -10,6 +10,7 @@ import pyarrow as pa
 from tpss.audit.verdict import JUDGED
 from tpss.results.key_figures import LIMITED, KeyFigures, ServiceFigures, StationFigures
 from tpss.results.regeneration import TOTALS
+from tpss.results.thermal.figures import FIGURES
 from tpss.sweep.inputs import Inputs
 from tpss.sweep.variation import Variation
 
@@ -41,6 +42,9 @@ OUTPUTS = {
     "drawn_from_grid_mwh": pa.float64(),
     "fed_back_to_grid_mwh": pa.float64(),
     **{f"braking.{name}": pa.float64() for name in TOTALS},
+    **{f"thermal.{name}": pa.float64() for name in FIGURES},
+    "trips": pa.int64(),
+    "tripped": pa.string(),
     "lowest_voltage_kv": pa.float64(),
     "lowest_voltage_km": pa.float64(),
     "lowest_voltage_min": pa.float64(),
@@ -128,6 +132,9 @@ def output_columns(figures: KeyFigures) -> dict[str, Any]:
         **{f"audit.{name}": audit[name] for name in JUDGED},
         **{f"limited.{name}": count for name, count in figures.limited.items()},
         **{f"braking.{name}": energy for name, energy in figures.braking.items()},
+        **{f"thermal.{name}": value for name, value in figures.thermal.items()},
+        "trips": None if figures.tripped is None else len(figures.tripped),
+        "tripped": "; ".join(figures.tripped or ()) or None,
         **_figures_of_each("station", figures.stations),
         **_figures_of_each("service", figures.services),
     }

@@ -12,7 +12,11 @@ Hand-worked values: 0, 6, 2, 4 over four steps.
 import numpy as np
 import pytest
 
-from tpss.results.standards.windows import highest_mean_table, highest_means
+from tpss.results.standards.windows import (
+    highest_mean_table,
+    highest_means,
+    highest_means_between,
+)
 
 VALUES = np.array([[0.0, 6.0, 2.0, 4.0]]).T
 
@@ -68,3 +72,18 @@ def test_a_table_has_a_row_a_column_and_window_and_the_time_step_as_the_first():
 def test_a_window_of_the_time_step_is_not_listed_twice():
     table = highest_mean_table(VALUES, {"name": ["a"]}, 60.0, (1.0, 3.0))
     assert table.window_min.tolist() == [1.0, 3.0]
+
+
+def test_the_window_that_ends_with_the_run_is_not_lost_in_a_rounding():
+    """Load in the last step alone, windows that do not begin at instants: h / w each.  The end less the
+    width, and the width again, is behind the end for a third of them."""
+    step, steps = 48.660329190297026, 60
+    instants = np.arange(steps + 1) * step
+    load = np.append(np.zeros(steps - 1), 1.0)[:, None]
+    widths = [step * (2.0 + k / 97.0) for k in range(1, 97)]
+    rounded = [instants[-1] - width + width > instants[-1] for width in widths]
+    assert any(rounded)
+    for width, (highest, _) in zip(
+        widths, highest_means_between(load, instants, widths), strict=True
+    ):
+        assert highest[0] == pytest.approx(step / width, rel=1e-9)

@@ -165,6 +165,8 @@ class Drawing:
     columns: Sequence[str] = ()
     width_inch: float = 7.0
     """Width in print."""
+    names_one: bool = False
+    """Whether a curve has a name in the legend even if it is alone."""
 
 
 def unit_of(label: str) -> str:

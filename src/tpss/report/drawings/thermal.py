@@ -46,7 +46,7 @@ def thermal(runs: Mapping[str, Result]) -> Drawing:
     panels = [Panel("state [%]", [*states, rated], "thermal state [%]", from_zero=True)]
     if temperatures:
         panels.append(Panel("temperature [°C]", temperatures))
-    return Drawing(TIME, panels, panel_inch=2.0)
+    return Drawing(TIME, panels, panel_inch=2.0, names_one=True)
 
 
 def _drawn(own: Thermal) -> list[int]:

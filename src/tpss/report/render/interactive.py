@@ -89,7 +89,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
         named_x = {"tickvals": [*range(len(drawing.columns))], "ticktext": drawing.columns}
         figure.update_xaxes(named_x, side="top", showgrid=False, row=1, col=1)
     named = sum(trace.showlegend for trace in figure.data)
-    return figure.update_layout(showlegend=named > 1 or count > 1)
+    least = 1 if drawing.names_one else 2
+    return figure.update_layout(showlegend=named >= least or count > 1)
 
 
 def _trace(

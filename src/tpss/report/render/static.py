@@ -89,7 +89,7 @@ def render(drawing: Drawing) -> Figure:
     if drawing.columns:
         room_inch = drawing.width_inch / len(drawing.columns)
         _name_columns(drawing.columns, room_inch, places[0])
-    legend(figure, places[0])
+    legend(figure, places[0], least=1 if drawing.names_one else 2)
     return figure
 
 
@@ -257,9 +257,9 @@ def panels(
     return figure, axes
 
 
-def legend(figure: Figure, panel: Axes) -> None:
-    """Legend of a panel's curves below the figure, if there is more than one."""
+def legend(figure: Figure, panel: Axes, least: int = 2) -> None:
+    """Legend of a panel's curves below the figure, if there are as many as it has at least."""
     handles, names = panel.get_legend_handles_labels()
-    if len(handles) > 1:
+    if len(handles) >= least:
         columns = 4 if max(map(len, names)) < 20 else 2  # four long ones are wider than the page
         figure.legend(handles, names, loc="outside lower center", ncols=min(columns, len(handles)))

@@ -164,7 +164,9 @@ def _highest_mean_between(
     lone_begins = instants[np.append(~meets, np.ones(whole, dtype=bool))]
     lone_ends = instants[np.append(np.ones(whole, dtype=bool), ~meets)]
     lone = np.concatenate([lone_begins, lone_ends - width])
-    lone = lone[(lone >= instants[0]) & (lone + width <= instants[-1])]
+    # One that ends with the run begins where it does but for a rounding, and so may end behind it.
+    within = (lone >= instants[0] - rounding) & (lone + width <= instants[-1] + rounding)
+    lone = np.clip(lone[within], instants[0], None)
     areas = integral[whole:] - integral[:-whole]
     begins = instants[:-whole]
     if not meets.all():

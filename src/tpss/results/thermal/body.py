@@ -21,7 +21,7 @@ class Body:
     cooling : Cooling or None
         Constants of a transformer, in place of one time constant.
     overloads : tuple of (float, float)
-        Loads above the rated one, and the times for which they are allowed: ascending. [1], [s]
+        Highest r.m.s. loads, and the windows over which they are allowed: ascending. [1], [s]
     allowed_state : float
         Highest thermal state. [1]
     preload : float
@@ -39,12 +39,13 @@ class Body:
     rise_k: float = math.nan
 
     def allowed_load(self, window_s: float) -> float:
-        """Highest r.m.s. load over a window; NaN over one that is longer than any overload. [1]
-
-        It is that of the shortest overload that lasts at least as long.
-        """
-        lasting = [load for load, lasts_s in self.overloads if lasts_s >= window_s * (1.0 - 1e-9)]
-        return max(lasting, default=math.nan)
+        """Highest r.m.s. load over the window of an overload; NaN over others, which none limits. [1]"""
+        of_window = (
+            load
+            for load, lasts_s in self.overloads
+            if math.isclose(lasts_s, window_s, rel_tol=1e-9)
+        )
+        return next(of_window, math.nan)
 
 
 def body_of(rating: Rating | TransformerRating | MotorRating) -> Body:

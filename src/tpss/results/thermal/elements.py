@@ -1,33 +1,49 @@
 """The equipment of a scenario that has a rating, and the load of each over a run."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from tpss.model.contact_line import LineLayout, stretches_of
+from tpss.model.contact_line import LineLayout
 from tpss.model.feeding import feedings_of
 from tpss.model.outages import layout_of
-from tpss.model.supply import (
-    CONTACT_LINE,
-    NOTHING_PARTED,
-    TRANSFORMER,
-    SupplyPlan,
-    layouts_of,
-    system_of,
-)
-from tpss.results.standards.windows import Floats, step_values
+from tpss.model.rated import rated_sections, rated_transformers
+from tpss.model.supply import CONTACT_LINE, NOTHING_PARTED, TRANSFORMER, SupplyPlan, layouts_of
+from tpss.results.grid_side import powers_of_types
+from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body, body_of
+from tpss.scenario.rating import Rating
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import ConverterStation, Supply, TransformerStation
+from tpss.scenario.supply import ConverterStation, MixedStation, Supply, TransformerStation
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import si
 
+CONVERTER, MOTORS = "converter", "motors"
+KINDS = (CONTACT_LINE, TRANSFORMER, CONVERTER, MOTORS)
+"""Kinds of equipment."""
+
 FORMER_MOTORS = 4.0
 """Motors whose currents the former model adds up."""
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What is recorded of a run.
+
+    Attributes
+    ----------
+    of : callable
+        Gives what is recorded by its name, shape (steps, whatever there is one of), NaN of trains that
+        are not on the line.
+    trains : sequence of (str, str)
+        Names of the trains, and of their services.
+    """
+
+    of: Callable[[str], Floats]
+    trains: Sequence[tuple[str, str]]
 
 
 class Reach(NamedTuple):
@@ -71,10 +87,10 @@ Loaded = tuple[Element, Floats]
 """A piece of equipment, and its load in each step, NaN where it is not there. [1]"""
 
 RATED_STATIONS: dict[type, tuple[str, Callable[[Any], Any]]] = {
-    ConverterStation: ("converter", lambda station: station.type.rating),
-    TransformerStation: ("transformer", lambda station: station.transformer.rating),
+    ConverterStation: (CONVERTER, lambda station: station.type.rating),
+    TransformerStation: (TRANSFORMER, lambda station: station.transformer.rating),
 }
-"""What a station's units are, and where their rating stands."""
+"""What a station's units are, and where their rating stands, if it has units of one type."""
 
 
 def has_ratings(scenario: Scenario) -> bool:
@@ -84,22 +100,23 @@ def has_ratings(scenario: Scenario) -> bool:
     given: list[Any] = [supply.catenary.rating]
     given += [each.catenary.rating for each in supply.contact_lines if each.catenary is not None]
     given += [_rating_of_station(station) for station in supply.stations]
+    given += [kind.rating for kind in supply.converters_in_use]
     given += [train.motor_rating for train in scenario.trains.values()]
     if high_voltage is not None:
         given += [high_voltage.line_transformer.rating, high_voltage.station_transformer.rating]
     return any(each is not None for each in given)
 
 
-def rated_elements(dataset: xr.Dataset, scenario: Scenario) -> list[Loaded]:
+def rated_elements(readings: Readings, scenario: Scenario) -> list[Loaded]:
     """Everything in a run that has a rating, with its load in each step."""
     laid = layout_of(scenario, scenario.outage)
     where = _Feeding.of(laid.supply, layouts_of(scenario.lines_by_name))
-    current_a = np.nan_to_num(step_values(dataset, "branch_current"))
+    current_a = np.nan_to_num(readings.of("branch_current"))
     return [
-        *_stations(dataset, scenario, where),
+        *_stations(readings, scenario, where),
         *_transformers(current_a, laid.plan, where),
         *_contact_lines(current_a, laid.plan, where),
-        *_motors(dataset, scenario),
+        *_motors(readings, scenario),
     ]
 
 
@@ -146,86 +163,76 @@ def _rating_of_station(station: Any) -> Any:
     return rating(station)
 
 
-def _stations(dataset: xr.Dataset, scenario: Scenario, where: _Feeding) -> Iterator[Loaded]:
+def _stations(readings: Readings, scenario: Scenario, where: _Feeding) -> Iterator[Loaded]:
     """Units of feeding stations: those that run share the load, and one that runs is judged."""
-    loading = np.nan_to_num(step_values(dataset, "converter_loading"))
+    loading = np.nan_to_num(readings.of("converter_loading"))
     for s, station in enumerate(scenario.supply.stations):
-        if (rating := _rating_of_station(station)) is None:
-            continue
-        kind, _ = RATED_STATIONS[type(station)]
         home = next(line.number for line in where.lines if line.holds(station.line))
         reach = tuple(
             where.around(line, own[station.name], own[station.name])
             for line, own in enumerate(where.stations_km)
             if station.name in own
         )
-        element = Element(
-            f"{kind} of {station.name}", kind, home, station.position_km, body_of(rating), reach
+        if isinstance(station, MixedStation):
+            found = _types(readings, s, station)
+        else:
+            kind, _ = RATED_STATIONS.get(type(station), ("", None))
+            found = [(f"{kind} of {station.name}", _rating_of_station(station), loading[:, s])]
+        for name, rating, load in found:
+            kind = name.partition(" ")[0]
+            if rating is not None:
+                body, km = body_of(rating), station.position_km
+                yield Element(name, kind, home, km, body, reach), load
+
+
+def _types(
+    readings: Readings, s: int, station: MixedStation
+) -> list[tuple[str, Rating | None, Floats]]:
+    """Name, rating and load of one converter of each type of a station."""
+    powers_va = readings.of("station_active_power") + 1j * readings.of("station_reactive_power")
+    shared = powers_of_types(np.nan_to_num(powers_va[:, s]), station)
+    return [
+        (
+            f"{CONVERTER} of {station.name}, type {i}",
+            units.type.rating,
+            np.abs(own) / (units.converters * si(units.type, "rating_mva")),
         )
-        yield element, loading[:, s]
+        for i, (units, own) in enumerate(zip(station.units, shared, strict=False), 1)
+    ]
 
 
 def _transformers(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
     """Transformers of the high-voltage line, whose rated current is at the system's base voltage."""
-    high_voltage = where.supply.high_voltage_line
-    if high_voltage is None:
-        return
-    base_v = system_of(where.supply).base_voltage_v
-    for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True)):
-        if kind != TRANSFORMER:
-            continue
-        line, km = plan.node_line[branch.end_node], plan.node_km[branch.end_node]
-        at_station = km in where.stations_km[line].values()
-        unit = high_voltage.station_transformer if at_station else high_voltage.line_transformer
-        if unit.rating is None:
-            continue
-        load = current_a[:, b] * base_v / si(unit.rating, "rating_mva")
-        reach = (where.around(line, km, km),)
-        yield Element(plan.branch_names[b], kind, line, km, body_of(unit.rating), reach), load
+    for each in rated_transformers(plan, where.supply):
+        line, km = each.line, each.position_km
+        reach, body = (where.around(line, km, km),), body_of(each.rating)
+        element = Element(plan.branch_names[each.branch], TRANSFORMER, line, km, body, reach)
+        yield element, current_a[:, each.branch] / each.rated_a
 
 
 def _contact_lines(current_a: Floats, plan: SupplyPlan, where: _Feeding) -> Iterator[Loaded]:
-    """Both ends of each section of contact line: there the currents of all its trains add up.
-
-    Tracks that are tied everywhere share the current alike.
-    """
+    """Both ends of each section of contact line: there the currents of all its trains add up."""
     first = len(plan.branches)
-    for line in where.lines:
-        stretches = stretches_of(line, where.supply)
-        for s, track in _sections_of(plan, line.number):
-            section, name = plan.sections[s], plan.section_names[s]
-            ends_km = section.start_m / 1e3, section.end_m / 1e3
-            middle_km = sum(ends_km) / 2.0
-            stretch = next(each for each in stretches if each.begin_km <= middle_km < each.end_km)
-            rating = stretch.catenary.rating
-            if rating is None:
-                continue
-            rated_a = rating.continuous_a * stretch.tracks / stretch.conductors
-            reach = (where.around(line.number, *ends_km, track),)
-            for k, (km, end) in enumerate(zip(ends_km, ("start", "end"), strict=True)):
-                element = Element(
-                    f"{name}, {end}", CONTACT_LINE, line.number, km, body_of(rating), reach
-                )
-                yield element, current_a[:, first + 2 * s + k] / rated_a
+    for each in rated_sections(plan, where.supply, where.lines):
+        name, body = plan.section_names[each.section], body_of(each.rating)
+        reach = (where.around(each.line, *each.ends_km, each.track),)
+        for k, (km, end) in enumerate(zip(each.ends_km, ("start", "end"), strict=True)):
+            element = Element(f"{name}, {end}", CONTACT_LINE, each.line, km, body, reach)
+            yield element, current_a[:, first + 2 * each.section + k] / each.rated_a
 
 
-def _sections_of(plan: SupplyPlan, line: int) -> Iterator[tuple[int, int | None]]:
-    """Sections of a line, with the track of each, None where they are of all tracks."""
-    for run in plan.runs[line]:
-        for conductor, bounds in enumerate(run.sections):
-            track = None if len(run.sections) == 1 else conductor + 1
-            yield from ((s, track) for s in range(*bounds))
-
-
-def _motors(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Loaded]:
+def _motors(readings: Readings, scenario: Scenario) -> Iterator[Loaded]:
     """Motors of each train: all of them alike, of which one is judged."""
-    trains, current_a = scenario.trains_by_service(), step_values(dataset, "motor_current")
-    names = zip(dataset.train.to_numpy(), dataset.service.to_numpy(), strict=True)
-    for i, (name, service) in enumerate(names):
-        train = trains[str(service)]
-        if train.motor_rating is None or not np.isfinite(current_a[:, i]).any():
+    trains = scenario.trains_by_service()
+    if all(train.motor_rating is None for train in scenario.trains.values()):
+        return
+    current_a = np.ascontiguousarray(readings.of("motor_current").T)  # a train is read at a time
+    known = [bool(np.isfinite(own).any()) for own in current_a]
+    for i, (name, service) in enumerate(readings.trains):
+        train = trains[service]
+        if train.motor_rating is None or not known[i]:
             continue
         motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
         body = body_of(train.motor_rating)
-        element = Element(f"motors of {name}", "motors", -1, float("nan"), body, train=i)
-        yield element, current_a[:, i] / (motors * train.motor_rating.continuous_a)
+        element = Element(f"{MOTORS} of {name}", MOTORS, -1, float("nan"), body, train=i)
+        yield element, current_a[i] / (motors * train.motor_rating.continuous_a)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,10 +11,16 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results.places import line_names
-from tpss.results.standards.windows import Floats, highest_means_between, table_of
+from tpss.results.standards.windows import Floats, highest_means_between, step_values, table_of
 from tpss.results.thermal.body import S_PER_MIN
 from tpss.results.thermal.cause import Traffic
-from tpss.results.thermal.elements import Element, has_ratings, rated_elements
+from tpss.results.thermal.elements import (
+    Element,
+    Loaded,
+    Readings,
+    has_ratings,
+    rated_elements,
+)
 from tpss.results.thermal.states import States, states_of
 from tpss.scenario.scenario import Scenario
 
@@ -67,10 +73,12 @@ class Judged(NamedTuple):
 
 def thermal_of(dataset: xr.Dataset, scenario: Scenario) -> "Thermal":
     """Judgement of the equipment of a run; an empty one if nothing has a rating or no step was made."""
-    known = has_ratings(scenario) and dataset.sizes["time"] > 1
-    loaded = rated_elements(dataset, scenario) if known else []
-    load = np.column_stack([each for _, each in loaded]) if loaded else np.empty((0, 0))
-    return Thermal(dataset, [element for element, _ in loaded], load)
+    loaded: list[Loaded] = []
+    if has_ratings(scenario) and dataset.sizes["time"] > 1:
+        names, services = (dataset[each].to_numpy().tolist() for each in ("train", "service"))
+        trains = list(zip(names, services, strict=True))
+        loaded = rated_elements(Readings(partial(step_values, dataset), trains), scenario)
+    return Thermal.of(loaded, np.asarray(dataset.time.to_numpy(), dtype=float), dataset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,20 +87,28 @@ class Thermal:
 
     Attributes
     ----------
-    dataset : xarray.Dataset
     elements : sequence of Element
     load : Floats, shape (steps, elements)
         NaN where an element is not there. [1]
+    instants_s : Floats, shape (steps + 1,)
+        Instants of the run. [s]
+    dataset : xarray.Dataset, optional
+        Says which trains were where, for `judged` and the tables.
     """
 
-    dataset: xr.Dataset
     elements: Sequence[Element]
     load: Floats
+    instants_s: Floats
+    dataset: xr.Dataset | None = None
 
-    @cached_property
-    def instants_s(self) -> Floats:
-        """Instants of the run. [s]"""
-        return np.asarray(self.dataset.time.to_numpy(), dtype=float)
+    @classmethod
+    def of(
+        cls, loaded: Sequence[Loaded], instants_s: Floats, dataset: xr.Dataset | None = None
+    ) -> "Thermal":
+        """Judgement of equipment and its loads."""
+        none = np.empty((len(instants_s) - 1, 0))
+        load = np.column_stack([each for _, each in loaded]) if loaded else none
+        return cls([element for element, _ in loaded], load, instants_s, dataset)
 
     @cached_property
     def states(self) -> States:
@@ -112,7 +128,7 @@ class Thermal:
     @cached_property
     def judged(self) -> list[Judged]:
         """What the run does to each piece of equipment."""
-        if not self.elements:
+        if not self.elements or self.dataset is None:
             return []
         traffic, lines = Traffic.of(self.dataset), line_names(self.dataset)
         return [self._judge(k, traffic, lines) for k in range(len(self.elements))]
@@ -120,7 +136,36 @@ class Thermal:
     @cached_property
     def hottest(self) -> list[int]:
         """Indices of the equipment, that which comes closest to what it bears, or beyond it, first."""
-        return sorted(range(len(self.elements)), key=lambda k: -use_of(self.judged[k]))
+        return sorted(range(len(self.elements)), key=lambda k: -self.uses[k])
+
+    @cached_property
+    def uses(self) -> list[float]:
+        """What each has of what it bears, as a highest state or load: above 1 it is over. [1]"""
+        return [
+            max(state / each.body.allowed_state, share)
+            for state, each, share in zip(
+                self.states.highest.tolist(), self.elements, self._shares, strict=True
+            )
+        ]
+
+    @cached_property
+    def _shares(self) -> list[float]:
+        """Highest r.m.s. load over the window of an overload of each, over what that allows. [1]
+
+        Only these windows are looked at, which takes less time than all that the tables have.
+        """
+        shares = [0.0] * len(self.elements)
+        by_window: dict[float, list[tuple[int, float]]] = {}
+        for k, each in enumerate(self.elements):
+            for load, lasts_s in each.body.overloads:
+                by_window.setdefault(lasts_s, []).append((k, load))
+        for lasts_s, own in by_window.items():
+            square = np.nan_to_num(self.load[:, [k for k, _ in own]]) ** 2
+            ((highest, _),) = highest_means_between(square, self.instants_s, [lasts_s])
+            for (k, load), mean in zip(own, highest.tolist(), strict=True):
+                if not math.isnan(mean):
+                    shares[k] = max(shares[k], math.sqrt(mean) / load)
+        return shares
 
     @cached_property
     def _windows(self) -> list[list[Window]]:
@@ -156,9 +201,7 @@ class Thermal:
         element, states, body = self.elements[k], self.states, self.elements[k].body
         state, at_s = float(states.highest[k]), float(states.highest_at_s[k])
         worst = _worst(self._windows[k])
-        use = state / body.allowed_state
-        is_over = max(use, _share(worst)) > 1.0 + ROUNDING
-        if _share(worst) > use:
+        if _share(worst) > state / body.allowed_state:
             from_s = worst.from_min * S_PER_MIN
             to_s = from_s + worst.window_min * S_PER_MIN
         else:  # what heated it: the load of the last time constant
@@ -181,7 +224,7 @@ class Thermal:
             highest_rms_percent=worst.highest_rms_percent,
             allowed_rms_percent=worst.allowed_rms_percent,
             from_min=worst.from_min,
-            verdict=OVER if is_over else WITHIN,
+            verdict=OVER if self.uses[k] > 1.0 + ROUNDING else WITHIN,
             trains=traffic.cause(element, from_s, to_s),
         )
 
@@ -195,12 +238,7 @@ class Thermal:
         }
 
 
-def use_of(judged: Judged) -> float:
-    """What equipment has of what it bears: above 1 it is over. [1]"""
-    return max(judged.highest_state_percent / judged.allowed_state_percent, _share(judged))
-
-
-def _share(worst: Window | Judged) -> float:
+def _share(worst: Window) -> float:
     """Highest r.m.s. load over a window, over the one that is allowed; 0 where none is judged. [1]"""
     share = worst.highest_rms_percent / worst.allowed_rms_percent
     return 0.0 if math.isnan(share) else share

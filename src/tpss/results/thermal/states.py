@@ -55,7 +55,7 @@ def states_of(bodies: Sequence[Body], load: Floats, instants_s: Floats) -> State
     seen[:-1] |= there
     seen[1:] |= there
     state[~seen] = np.nan
-    hottest = np.nanargmax(state, axis=0)
+    hottest = np.nanargmax(state, axis=0) if bodies else np.zeros(0, dtype=int)
     highest = state[hottest, np.arange(len(bodies))]
     found = States(start, state, highest, instants_s[hottest], np.full(len(bodies), np.nan))
     for cooling in dict.fromkeys(body.cooling for body in bodies if body.cooling is not None):
