@@ -21,7 +21,7 @@ def price_plan(
     demand_packages()
     from tpss.planning.answer import Effort, answer_of
     from tpss.planning.lazily import ALL
-    from tpss.planning.plan import BOUNDS
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.sentence import sentences
     from tpss.planning.turning import varied
     from tpss.planning.uncounted import unknown
@@ -41,7 +41,7 @@ def price_plan(
     console = Console()
     for sentence in sentences(answer, ()):
         say(console, sentence)
-    if model.plan.file.evaluate.by == BOUNDS:
+    if model.plan.file.evaluate.by != SIMULATION:
         say(console, answer.claim)
     print_firsts(answer, console)
     for line in unknown(model):

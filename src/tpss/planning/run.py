@@ -13,6 +13,7 @@ from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList
 from tpss.planning.configurations import check_configurations
 from tpss.planning.lazily import prove_lazily
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan
 from tpss.planning.plan import SIMULATION
 from tpss.planning.prove import Round
@@ -43,7 +44,10 @@ def check_plan(plan: Plan) -> CaseList:
     most = plan.file.evaluate.most_cases
     if len(case_list) > most and plan.file.evaluate.by == SIMULATION:
         problem = f"{len(case_list):,} cases are more than that"
-        remedy = 'raise it, let measures exclude each other, or prove by bounds: by = "bounds"'
+        remedy = (
+            'raise it, let measures exclude each other, or prove by bounds: by = "bounds" or '
+            '"approximator"'
+        )
         place = (str(plan.source), "evaluate.most_cases", str(most))
         raise ScenarioError([Finding(*place, problem, remedy)])
     for each in case_list.areas:
@@ -65,8 +69,8 @@ def run_plan(
 ) -> Answered:
     """Simulate the cases of a plan that its folder does not hold, solve it, and write the answer there.
 
-    With ``evaluate.by = "bounds"`` only those cases that prove a plan to be the best one, if no case
-    costs less than its bound.
+    With ``evaluate.by = "bounds"`` or ``"approximator"`` only those cases that prove a plan to be the
+    best one, if no case costs less than its bound.
 
     Parameters
     ----------
@@ -116,7 +120,8 @@ def run_plan(
         if plan.file.evaluate.by == SIMULATION:
             model = model_of(case_list, simulate(case_list.cases))
         else:
-            model = prove_lazily(case_list, simulate, solver_of(effort), tell)
+            learnt = Learnt(target.path)
+            model = prove_lazily(case_list, simulate, solver_of(effort), tell, learnt)
         answer = answer_of(model, effort)
         answered = Answered(answer, tuple(all_turns(answer)))
         write_answer(target.path, answer, answered.turns)

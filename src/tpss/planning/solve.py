@@ -9,15 +9,17 @@ import pandas as pd
 
 from tpss.planning import measures as built
 from tpss.planning.cases import AreaCases, CaseList
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan, PlannedArea
 from tpss.planning.money import Array, Stages, ordered_at
 from tpss.planning.plan_faults import PRICES, prices_of
 from tpss.planning.prices import Priced
 from tpss.planning.problem import Area, Problem
-from tpss.planning.served import FED_BACK, FIXED, Served, components_of, served
+from tpss.planning.served import Served, served
 from tpss.planning.states import at_stage
 from tpss.planning.transitions import Changes
 from tpss.planning.tree import Indices, Tree, make_tree
+from tpss.planning.yearly_use import FED_BACK, FIXED, components_of
 
 Units = set[tuple[int, int, int]]
 """Areas, traffics and configurations that are simulated together, with all outages required."""
@@ -121,7 +123,7 @@ class Model:
         return found
 
 
-def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
+def model_of(case_list: CaseList, table: pd.DataFrame, learnt: Learnt | None = None) -> Model:
     """Model of a plan all of whose cases were simulated, or have bounds.
 
     Parameters
@@ -129,6 +131,8 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     case_list : CaseList
     table : DataFrame
         Outcomes by digest.
+    learnt : Learnt, optional
+        What was learnt before for bounds.
 
     Raises
     ------
@@ -139,9 +143,9 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     PlanError
         The tables make no plan, or a case was neither simulated nor has a bound.
     """
-    tree = tree_of(case_list)
+    tree, learnt = tree_of(case_list), learnt or Learnt()
     each = tuple(
-        served(case_list, number, table, state_of_node(area, tree))
+        served(case_list, number, table, state_of_node(area, tree), learnt)
         for number, area in enumerate(case_list.areas)
     )
     return Model(case_list, table, each)

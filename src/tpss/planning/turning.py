@@ -13,9 +13,9 @@ from tpss.planning.dynamic import values_of
 from tpss.planning.money import Array, Stages
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.problem import Problem
-from tpss.planning.served import FIXED
 from tpss.planning.solve import Model, price_of_node, transitions_of
 from tpss.planning.switching import Switching, switching
+from tpss.planning.yearly_use import FIXED
 
 WIDEST = 4.0
 """Times today's price or cost up to which it is looked where the decision turns; down to 0. [1]"""

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from tpss import units
-from tpss.planning.served import ENERGY, FED_BACK, FIXED, LATE, LOST, NO_TRAFFIC, NOT_RUN
+from tpss.planning.served import NO_TRAFFIC
 from tpss.planning.states import State
 from tpss.planning.tables import INVESTMENT
+from tpss.planning.yearly_use import ENERGY, FED_BACK, FIXED, LATE, LOST, NOT_RUN
 
 MOST_KEYS = 3
 """Values by which states of traffic are told apart in words; with more of them they are numbered."""

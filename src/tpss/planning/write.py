@@ -16,6 +16,7 @@ from tpss.planning.answer import Answer
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
 from tpss.planning.first_costs import first_costs
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import plan_of
 from tpss.planning.plan import SIMULATION
 from tpss.planning.prove import Grade
@@ -172,4 +173,4 @@ def read_model(folder: Path, changes: dict[str, Any]) -> Model:
             f"{missing:,} of {len(case_list.cases):,} cases were not simulated: the plan or its "
             "scenarios have changed in more than prices; run tpss plan run again, which adds them"
         )
-    return model_of(case_list, table)
+    return model_of(case_list, table, Learnt(folder))
