@@ -50,9 +50,25 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     print_firsts(answer, console)
     values = tables.values(answer)[["meaning", "cost"]]
     print_frame(values, f"Values [{unit}, discounted]", {"meaning": "", "cost": ""}, console)
+    if words := _mean_in_words(answer):
+        say(console, words)
     if found := list(estimated(answer.model)):
         say(console, "By estimate: " + " ".join(found))
     say(console, "Not counted: " + " ".join(uncounted(answer.model)))
+
+
+def _mean_in_words(answer: "Answer") -> str:
+    """What the mean future is, if there is one."""
+    from tpss.planning import tables
+    from tpss.planning.wording import mean_in_words
+    from tpss.planning.written import rows_of
+
+    model = answer.model
+    traffic = {
+        area.name: {state.name: state for state in own.states.states}
+        for area, own in zip(model.problem.areas, model.areas, strict=True)
+    }
+    return mean_in_words(rows_of(tables.mean_future(answer)), traffic)
 
 
 def print_firsts(answer: "Answer", console: Console) -> None:

@@ -6,8 +6,10 @@ from tpss.planning.answer import Answer
 from tpss.planning.configurations import Configuration
 from tpss.planning.dynamic import FirstDecision
 from tpss.planning.load import PlannedArea
+from tpss.planning.plan_faults import PRICES
 from tpss.planning.tables import built
-from tpss.planning.turning import Turn, nearest
+from tpss.planning.turning import DISCOUNT_RATE, Turn, nearest
+from tpss.planning.wording import number, varied_in_words
 
 ALTERNATIVES = 2
 """Other first decisions that are named."""
@@ -85,7 +87,11 @@ def _turn_in_words(answer: Answer, turns: list[Turn]) -> str:
     ]
     value, to = min(ends, key=lambda end: abs(end[0] - found.now))
     names = [each.name for each in answer.model.areas[turn.area].configurations]
-    return f"the choice turns to {names[to]} at {turn.key} = {value:.4g} (now {found.now:.4g})"
+    what = varied_in_words(turn.key)
+    if turn.key.startswith(f"{PRICES}.") and turn.key != DISCOUNT_RATE:
+        what = f"price of {what}"
+    now = number(found.now)
+    return f"the choice turns to {names[to]} if the {what} is {number(value)} (now {now})"
 
 
 def money(amount: float) -> str:

@@ -200,7 +200,7 @@ def _missed(states: tuple[State, ...], simulated: Simulated) -> tuple[Array, Any
                 name in asked and each.per_h <= asked[name].per_h * (1.0 + 1e-12)
                 for name, each in run.items()
             )
-            alike = g == len(states) or _beside_trains(states[d]) == _beside_trains(states[g])
+            alike = g == len(states) or beside_trains(states[d]) == beside_trains(states[g])
             may_serve[d, g] = is_less and alike
             for name, each in asked.items() if may_serve[d, g] else ():
                 left = each.per_h - (run[name].per_h if name in run else 0.0)
@@ -209,7 +209,7 @@ def _missed(states: tuple[State, ...], simulated: Simulated) -> tuple[Array, Any
     return unserved, may_serve
 
 
-def _beside_trains(state: State) -> dict[str, Any]:
+def beside_trains(state: State) -> dict[str, Any]:
     """Values of a state that are not the number of its trains: those must be as asked for."""
     counts = (*DEPARTURES, "file")
     return {path: v for path, v in state.values.items() if path.split(".")[-1] not in counts}

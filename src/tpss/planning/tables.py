@@ -216,7 +216,7 @@ def values(answer: Answer) -> pd.DataFrame:
     decided = worth.fixed is not None and answer.is_bound(worth.fixed.policy)
     today = answer.is_bound(as_today(answer.model.problem))
     fixed = np.nan if worth.fixed is None else worth.fixed.cost
-    rows = [
+    rows: list[tuple[str, float, str]] = [
         ("plan", worth.best.cost, "expected cost of the plan"),
         ("bound", worth.best.bound, "no plan costs less"),
         (
@@ -231,6 +231,7 @@ def values(answer: Answer) -> pd.DataFrame:
             fixed - worth.best.cost,
             f"worth of being able to decide later{least * decided}",
         ),
+        *_of_the_mean(answer),
         (
             "saved",
             saved_against_today(answer),
@@ -238,6 +239,30 @@ def values(answer: Answer) -> pd.DataFrame:
         ),
     ]
     return pd.DataFrame(rows, columns=["value", "cost", "meaning"])
+
+
+def _of_the_mean(answer: Answer) -> Iterator[tuple[str, float, str]]:
+    """What it costs to plan for the mean future, where there is one."""
+    worth = answer.worth
+    if answer.mean is not None:
+        held = np.nan if worth.mean is None else worth.mean.cost
+        yield ("mean", held, "expected cost with the first decision of the mean future")
+        yield ("tree", held - worth.best.cost, "cost of planning for the mean future only")
+
+
+def mean_future(answer: Answer) -> pd.DataFrame:
+    """Traffic of the mean future by area and stage; empty where there is none."""
+    model, mean = answer.model, answer.mean
+    rows = [
+        {
+            "area": model.problem.areas[k].name,
+            "stage": model.plan.file.stages.start[s],
+            "traffic": model.areas[k].states.states[d].name,
+        }
+        for k, states in enumerate(mean.states if mean is not None else ())
+        for s, d in enumerate(states.tolist())
+    ]
+    return pd.DataFrame(rows, columns=["area", "stage", "traffic"])
 
 
 SHOWN = (

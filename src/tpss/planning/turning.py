@@ -20,6 +20,9 @@ from tpss.planning.yearly_use import FIXED
 WIDEST = 4.0
 """Times today's price or cost up to which it is looked where the decision turns; down to 0. [1]"""
 
+DISCOUNT_RATE = f"{PRICES}.discount_rate"
+"""Key path of the discount rate, which is no price."""
+
 HIGHEST_RATE = 0.12
 """Highest discount rate that is looked at. [1/a]"""
 
@@ -138,7 +141,7 @@ def varied(model: Model) -> Iterator[Varied]:
                 yield Varied(f"{cases.area.key(name)}.cost", now, 0.0, WIDEST * now, at)
     rate = file.economics.discount_rate
     highest = max(HIGHEST_RATE, rate)
-    yield Varied(f"{PRICES}.discount_rate", rate, 0.0, highest, _at_rate(model, problem))
+    yield Varied(DISCOUNT_RATE, rate, 0.0, highest, _at_rate(model, problem))
     for w, name in enumerate(model.tree.names if len(model.tree.names) > 1 else ()):
         now = float(model.tree.scenario_probability[w])
         key, at = f"scenarios.{name}.probability", _at_probability(problem, w)

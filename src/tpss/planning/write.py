@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from tpss.planning import tables
 from tpss.planning.answer import Answer
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
+from tpss.planning.excel import WORKBOOK, excel_of
 from tpss.planning.first_costs import first_costs
 from tpss.planning.learnt import Learnt
 from tpss.planning.load import plan_of
@@ -44,8 +45,8 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
     found = {
         "decisions": tables.decisions(answer),
         "first_decisions": tables.first_decisions(answer),
-        "best_plans": tables.best_plans(answer),
         "first_costs": first_costs(answer),
+        "best_plans": tables.best_plans(answer),
         "costs": tables.costs(answer),
         "regret": tables.regret(answer),
         "values": tables.values(answer),
@@ -56,11 +57,14 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
         (folder / TABLES).mkdir(exist_ok=True)
         for name, table in found.items():
             write_file(folder / TABLES / f"{name}.csv", table.to_csv(index=False).encode())
-        document = _as_json(answer, turns, found["decisions"])
+        write_file(folder / TABLES / WORKBOOK, excel_of(found, answer.model.plan.file.economics))
+        document = _as_json(answer, turns, found)
         write_file(folder / PLAN, json.dumps(document, indent=1, allow_nan=False).encode())
 
 
-def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> dict[str, Any]:
+def _as_json(
+    answer: Answer, turns: Sequence[Turn], found: Mapping[str, pd.DataFrame]
+) -> dict[str, Any]:
     model = answer.model
     economics = model.plan.file.economics
     return {
@@ -77,8 +81,13 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         "bound": answer.best.bound,
         "gap": answer.best.gap,
         "is_closed": answer.is_closed,
+        "values": {
+            str(row["value"]): _plain(row["cost"]) for row in found["values"].to_dict("records")
+        },
+        "mean_future": tables.mean_future(answer).to_dict("records"),
         "decisions": [
-            {str(k): _plain(v) for k, v in row.items()} for row in decisions.to_dict("records")
+            {str(k): _plain(v) for k, v in row.items()}
+            for row in found["decisions"].to_dict("records")
         ],
         **versions(),
         "source": str(model.plan.source),
