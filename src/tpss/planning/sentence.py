@@ -55,7 +55,8 @@ def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]
         for i, (name, each) in enumerate(zip(names[1:], firsts[1:], strict=True))
         if i < ALTERNATIVES
     )
-    parts = [f"{where}{what}{when}: {money(firsts[0].cost)} {currency} expected", others]
+    together = " in all areas" if where else ""
+    parts = [f"{where}{what}{when}: {money(firsts[0].cost)} {currency} expected{together}", others]
     parts.append(_turn_in_words(answer, [turn for turn in turns if turn.area == k]))
     return "; ".join(part for part in parts if part) + "."
 
