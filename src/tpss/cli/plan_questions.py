@@ -57,7 +57,9 @@ def price_plan(
         table = switching_table(model, turns)
         for column in ("now", "below", "above"):
             table[column] = [_shown(value) for value in table[column]]
-        headings = {name: name.replace("_", " ") for name in table.columns if name != "area"}
+        several = len(model.areas) > 1
+        shown = [name for name in table.columns if name != "area" or several]
+        headings = {name: name.replace("_", " ") for name in shown}
         print_frame(table, "Where the first decision turns", headings, console)
     return DONE if answer.is_closed else GAP_LEFT
 

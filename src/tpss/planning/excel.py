@@ -21,7 +21,7 @@ HOLDS = {
     "decisions": "what is ordered and in service when, if which scenarios may still come",
     "first_decisions": "every first decision, with what the best plan costs that contains it",
     "first_costs": "these costs by component, of the best first decisions",
-    "best_plans": "the best plans in the order of their costs",
+    "best_plans": "the best plans in the order of their costs, node by node",
     "costs": "cost of the plan by component, stage and scenario, plain and discounted",
     "regret": "what each plan costs more in a scenario than the best one of that scenario",
     "values": "worth of knowing the future, of deciding later, of planning for more than the mean",

@@ -14,6 +14,9 @@ from tpss.planning.wording import number, varied_in_words
 ALTERNATIVES = 2
 """Other first decisions that are named."""
 
+WAITING = "waiting"
+"""Names the first decision to build nothing."""
+
 TIE = 1e-3
 """Share of the cost below which what one costs more is a tie: a time step moves energies as much. [1]"""
 
@@ -72,7 +75,7 @@ def _other(answer: Answer, name: str, first: FirstDecision, is_first: bool) -> s
 
 def in_words(answer: Answer, first: FirstDecision) -> str:
     """What is built in a first decision; waiting, if nothing is."""
-    return " and ".join(built(answer.model, first.area, 0, first.configuration)) or "waiting"
+    return " and ".join(built(answer.model, first.area, 0, first.configuration)) or WAITING
 
 
 def _turn_in_words(answer: Answer, turns: list[Turn]) -> str:
@@ -87,7 +90,8 @@ def _turn_in_words(answer: Answer, turns: list[Turn]) -> str:
         if end is not None and to is not None
     ]
     value, to = min(ends, key=lambda end: abs(end[0] - found.now))
-    names = [each.name for each in answer.model.areas[turn.area].configurations]
+    configurations = answer.model.areas[turn.area].configurations
+    names = [each.name if each.size else WAITING for each in configurations]
     what = varied_in_words(turn.key)
     if turn.key.startswith(f"{PRICES}.") and turn.key != DISCOUNT_RATE:
         what = f"price of {what}"
