@@ -137,7 +137,7 @@ def test_futures_that_part_at_once_have_a_first_decision_each(folder):
 def test_a_plan_is_run_from_python(tmp_path):
     """The same answer as by its parts, and the files of the command line."""
     answered = tpss.run_plan(
-        tpss.load_plan(write_plan(tmp_path, TIGHT)), tmp_path / "out", threads=1
+        tpss.load_plan(write_plan(tmp_path, TIGHT)), tmp_path / "out", workers=1
     )
     by_parts = answer_of(modelled(tmp_path, TIGHT))
     assert answered.answer.best.cost == by_parts.best.cost

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tpss.files import whole
-from tpss.planning import simulate
+from tpss.planning import local, simulate
 from tpss.planning.case_folder import DIGEST, CaseFolder
 from tpss.planning.cases import CaseList
 from tpss.planning.load import load_plan
@@ -112,11 +112,11 @@ def test_killed_at_20_random_moments_it_is_the_same_plan(by, tmp_path, moments, 
         moments.pass_one()
         return rows[case.digest]
 
-    monkeypatch.setattr(simulate, "row_of", row_of)
+    monkeypatch.setattr(local, "row_of", row_of)
     plan = load_plan(file)
 
     def run(folder):
-        return run_plan(plan, tmp_path / folder, threads=1)
+        return run_plan(plan, tmp_path / folder, workers=1)
 
     run("whole")
     draw, every, kills = random.Random(by), moments.count, 0

@@ -144,7 +144,7 @@ def run_plan(
     try:
         with progress_bar(plan.file.name, PROGRESS, _progress, console) as report:
             answered = run(
-                plan, out, threads=workers, scheduler=scheduler, gap=gap,
+                plan, out, workers=workers, scheduler=scheduler, gap=gap,
                 time_limit_s=time_limit_s, report=report,
                 tell=_rounds(console),
             )  # fmt: skip

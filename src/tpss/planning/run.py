@@ -60,7 +60,7 @@ def run_plan(
     plan: Plan,
     folder: str | Path,
     *,
-    threads: int | None = None,
+    workers: int | None = None,
     scheduler: str | None = None,
     gap: float | None = None,
     time_limit_s: float | None = None,
@@ -77,10 +77,11 @@ def run_plan(
     plan : Plan
     folder : path
         Made, or continued if it is one of a plan.
-    threads : int, optional
-        Cases at a time; by default one for each core.
+    workers : int, optional
+        Cases at a time; by default one for each core.  Many of them are simulated on processes of their
+        own: call it below ``if __name__ == "__main__":`` in a script.
     scheduler : str, optional
-        Address of a Dask scheduler, whose workers simulate in place of threads.
+        Address of a Dask scheduler, whose workers simulate in place of this computer.
     gap : float, optional
         With a budget: share of the cost within which a better plan is not looked for.
     time_limit_s : float, optional
@@ -114,7 +115,7 @@ def run_plan(
 
         def simulate(cases: Sequence[Case]) -> pd.DataFrame:
             return simulate_cases(
-                case_list, target, cases, threads=threads, scheduler=scheduler, report=report
+                case_list, target, cases, workers=workers, scheduler=scheduler, report=report
             )
 
         if plan.file.evaluate.by == SIMULATION:
