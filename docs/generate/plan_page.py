@@ -48,7 +48,8 @@ levels = [3, 4]
 cost = [45.0, 90.0]
 ```
 
-All measures of an area are ordered the same number of stages ahead. What is built stays, and is
+All measures of an area are ordered the same number of stages ahead; each area has its own. What is
+built stays, and is
 renewed like for like after its life; it is charged its annuities until the end of the plan only."""
 
 FUTURES = """A row of values is a list with one for each stage, or one value for all; what it does

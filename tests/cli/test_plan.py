@@ -137,7 +137,12 @@ def test_a_budget_that_no_plan_meets_is_bad_input(tpss_command, tmp_path):
     changes = {"renewals": {"line": due}, "budget": {"per_stage": [10.0, 10.0]}}
     said = run(tpss_command, tmp_path, changes)
     assert said.code == 2
-    assert "budget" in said.err
+    assert "no plan meets the budget: it takes" in said.err
+    assert "more in stage 1 (2030), every scenario" in said.err
+    assert not (tmp_path / "out").exists()  # nothing was simulated
+    said = tpss_command("plan", "check", tmp_path / "plan.toml")
+    assert said.code == 2
+    assert "no plan meets the budget" in said.err
 
 
 def test_a_folder_without_a_plan_is_refused(tpss_command, tmp_path):

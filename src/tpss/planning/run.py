@@ -8,17 +8,19 @@ from pathlib import Path
 import pandas as pd
 
 from tpss.errors import Finding, ScenarioError
-from tpss.planning.answer import Answer, Effort, answer_of, solver_of
+from tpss.planning.answer import Answer, Effort, answer_of, as_today, solver_of
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList
 from tpss.planning.configurations import check_configurations
+from tpss.planning.costs import meets_budget
 from tpss.planning.lazily import prove_lazily
 from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan
 from tpss.planning.plan import SIMULATION
+from tpss.planning.program import demand_enough
 from tpss.planning.prove import Round
 from tpss.planning.simulate import simulate_cases
-from tpss.planning.solve import model_of, tree_of
+from tpss.planning.solve import model_of, unpriced_problem
 from tpss.planning.turning import Turn, all_turns
 from tpss.planning.write import write_answer
 from tpss.sweep.progress import Advance
@@ -39,6 +41,8 @@ def check_plan(plan: Plan) -> CaseList:
     ------
     ScenarioError
         Configurations are no valid scenarios, or there are more cases than the plan allows.
+    NoPlanError
+        No plan meets the budgets.
     """
     case_list = CaseList(plan)
     most = plan.file.evaluate.most_cases
@@ -52,8 +56,15 @@ def check_plan(plan: Plan) -> CaseList:
         raise ScenarioError([Finding(*place, problem, remedy)])
     for each in case_list.areas:
         check_configurations(plan, each.area, list(each.configurations), each.states)
-    tree_of(case_list)
+    _demand_enough(case_list)
     return case_list
+
+
+def _demand_enough(case_list: CaseList) -> None:
+    """Refuse budgets that no plan meets, before anything is simulated."""
+    problem = unpriced_problem(case_list)
+    if not meets_budget(problem, as_today(problem)):
+        demand_enough(problem)
 
 
 def run_plan(

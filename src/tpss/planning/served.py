@@ -31,6 +31,7 @@ from tpss.planning.yearly_use import (
     Simulated,
     Trains,
     components_of,
+    gives_back,
     trains_of,
 )
 from tpss.scenario.traffic import DEPARTURES
@@ -170,7 +171,7 @@ def _demand_payment(simulated: Simulated) -> None:
     if file.economics.fed_back_per_kwh is not None:
         return
     for (d, c), row in simulated.through.items():
-        if row["fed_back_to_grid_mw"] > 0.0:
+        if gives_back(row):
             place = f"{area.configurations[c].name} with {area.states.states[d].name}"
             mwh = row["fed_back_to_grid_mw"] * file.economics.running_hours_per_year
             problem = f"the price is missing; {place} gives back {mwh:.4g} MWh a year to the grid"

@@ -52,9 +52,7 @@ class Model:
     @cached_property
     def stages(self) -> Stages:
         """Stages with their discount rate."""
-        file = self.plan.file
-        start = tuple(float(year) for year in file.stages.start)
-        return Stages(start, float(file.stages.end), file.economics.discount_rate)
+        return stages_of(self.plan)
 
     @cached_property
     def priced(self) -> tuple[Priced, ...]:
@@ -74,9 +72,7 @@ class Model:
             )
             for each, priced in zip(self.areas, self.priced, strict=True)
         )
-        budget = self.plan.file.budget
-        limit = None if budget is None else np.array(budget.per_stage)[self.tree.stage]
-        return Problem(self.tree, self.stages, areas, limit)
+        return Problem(self.tree, self.stages, areas, limit_of(self.plan, self.tree))
 
     @cached_property
     def has_bounds(self) -> bool:
@@ -149,6 +145,34 @@ def model_of(case_list: CaseList, table: pd.DataFrame, learnt: Learnt | None = N
         for number, area in enumerate(case_list.areas)
     )
     return Model(case_list, table, each)
+
+
+def unpriced_problem(case_list: CaseList) -> Problem:
+    """The problem of a plan as far as it is known without a simulation: operation costs nothing."""
+    plan, tree = case_list.plan, tree_of(case_list)
+    stages = stages_of(plan)
+    areas = tuple(
+        Area(
+            each.area.name or plan.file.name,
+            np.zeros((tree.nodes, len(each.configurations))),
+            transitions_of(plan, each, stages),
+            orders_of(each.area, stages),
+        )
+        for each in case_list.areas
+    )
+    return Problem(tree, stages, areas, limit_of(plan, tree))
+
+
+def stages_of(plan: Plan) -> Stages:
+    """Stages of a plan with their discount rate."""
+    start = tuple(float(year) for year in plan.file.stages.start)
+    return Stages(start, float(plan.file.stages.end), plan.file.economics.discount_rate)
+
+
+def limit_of(plan: Plan, tree: Tree) -> Array | None:
+    """What may be spent in each node, shape (nodes,); None without a budget."""
+    budget = plan.file.budget
+    return None if budget is None else np.array(budget.per_stage)[tree.stage]
 
 
 def tree_of(case_list: CaseList) -> Tree:

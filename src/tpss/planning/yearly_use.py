@@ -22,6 +22,12 @@ LOST, LATE, NOT_RUN = "lost_minute", "late_minute", "train_not_run"
 
 KWH_PER_MWH = 1e3
 
+POWERS = {"drawn_from_grid_mw": float, "fed_back_to_grid_mw": float}
+"""Columns of what stations draw and give back."""
+
+NOISE = 1e-9
+"""Share of what is drawn below which what is given back is that of rounding. [1]"""
+
 Row = Mapping[str, Any]
 """Outcome of a case, by the names of its columns."""
 
@@ -67,6 +73,12 @@ class Simulated:
         """What one uses in a year that came through, shape (components,)."""
         row = self.rows[state, configuration]
         return use_of(row, self.trains[state], self.components, self.hours)
+
+
+def gives_back(rows: Any) -> Any:
+    """Whether stations give energy back to the grid, in a case that came through, or in each of some."""
+    drawn, back = (rows[name] for name in POWERS)
+    return back > NOISE * drawn
 
 
 def components_of(file: PlanFile) -> tuple[str, ...]:
