@@ -62,7 +62,7 @@ def test_run_answers_in_a_sentence_and_in_tables(tpss_command, tmp_path):
     tables = {file.stem for file in (tmp_path / "out" / "tables").glob("*.csv")}
     assert tables == {
         "decisions", "first_decisions", "first_costs", "best_plans", "costs", "regret", "values",
-        "configurations", "switching_values",
+        "configurations", "switching_values", "finer_step",
     }  # fmt: skip
     decisions = pd.read_csv(tmp_path / "out" / "tables" / "decisions.csv")
     assert decisions.in_service.tolist() == [2030, 2040, 2040]

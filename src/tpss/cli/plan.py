@@ -157,7 +157,7 @@ def run_plan(
         print(str(error), file=sys.stderr)
         return exit_code_of(error)
     if not quiet:
-        print_answer(answered.answer, answered.turns, Console())
+        print_answer(answered.answer, answered.turns, answered.finer, Console())
         say(Console(), f"The plan is in {out / 'plan.json'}, its tables are in {out / 'tables'}")
     return DONE if answered.answer.is_closed else GAP_LEFT
 

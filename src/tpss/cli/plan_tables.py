@@ -13,15 +13,22 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tpss.planning.answer import Answer
+    from tpss.planning.finer import Compared
     from tpss.planning.turning import Turn
 
 MOST_FIRSTS = 6
 """First decisions of an area that are printed."""
 
 
-def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) -> None:
+def print_answer(
+    answer: "Answer",
+    turns: Sequence["Turn"],
+    finer: Sequence[Sequence["Compared"]],
+    console: Console,
+) -> None:
     """Print an answer: its sentences, what is done when, what else one could do, what it is worth."""
     from tpss.planning import tables
+    from tpss.planning.finer import finer_sentences
     from tpss.planning.sentence import sentences
     from tpss.planning.uncounted import estimated, uncounted, unknown
 
@@ -30,7 +37,7 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     for sentence in sentences(answer, turns):
         say(console, sentence)
     say(console, answer.claim)
-    for line in unknown(answer.model):
+    for line in (*finer_sentences(answer, finer), *unknown(answer.model)):
         say(console, line)
     if not answer.is_closed and answer.proof.holds:
         say(

@@ -27,6 +27,7 @@ HOLDS = {
     "values": "worth of knowing the future, of deciding later, of planning for more than the mean",
     "configurations": "every configuration with every traffic: whether it carries it, and why not",
     "switching_values": "at which price, cost, rate or probability the first decision turns",
+    "finer_step": "the best first decisions at a finer time step, if the plan asks for one",
 }
 """Tables of an answer by the names of their files, and what they hold."""
 

@@ -15,6 +15,7 @@ SIMULATION, BOUNDS, APPROXIMATOR = "simulation", "bounds", "approximator"
 
 PROOF_KEYS = {
     "by", "bound_margin_percent", "training_cases", "audit_cases", "audit_seed", "most_cases",
+    "finer_step_min",
 }  # fmt: skip
 """Keys of the evaluation that say which cases are simulated, not what comes of one."""
 
@@ -270,6 +271,13 @@ class Evaluation(Part):
         ge=0.001,
         le=10,
         description="Time step of all cases; left out: that of the scenario.",
+    )
+    finer_step_min: Real | None = Field(
+        default=None,
+        ge=0.001,
+        le=10,
+        description="Time step at which what the best first decisions use is simulated once more, to "
+        "see whether the step decides between them; left out: it is not.",
     )
     measured_min: Real = Field(
         default=60.0,

@@ -13,6 +13,7 @@ from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList
 from tpss.planning.configurations import check_configurations
 from tpss.planning.costs import meets_budget
+from tpss.planning.finer import Compared, compare_finer
 from tpss.planning.lazily import prove_lazily
 from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan
@@ -32,6 +33,8 @@ class Answered:
 
     answer: Answer
     turns: tuple[Turn, ...]
+    finer: list[list[Compared]]
+    """First decisions at a finer step, if the plan asks for one."""
 
 
 def check_plan(plan: Plan) -> CaseList:
@@ -124,10 +127,13 @@ def run_plan(
     case_list, target = check_plan(plan), CaseFolder(Path(folder))
     with target.opened():
 
-        def simulate(cases: Sequence[Case]) -> pd.DataFrame:
+        def simulate_of(of: CaseList, cases: Sequence[Case]) -> pd.DataFrame:
             return simulate_cases(
-                case_list, target, cases, workers=workers, scheduler=scheduler, report=report
+                of, target, cases, workers=workers, scheduler=scheduler, report=report
             )
+
+        def simulate(cases: Sequence[Case]) -> pd.DataFrame:
+            return simulate_of(case_list, cases)
 
         if plan.file.evaluate.by == SIMULATION:
             model = model_of(case_list, simulate(case_list.cases))
@@ -135,6 +141,7 @@ def run_plan(
             learnt = Learnt(target.path)
             model = prove_lazily(case_list, simulate, solver_of(effort), tell, learnt)
         answer = answer_of(model, effort)
-        answered = Answered(answer, tuple(all_turns(answer)))
-        write_answer(target.path, answer, answered.turns)
+        finer = compare_finer(answer, simulate_of)
+        answered = Answered(answer, tuple(all_turns(answer)), finer)
+        write_answer(target.path, answer, answered.turns, finer)
     return answered

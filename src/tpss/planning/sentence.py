@@ -30,10 +30,15 @@ def sentences(answer: Answer, turns: Sequence[Turn]) -> list[str]:
     turns : sequence of Turn
         Where first decisions turn; none where that is not known.
     """
+    return [_sentence(answer, firsts, turns) for firsts in groups_of(answer)]
+
+
+def groups_of(answer: Answer) -> list[list[FirstDecision]]:
+    """First decisions by what they are alternatives to: one list for each area and its futures."""
     groups: dict[tuple[int, tuple[int, ...]], list[FirstDecision]] = {}
     for each in answer.firsts:
         groups.setdefault((each.area, tuple(each.nodes.tolist())), []).append(each)
-    return [_sentence(answer, firsts, turns) for firsts in groups.values()]
+    return list(groups.values())
 
 
 def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]) -> str:

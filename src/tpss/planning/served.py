@@ -8,7 +8,7 @@ Of a plan that is proved by bounds, what was not simulated has those of `tpss.pl
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -131,6 +131,43 @@ def _put_bounds(operation: Array, is_simulated: Flags, bound: Array) -> None:
             "bound: the plan or its scenarios have changed; run tpss plan run again, which adds them"
         )
     operation[lacking] = bound[lacking]
+
+
+def with_outcomes(
+    known: Served, case_list: CaseList, number: int, own: Sequence[Case], table: pd.DataFrame
+) -> Served:
+    """What an area uses and misses, with some outcomes in the place of those that are known.
+
+    Only those that are put in count as simulated, and traffic of no train.
+
+    Parameters
+    ----------
+    known : Served
+    case_list : CaseList
+        Of the same configurations and traffic.
+    number : int
+        Of the area.
+    own : sequence of Case
+        Whose outcomes are put in, with all outages of each.
+    table : DataFrame
+        Outcomes by digest.
+
+    Raises
+    ------
+    ScenarioError, AuditError
+        As `served`.
+    """
+    reasons = verdicts(case_list.areas[number], list(own), table, case_list.plan.file.require)
+    simulated = _simulated(case_list, number, list(own), table)
+    operation, carried = known.quantities.operation.copy(), known.quantities.carried.copy()
+    is_simulated = np.zeros_like(carried)
+    is_simulated[-1] = True
+    fixed = operation[-1]
+    for (d, c), failed in reasons.items():
+        carried[d, c], is_simulated[d, c] = not failed, True
+        operation[d, c] = fixed[c] if failed else simulated.use(d, c) + fixed[c]
+    quantities = replace(known.quantities, operation=operation, carried=carried)
+    return replace(known, quantities=quantities, is_simulated=is_simulated)
 
 
 def bounds_of(case_list: CaseList, number: int, table: pd.DataFrame, learnt: Learnt) -> Array:

@@ -16,6 +16,7 @@ from tpss.planning.answer import Answer
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
 from tpss.planning.excel import WORKBOOK, excel_of
+from tpss.planning.finer import Compared, finer_sentences, finer_table
 from tpss.planning.first_costs import first_costs
 from tpss.planning.learnt import Learnt
 from tpss.planning.load import plan_of
@@ -34,8 +35,22 @@ FORMAT_KEY, FORMAT = "plan_format", 1
 """Key and number of the format of ``plan.json``."""
 
 
-def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
+def write_answer(
+    folder: Path,
+    answer: Answer,
+    turns: Sequence[Turn],
+    finer: Sequence[Sequence[Compared]] = (),
+) -> None:
     """Write an answer into the folder of its cases.
+
+    Parameters
+    ----------
+    folder : Path
+    answer : Answer
+    turns : sequence of Turn
+        Where first decisions turn.
+    finer : sequence
+        First decisions at a finer step.
 
     Raises
     ------
@@ -52,13 +67,14 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
         "values": tables.values(answer),
         "configurations": tables.configurations(answer.model),
         "switching_values": switching_table(answer.model, turns),
+        "finer_step": finer_table(answer, finer),
     }
     with explained(folder, REMEDY, PlanError, within=True):
         (folder / TABLES).mkdir(exist_ok=True)
         for name, table in found.items():
             write_file(folder / TABLES / f"{name}.csv", table.to_csv(index=False).encode())
         write_file(folder / TABLES / WORKBOOK, excel_of(found, answer.model.plan.file.economics))
-        document = _as_json(answer, turns, found)
+        document = _as_json(answer, turns, found) | {"finer": finer_sentences(answer, finer)}
         write_file(folder / PLAN, json.dumps(document, indent=1, allow_nan=False).encode())
 
 
