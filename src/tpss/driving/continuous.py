@@ -14,7 +14,7 @@ it, the step becomes a passage, and is solved again.
 from tpss.driving.coasting import has_coasting, may_coast
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
-from tpss.driving.motion import force_to_target, move_uniformly, set_target
+from tpss.driving.motion import force_to_target, move_uniformly, set_target, spare_motors
 from tpss.driving.neutral import has_neutral, may_lack_power
 from tpss.driving.passage import LONGEST_PHASE_S
 from tpss.kernel import at, inlined, kernel
@@ -178,6 +178,7 @@ def aim(train: Train, data: DrivingData, points: Points) -> None:
         target = min(train.decision.cruise_m_s, v + kind.highest_acceleration_m_s2 * h)
         wanted = force_to_target(train, kind, target, h)
     set_target(train, wanted, min(wanted, train.demand.adhesion_n), target)
+    spare_motors(train, kind)
     if regenerates(kind):
         offer(-wanted, (v + target) / 2.0, kind, train.demand, points)
     certify_free_band(kind, train.demand)

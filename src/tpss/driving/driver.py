@@ -4,7 +4,7 @@ from tpss.driving import continuous
 from tpss.driving.aggressive import aggressive_force, aggressive_speed
 from tpss.driving.data import Driver, DrivingData, Floats, MotionModel
 from tpss.driving.manners import aim_to_stop, allowed_speed, highest_speed_that_stops
-from tpss.driving.motion import force_to_target, set_target, update_resistances
+from tpss.driving.motion import force_to_target, set_target, spare_motors, update_resistances
 from tpss.driving.stops import distance_to_stop
 from tpss.driving.within_step import aim_to_limit
 from tpss.kernel import at, inlined
@@ -106,6 +106,7 @@ def _aim_stepped(train: Train, data: DrivingData) -> None:
         stops = phase == Phase.PLANNED and aim_to_stop(train, kind, data)
         if not stops:
             aim_at_speed(train, kind, data)
+    spare_motors(train, kind)
     certify_free_band(kind, train.demand)
     update_cap_terms(kind, train.demand)
 

@@ -1,5 +1,7 @@
 """Resistances, targets and steps of constant acceleration, which all drivers and manners share."""
 
+import math
+
 from tpss.driving.data import DrivingData, Options, Profiles
 from tpss.driving.regulated import ideal_force, wanted_acceleration
 from tpss.kernel import at, inlined, kernel
@@ -7,6 +9,7 @@ from tpss.numerics.staircase import index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.locomotive import acceleration
 from tpss.physics.running_resistance import gradient_force, running_resistance
+from tpss.vehicle.billing import force_of_current
 from tpss.vehicle.train import Phase, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -75,6 +78,23 @@ def set_target(train: Train, force_n: float, cap_n: float, target_m_s: float) ->
     train.demand.force_cap_n = max(0.0, cap_n)
     train.decision.target_speed_m_s = target_m_s
     train.decision.force_n = force_n
+
+
+@inlined
+def spare_motors(train: Train, kind: TrainType) -> None:
+    """Let a driver want no more of his motors than he allows them.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.17), as `force_of_current` solves it.
+    """
+    if train.allowed_current_a < math.inf:
+        demand = train.demand
+        spared_n = force_of_current(
+            train.allowed_current_a, demand.speed_m_s, demand.resistance_n,
+            demand.mean_speed_weight_s, kind,
+        )  # fmt: skip
+        demand.force_cap_n = min(demand.force_cap_n, spared_n)
 
 
 @inlined

@@ -27,6 +27,7 @@ from tpss.numerics.curve import Points
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.running_resistance import gradient_force, running_resistance
 from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.billing import force_of_current
 from tpss.vehicle.phase import force_of_phase
 from tpss.vehicle.train import Passage, Train
 from tpss.vehicle.train_type import TrainType
@@ -132,6 +133,9 @@ def pull_with(
     if wanted <= 0.0:
         return Pull(aim.acceleration_m_s2, duration, mean, 0.0, 0.0, -wanted, running, gradient)
     cap = min(wanted, adhesion_of(kind, mean, options.rail, options.adhesion_in_km_h, points))
+    if train.allowed_current_a < math.inf:
+        allowed_a = train.allowed_current_a
+        cap = min(cap, force_of_current(allowed_a, mean, resistance, 0.0, kind))
     force = force_of_phase(voltage_v, mean, resistance, cap, kind, train.demand, points, scratch)
     given = aim.acceleration_m_s2
     if force < wanted:

@@ -17,6 +17,7 @@ from tpss.numerics.neural_network import FeedForwardNetwork, build_network
 from tpss.physics.motor import MotorModel
 from tpss.physics.reactive_power import ReactiveModel, reactive_ratio
 from tpss.physics.running_resistance import DavisCoefficients
+from tpss.physics.thermal import time_to_rated_s
 from tpss.record import Records
 from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationBands
 from tpss.scenario.rolling_stock import Train
@@ -29,6 +30,7 @@ from tpss.vehicle.effort.limits import EffortLimits as Limits
 from tpss.vehicle.effort.table import MOST_VOLTAGES
 from tpss.vehicle.effort.table import EffortTable as Table
 from tpss.vehicle.regeneration import Regeneration
+from tpss.vehicle.spared_motors import SparedMotors
 from tpss.vehicle.train_type import LineCurrentLimit, Networks, TrainType
 
 KM_H = 1.0 / 3.6
@@ -100,6 +102,7 @@ def _train_type(train: Train, profile: int, book: CurveBook, limits: VoltageLimi
         line_current=_line_current(train),
         regeneration=_regeneration(train, book, limits),
         pulls_at_any_voltage=_pulls_at_any_voltage(train),
+        spared=_spared_motors(train),
         **_electric(train, book),
     )
 
@@ -186,6 +189,20 @@ def _regeneration(train: Train, book: CurveBook, limits: VoltageLimits) -> Any:
         whole_up_to_v=_si_or(own, "full_until_kv", si(limits, "umax1_kv")),
         none_from_v=_si_or(own, "zero_from_kv", si(limits, "umax2_kv")),
         efficiency=_over_speed(own.efficiency or train.efficiency, book),
+    )
+
+
+def _spared_motors(train: Train) -> Any:
+    """A row of `SparedMotors`."""
+    rating = train.motor_rating
+    if rating is None or not rating.spared:
+        return SparedMotors.row()
+    load = rating.short_time_a / rating.continuous_a
+    return SparedMotors.row(
+        continuous_a=si(rating, "continuous_a"),
+        short_time_load=load,
+        time_constant_s=time_to_rated_s(load, si(rating, "short_time_min")),
+        initial_state=si(rating, "preload_percent") ** 2,
     )
 
 

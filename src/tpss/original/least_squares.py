@@ -32,6 +32,7 @@ from tpss.step.coupling import apply_solutions, decide
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
+from tpss.step.sparing import allow_currents, heat_motors
 from tpss.step.state import State, Status
 
 SHORTEST_MOVE = 1e-8
@@ -45,10 +46,12 @@ def advance_by_least_squares(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
     """Run steps `first` to `last` - 1, as `step.advance.advance` does."""
-    step = first
+    step, spares = first, model.control.spares_motors
     status: int = Status.RUNNING
     while step < last and status == Status.RUNNING:
         clock = state.clock[0]
+        if spares:
+            allow_currents(step, model.options.step_s, model, state)
         clock.on_line = begin_step(step, model, state, recording)
         evaluations, tries = 0, 0
         while True:
@@ -62,6 +65,8 @@ def advance_by_least_squares(
             change_length(step, wanted_s, model, state, recording)
         status = end_step(step, clock.on_line, share, evaluations, now, state, recording)
         if status in (Status.RUNNING, Status.FINISHED):
+            if spares:
+                heat_motors(step, clock.last_step_s, model, state, recording)
             step += 1
     record_instant(step, state.trains, recording)
     return status, step

@@ -1,5 +1,6 @@
 """What would help a train that stalls: only what binds it, in the words of the scenario."""
 
+import math
 from typing import NamedTuple
 
 from tpss.kernel import plain
@@ -8,7 +9,9 @@ from tpss.physics.locomotive import machine_force
 from tpss.scenario.machine import EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.step.model import Model
+from tpss.vehicle.billing import force_of_current
 from tpss.vehicle.terms import Demand
+from tpss.vehicle.train import Train as TrainState
 from tpss.vehicle.train_type import TrainType
 
 STRENGTHEN = (
@@ -17,6 +20,11 @@ STRENGTHEN = (
 )
 LIMIT_LESS = (
     "Relax the train's current_limitation (higher max_current_a, lower umin2_kv or knee_factor)."
+)
+
+SPARE_LESS = (
+    "Lower the train's mass (mass_t), give its motors a higher continuous_a or less preload_percent, or "
+    "leave out motor_rating.spared."
 )
 
 LONG_STEP_S = 15.0
@@ -36,6 +44,8 @@ class Forces(NamedTuple):
     """What driver and rails ask of the machine. [N]"""
     given_n: float
     """What the motors gave, within a current limitation too. [N]"""
+    spared_n: float = math.inf
+    """What its driver allows motors that he spares; infinite: any. [N]"""
 
     @property
     def unlimited_n(self) -> float:
@@ -48,6 +58,11 @@ class Forces(NamedTuple):
         return self.given_n < self.unlimited_n
 
     @property
+    def driver_binds(self) -> bool:
+        """Whether the driver, to spare the motors, asks for less than is needed."""
+        return self.spared_n < self.needed_n
+
+    @property
     def rails_bind(self) -> bool:
         """Whether the rails pass on too little, or least."""
         return self.rails_n < self.needed_n or self.rails_n <= self.machine_n
@@ -58,8 +73,13 @@ class Forces(NamedTuple):
         return self.machine_n < self.needed_n or self.machine_n <= self.rails_n
 
 
-def forces_on(demand: Demand, kind: TrainType, needed_n: float) -> Forces:
+def forces_on(train: TrainState, kind: TrainType, needed_n: float) -> Forces:
     """What limits the force of a train in the present step."""
+    demand, spared_n = train.demand, math.inf
+    if train.allowed_current_a < math.inf:
+        spared_n = plain(force_of_current)(
+            train.allowed_current_a, train.motion.speed_m_s, demand.resistance_n, 0.0, kind
+        )
     motors_n = max(0.0, float(demand.machine_force_n))
     machine_n = plain(machine_force)(
         motors_n, demand.resistance_n, kind.rotor_mass_kg, kind.inertia_kg
@@ -70,11 +90,16 @@ def forces_on(demand: Demand, kind: TrainType, needed_n: float) -> Forces:
         machine_n=max(0.0, float(machine_n)),
         wanted_n=float(demand.force_cap_n),
         given_n=float(demand.wheel_force_n),
+        spared_n=float(spared_n),
     )
 
 
 def what_binds(forces: Forces) -> str:
-    """Sentence on the forces that rails and machine allow."""
+    """Sentence on the forces that rails and machine allow, or on what the driver asks for."""
+    if forces.driver_binds:
+        return (
+            f" To spare hot motors its driver asks for no more than {forces.spared_n / 1e3:.1f} kN."
+        )
     rails, machine = f"{forces.rails_n / 1e3:.1f} kN", f"{forces.machine_n / 1e3:.1f} kN"
     said = f" The rails pass on {rails}, the machine gives {machine}:"
     limiting = ["rails limit", "machine limits"]
@@ -106,6 +131,8 @@ def stall_advice(
         if demand.voltage_v < kind.line_current.full_current_voltage_v:
             advice.append(STRENGTHEN)
         return " ".join(advice)
+    if forces.driver_binds:
+        return SPARE_LESS
     rises = []
     if forces.rails_bind:
         rises.append("its adhesive mass (adhesive_mass_t)")

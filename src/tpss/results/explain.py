@@ -52,6 +52,7 @@ _LIMITED = {
     "curve outside its speeds",
     "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
     "too_near": "trains were nearer to others, or to where they had to wait, than they could brake for",
+    "motors_spared": "drivers took all that they allow motors to bear, to spare them",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
 }
 
@@ -232,7 +233,7 @@ def _stall(outcome: Outcome, model: Model, scenario: Scenario, time_min: float) 
         f"give {clock.force_available_n / 1e3:.1f} kN at {demand.voltage_v / 1e3:.2f} kV and "
         f"{motion.speed_m_s * 3.6:.1f} km/h."
     )
-    forces = forces_on(demand, kind, float(clock.force_needed_n))
+    forces = forces_on(train, kind, float(clock.force_needed_n))
     if forces.current_binds:
         share = 100.0 * forces.given_n / forces.unlimited_n
         problem += (

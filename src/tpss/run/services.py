@@ -187,6 +187,7 @@ def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Tra
     records["timetable"]["arrival_step"] = -1
     records["demand"]["voltage_v"] = records["line_voltage_v"] = voltage_v
     records["demand"]["terms_speed_m_s"] = -1.0
+    records["allowed_current_a"] = math.inf
     return records
 
 

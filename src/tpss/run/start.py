@@ -85,6 +85,8 @@ def begin(
     studied_name = services[0].name_of(1)
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
-    model = model._replace(control=RunControl(studied_train=ends_with))
+    spares_motors = bool((model.types["spared"]["continuous_a"] < math.inf).any())
+    control = RunControl(studied_train=ends_with, spares_motors=spares_motors)
+    model = model._replace(control=control)
     records = train_records(trains, model.network.system.nominal_voltage_v)
     return Start(model, services, steps, capacity, trains, records, studied, switchings)

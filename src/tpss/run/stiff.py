@@ -86,7 +86,9 @@ def lost_by_train(
     """
     if run.step == 0 or not np.isfinite(arrivals_s(run)).any():
         return {}
-    model = start.model._replace(control=RunControl(fixed_voltage_v=voltage_v))
+    spares_motors = start.model.control.spares_motors
+    control = RunControl(fixed_voltage_v=voltage_v, spares_motors=spares_motors)
+    model = start.model._replace(control=control)
     stiff = replace(start, model=model, steps=run.step, switchings=())
     other = run_of(stiff)
     if advance_to_end(other, stiff, report, interrupted) == INTERRUPTED:

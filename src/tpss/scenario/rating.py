@@ -1,4 +1,4 @@
-"""What equipment bears without getting too hot, by which a run is judged and which never changes it."""
+"""What equipment bears without getting too hot: a run is judged by it, and drivers may act on it."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, Self
@@ -167,6 +167,12 @@ class MotorRating(Initial):
         description="For how long: in that time it heats a cold motor as far as the continuous current "
         "does for ever, which gives the motor's time constant.",
     )
+    spared: bool = Field(
+        default=False,
+        description="Whether the driver spares hot motors: never more than `short_time_a`, and never so "
+        "much that they get hotter than `continuous_a` makes them; `preload_percent` says how warm "
+        "they are when a train departs, and when the run begins.",
+    )
 
     @model_validator(mode="after")
     def _bears_more_for_a_while(self) -> Self:
@@ -175,5 +181,16 @@ class MotorRating(Initial):
                 f"short_time_a ({self.short_time_a:g} A) is not above continuous_a "
                 f"({self.continuous_a:g} A)",
                 "give the higher current as short_time_a",
+            )
+        if self.spared and self.preload_percent is None:
+            raise fault(
+                "a driver who spares the motors has to know how warm they are at first",
+                "add preload_percent, such as 0 for cold motors",
+            )
+        if self.spared and self.preload_percent is not None and self.preload_percent > 100:
+            raise fault(
+                f"a preload of {self.preload_percent:g} % leaves motors hotter than they bear, which no "
+                "driver can spare any more",
+                "give preload_percent up to 100, or leave out spared",
             )
         return self

@@ -255,6 +255,12 @@ class Train(Part):
                 "motor_rating judges the motors' current, which is not recorded while they brake",
                 "leave out motor_rating, or regeneration",
             )
+        if self.motor_rating.spared and self.motor_voltage == "former":
+            raise fault(
+                "a driver who spares the motors foresees their current, which the former model of their "
+                "voltage lets depend on the line voltage",
+                'choose motor_voltage = "new", or leave out spared',
+            )
         return self
 
     @property

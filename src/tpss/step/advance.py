@@ -17,6 +17,7 @@ from tpss.step.precedence import let_pass
 from tpss.step.record import record_instant, record_network, record_trains
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
+from tpss.step.sparing import allow_currents, heat_motors
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.track.gate import Precedence
@@ -289,6 +290,22 @@ def run_steps(
     return status, step
 
 
+@kernel
+def run_steps_sparing(
+    first: int, last: int, model: Model, state: State, recording: Recording
+) -> tuple[int, int]:
+    """`run_steps` where drivers spare hot motors."""
+    step = first
+    status: int = Status.RUNNING
+    while step < last and status == Status.RUNNING:
+        allow_currents(step, model.options.step_s, model, state)
+        status, reached = run_steps(step, step + 1, model, state, recording)
+        if reached > step:
+            heat_motors(step, state.clock[0].last_step_s, model, state, recording)
+        step = reached
+    return status, step
+
+
 def advance(
     first: int, last: int, model: Model, state: State, recording: Recording
 ) -> tuple[int, int]:
@@ -298,9 +315,10 @@ def advance(
     `Status.COLLAPSED` and `Status.STALLED` the step that has no solution or in which a train stalls,
     which is not carried out.
     """
-    status, step = run_steps(first, last, model, state, recording)
+    carry_out = run_steps_sparing if model.control.spares_motors else run_steps
+    status, step = carry_out(first, last, model, state, recording)
     while status == Status.SEARCHING:
         now = plain(with_step)(model, state.clock[0].last_step_s)
         answer_in_turn(model.network, state.flow, plain(loads_of)(now, state))
-        status, step = run_steps(step, last, model, state, recording)
+        status, step = carry_out(step, last, model, state, recording)
     return status, step

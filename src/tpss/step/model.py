@@ -21,6 +21,8 @@ class RunControl(NamedTuple):
     """Voltage at every pantograph without a load flow, or 0 for the coupled simulation. [V]"""
     studied_train: int = -1
     """The run ends with its arrival; -1: it does not."""
+    spares_motors: bool = False
+    """Whether there are drivers who spare hot motors."""
 
 
 class Model(NamedTuple):

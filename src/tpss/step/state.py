@@ -59,6 +59,7 @@ class Counter(IntEnum):
     CURRENT_LIMITED = Breach.CURRENT_LIMITED
     SHORT_PIECE = BREACHES
     TOO_NEAR = BREACHES + 1
+    MOTORS_SPARED = BREACHES + 2
 
 
 class Clock(Record):

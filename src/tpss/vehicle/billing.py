@@ -3,6 +3,8 @@
 The equations are those of `physics.locomotive`; the slopes serve Newton's method.
 """
 
+import math
+
 from tpss.kernel import fused, inlined, kernel
 from tpss.physics.locomotive import acceleration, machine_force, motor_power
 from tpss.physics.motor import armature_current
@@ -77,3 +79,43 @@ def motors_current(
         kind.highest_motor_voltage_v,
         demand.speed_m_s < kind.base_speed_m_s,
     )
+
+
+@kernel
+def force_of_current(
+    current_a: float, speed_m_s: float, resistance_n: float, weight_s: float, kind: TrainType
+) -> float:
+    r"""Force at the wheel rim at which the motors' currents have a sum, at full line voltage. [N]
+
+    Below base speed the current is proportional to the motors' force.  Above it, it is their power over
+    their highest voltage, at the billed speed, which follows the force: with
+    :math:`B = 4 I_D E_{max} / (\kappa + 1)` and w the weight of the mean speed,
+
+    .. math:: F_{motor} v_b = B, \quad v_b = v + w \frac{F_{motor} - F_{res}}{M + c} ,
+
+    which is quadratic in :math:`v_b`, with one root that is positive.
+
+    Parameters
+    ----------
+    current_a : float
+        Sum of the four motors' currents. [A]
+    speed_m_s, resistance_n : float
+        Speed at the start of the step [m/s]; running resistance and gradient force [N].
+    weight_s : float
+        w, as `Demand.mean_speed_weight_s`. [s]
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (2.5), (2.11), (2.17) and (F.34), solved for the force.
+    """
+    power_w = current_a * kind.highest_motor_voltage_v / kind.slip_factor
+    if power_w <= 0.0:
+        return 0.0
+    billed_m_s = kind.base_speed_m_s
+    if speed_m_s >= billed_m_s:
+        per_force = weight_s / (kind.inertia_kg + kind.rotor_mass_kg)
+        coasting_m_s = speed_m_s - per_force * resistance_n
+        root = math.sqrt(coasting_m_s * coasting_m_s + 4.0 * per_force * power_w)
+        billed_m_s = (coasting_m_s + root) / 2.0
+    force_n = power_w / billed_m_s
+    return max(0.0, machine_force(force_n, resistance_n, kind.rotor_mass_kg, kind.inertia_kg))

@@ -233,6 +233,10 @@ class Train(Record):
     """Its way through the present step, at the voltage last tried."""
     trial: Passage
     """The same at a voltage close by, for the slopes."""
+    allowed_current_a: float
+    """Armature current that its driver allows its motors in this step; infinite: any. [A]"""
+    motor_state: float
+    """Thermal state of its motors, if its driver spares them. [1]"""
 
 
 @kernel

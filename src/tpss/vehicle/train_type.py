@@ -11,6 +11,7 @@ from tpss.record import Record
 from tpss.vehicle.braking import BrakingBands
 from tpss.vehicle.effort.kinds import TractiveEffort
 from tpss.vehicle.regeneration import Regeneration
+from tpss.vehicle.spared_motors import SparedMotors
 
 
 class LineCurrentLimit(Record):
@@ -100,3 +101,5 @@ class TrainType(Record):
     """Its electric brakes."""
     networks: Networks
     """Networks of the machine; zero where nothing asks for them."""
+    spared: SparedMotors = SparedMotors.row()
+    """Its motors, if its driver spares them."""
