@@ -104,9 +104,9 @@ TABLES = """`tpss plan run` writes `plan.json` and these files of CSV into the f
 |---|---|
 {rows}
 
-`best_plans` holds 20 of them, with a budget as many as are found in 10 s. `switching_values` is empty of an
-area whose scenarios part at once, and of plans of more than some thousand configurations (with a budget
-some dozens), which `tpss plan price --sweep` may be asked about one by one."""
+`best_plans` holds 20 of them, with a budget as many as are found in 10 s. `switching_values` is empty of
+an area whose scenarios part at once, and of plans of more than some thousand configurations (with a
+budget some dozens), which `tpss plan price --sweep` may be asked about one by one."""
 
 
 def page() -> str:
