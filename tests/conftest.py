@@ -15,8 +15,11 @@ from tpss.kernel import plain
 
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
+OTHER_FILES = ("study_*.toml", "plan_*.toml", "geometry_*.toml")
+"""Examples that are no scenarios."""
+
 EXAMPLE_SCENARIOS = sorted(
-    {*EXAMPLES.glob("*.toml")} - {*EXAMPLES.glob("study_*.toml"), *EXAMPLES.glob("plan_*.toml")}
+    {*EXAMPLES.glob("*.toml")} - {file for each in OTHER_FILES for file in EXAMPLES.glob(each)}
 )
 
 

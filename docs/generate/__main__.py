@@ -8,6 +8,7 @@ from pathlib import Path
 
 import command_line_page
 import evidence_page
+import geometry_page
 import library_page
 import nomenclature_tables
 import plan_page
@@ -20,6 +21,7 @@ NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not t
 PAGES = {
     "command_line.md": command_line_page.page,
     "evidence.md": evidence_page.page,
+    "geometry.md": geometry_page.page,
     "library.md": library_page.page,
     "plan.md": plan_page.page,
     "result.md": result_page.page,

@@ -18,8 +18,9 @@ KINDS = {
     "locomotives": ("Trains", "`model` of a train"),
     "systems": ("Electrification systems", "`supply.system`"),
     "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),
+    "wires": ("Wires", "`wire` of conductors in a [geometry](geometry.md)"),
 }
-"""Title of each kind, and the keys of a scenario that take its names."""
+"""Title of each kind, and the keys that take its names."""
 
 NETWORKS = {
     "tractive_effort": "largest force of the motors",

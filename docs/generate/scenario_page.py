@@ -159,7 +159,7 @@ def _words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     if isinstance(annotation, type) and fields_of(annotation):
         return f"[table](#{anchor(_heads(Scenario)[annotation][0])})"
     if annotation in WORDS:
-        words = ", ".join(filter(None, (WORDS[annotation], _range(metadata))))
+        words = ", ".join(filter(None, (WORDS[annotation], range_of(metadata))))
         return f"{words}, or a time of the clock" if OrClock() in metadata else words
     if get_origin(annotation) is Literal:
         return " or ".join(code(choice) for choice in inner)
@@ -173,7 +173,7 @@ def _words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     return " or ".join(dict.fromkeys(filter(None, alternatives)))
 
 
-def _range(metadata: Iterable[Any]) -> str:
+def range_of(metadata: Iterable[Any]) -> str:
     """Range of a number, as ``0.1 to 10`` or ``> 0, ≤ 5``."""
     found: dict[type, float] = {}
     for item in metadata:

@@ -17,6 +17,10 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.approximator.approximator import Approximator as Approximator
     from tpss.approximator.approximator import load_approximator as load_approximator
     from tpss.approximator.train import train_approximator as train_approximator
+    from tpss.conductors.constants import LineConstants as LineConstants
+    from tpss.conductors.constants import line_constants as line_constants
+    from tpss.conductors.geometry import Geometry as Geometry
+    from tpss.conductors.load import load_geometry as load_geometry
     from tpss.errors import ApproximatorError as ApproximatorError
     from tpss.errors import AuditError as AuditError
     from tpss.errors import Finding as Finding
@@ -53,7 +57,9 @@ _HOME = {
     "AuditError": "tpss.errors",
     "Evidence": "tpss.results.standards.evidence",
     "Finding": "tpss.errors",
+    "Geometry": "tpss.conductors.geometry",
     "KeyFigures": "tpss.results.key_figures",
+    "LineConstants": "tpss.conductors.constants",
     "NoPlanError": "tpss.errors",
     "Plan": "tpss.planning.load",
     "PlanError": "tpss.errors",
@@ -68,7 +74,9 @@ _HOME = {
     "TpssError": "tpss.errors",
     "compare_outages": "tpss.outages.run",
     "compare_with_measurements": "tpss.measured.compare",
+    "line_constants": "tpss.conductors.constants",
     "load_approximator": "tpss.approximator.approximator",
+    "load_geometry": "tpss.conductors.load",
     "load_plan": "tpss.planning.load",
     "load_result": "tpss.results.result",
     "load_scenario": "tpss.scenario",

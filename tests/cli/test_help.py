@@ -8,7 +8,9 @@ import pytest
 
 from conftest import EXAMPLES
 
-COMMANDS = ("run", "report", "compare", "check", "export", "new", "library", "schema")
+COMMANDS = (
+    "run", "report", "compare", "check", "export", "line-constants", "new", "library", "schema",
+)  # fmt: skip
 HEAVY = {"jinja2", "netCDF4", "numba", "numpy", "pandas", "plotly", "scipy", "xarray"}
 
 

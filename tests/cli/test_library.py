@@ -9,10 +9,12 @@ import pytest
 import tpss
 from tpss import library
 from tpss.cli.library import KINDS, usage
+from tpss.conductors.geometry import Geometry
 
 from scenarios import SHORT_LINE
 
 ENTRIES = [(kind, name) for kind in library.KINDS for name in library.entries(kind)]
+IN_SCENARIOS = [(kind, name) for kind, name in ENTRIES if KINDS[kind].file == "scenario"]
 
 
 def test_every_file_of_the_library_is_a_kind():
@@ -65,7 +67,7 @@ def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
     assert "generator_reactance_pu 0.53 p.u. q-axis reactance of the generator." in reactance
 
 
-@pytest.mark.parametrize(("kind", "name"), ENTRIES)
+@pytest.mark.parametrize(("kind", "name"), IN_SCENARIOS)
 def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     """The lines are put into a scenario that names something else in that place, or nothing."""
     document = copy.deepcopy(SHORT_LINE)
@@ -81,6 +83,16 @@ def test_the_shown_usage_is_that_of_a_scenario(kind, name):
             else:
                 document[table][key] = value
     assert tpss.Scenario.from_document(document).name == "short-line"
+
+
+@pytest.mark.parametrize("name", library.entries("wires"))
+def test_a_wire_is_shown_as_it_stands_in_a_file_of_conductors(tpss_command, name):
+    used = tomllib.loads(usage("wires", name))
+    place = {"name": "wire", "group": "contact", "x_m": 0.0, "height_m": 6.0}
+    document = {"conductors": [{**place, **used["conductors"][0]}]}
+    (conductor,) = Geometry.model_validate(document).conductors
+    assert conductor.wire.r_ohm_per_km == library.values("wires", name)["r_ohm_per_km"]
+    assert "In a file of conductors:" in tpss_command("library", "wires", name).out
 
 
 def test_a_table_of_one_s_own_is_shown_with_the_entry_s_values(tpss_command):

@@ -10,6 +10,7 @@ import tomli_w
 from pydantic import BaseModel
 
 from tpss import Finding, Scenario, ScenarioError, library, load_result, load_scenario, simulate
+from tpss.conductors.geometry import Geometry
 from tpss.scenario.fields import FromLibrary
 from tpss.scenario.inline import PLACES
 
@@ -145,7 +146,7 @@ def test_every_place_that_takes_a_library_name_takes_a_file():
                 waiting += [(arg, inner) for arg in get_args(annotation)]
         return found
 
-    assert set(places(Scenario, ())) == set(PLACES) - {
+    assert {*places(Scenario, ()), *places(Geometry, ())} == set(PLACES) - {
         ("line",),
         ("lines", "*"),
         ("trains", "*", "model"),

@@ -18,6 +18,11 @@ ScenarioFile = Annotated[
     Path, argument(help="Scenario file (TOML).", autocompletion=complete.scenario_files)
 ]
 
+GeometryFile = Annotated[
+    Path,
+    argument(help="File with the conductors (TOML).", autocompletion=complete.scenario_files),
+]
+
 Assignments = Annotated[
     list[str] | None,
     option(

@@ -33,6 +33,8 @@ class Kind:
     key: str
     remark: str
     """How to change the values of the entry."""
+    file: str = "scenario"
+    """What sort of file that table stands in."""
 
 
 OWN_TABLE = (
@@ -104,6 +106,16 @@ KINDS = {
         "system",
         "with frequency_hz next to it for another frequency",
     ),
+    "wires": Kind(
+        "Wires, rails and cables, for tpss line-constants",
+        "tpss.conductors.geometry",
+        "Wire",
+        ("r_ohm_per_km", "radius_mm", "gmr_mm", "temperature_coefficient_per_k"),
+        "[[conductors]]",
+        "wire",
+        OWN_TABLE,
+        "file of conductors",
+    ),
 }  # fmt: skip
 
 
@@ -134,7 +146,7 @@ def print_library(kind: str | None, name: str | None) -> None:
 
 
 def usage(kind: str, name: str) -> str:
-    """Lines of a scenario that use an entry; none for limits of a system that no supply can have."""
+    """Lines of a file that use an entry; none for limits of a system that no supply can have."""
     how = KINDS[kind]
     if how.key == "system" and name not in library.entries("systems"):
         return ""
@@ -173,7 +185,7 @@ def _print_entry(kind: str, name: str, console: Console) -> None:
     if not used:
         say(console, "Supplies of this system cannot be described yet.")
         return
-    say(console, f"In a scenario:\n\n{used}")
+    say(console, f"In a {how.file}:\n\n{used}")
     say(console, how.remark.format(key=how.key, values=_in_a_line(library.values(kind, name))))
 
 

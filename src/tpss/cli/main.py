@@ -17,6 +17,7 @@ from tpss.cli import approximate_app, complete, import_app, plan_app, result_com
 from tpss.cli.arguments import (
     Assignments,
     Force,
+    GeometryFile,
     NoStepCheck,
     Quiet,
     ScenarioFile,
@@ -348,6 +349,38 @@ def spare_time(
     print_savings(file, percent or [], set_ or [], out, plot, force)
 
 
+@app.command(
+    name="line-constants",
+    epilog="Example:  tpss line-constants examples/geometry_double_track.toml --out catenary.toml",
+)
+def line_constants(
+    file: GeometryFile,
+    frequency: Annotated[
+        float | None,
+        option(
+            min=0,
+            max=10_000,
+            metavar="HZ",
+            help="Frequency, 0 of direct current; by default that of the file.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, option(help="File to write, which supply.catenary of a scenario may name.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Print impedances and capacitances of a line, from where its conductors hang and lie.
+
+    The file has the tables `[[conductors]]`: wires of the library or of your own, their places, and what
+    they are connected to. The matrices R, X and B are those of the groups, with the return through the
+    earth; below stands what one conductor a track comes to, its return included, which is what a
+    scenario's catenary is.
+    """
+    from tpss.cli.line_constants import print_line_constants
+
+    print_line_constants(file, frequency, out, force)
+
+
 @app.command(epilog="Example:  tpss new my-line")
 def new(
     folder: Annotated[Path, argument(help="Folder to write; existing files are kept.")],
@@ -367,7 +400,7 @@ def library(
         str | None,
         argument(
             help="locomotives, catenaries, converters, transformers, high_voltage_lines, "
-            "voltage_limits or systems.",
+            "voltage_limits, systems or wires.",
             autocompletion=complete.library_kinds,
         ),
     ] = None,
@@ -396,6 +429,10 @@ def schema(
     plan: Annotated[
         bool, typer.Option("--plan", help="The schema of plan files, in place of scenarios.")
     ] = False,
+    geometry: Annotated[
+        bool,
+        typer.Option("--geometry", help="The schema of conductors, for tpss line-constants."),
+    ] = False,
 ) -> None:
     """Print the JSON Schema of scenario files, which editors use to complete and check them.
 
@@ -404,7 +441,9 @@ def schema(
     """
     from tpss.cli.schema import write_schema
 
-    write_schema(out, plan)
+    if plan and geometry:
+        raise typer.BadParameter("give either --plan or --geometry")
+    write_schema(out, "plan" if plan else "geometry" if geometry else "scenario")
 
 
 def main() -> None:

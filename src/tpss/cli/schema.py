@@ -1,28 +1,35 @@
-"""The command ``tpss schema``: the JSON Schema of the formats of scenarios and plans."""
+"""The command ``tpss schema``: the JSON Schema of the formats of scenarios, plans and geometries."""
 
 import json
 import os
+from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from tpss.errors import ResultError
 from tpss.files.refusals import explained
 from tpss.files.whole import write_file
-from tpss.scenario.schema import TITLE, scenario_schema
 
-TITLES = (TITLE, "TPSS plan")
+SCHEMAS = {
+    "scenario": ("tpss.scenario.schema", "scenario_schema"),
+    "plan": ("tpss.planning.schema", "plan_schema"),
+    "geometry": ("tpss.conductors.schema", "geometry_schema"),
+}
+"""Kinds of files that have a schema, and the module and function that make it."""
+
+TITLES = tuple(f"TPSS {kind}" for kind in SCHEMAS)
 """Titles of schemas that TPSS writes."""
 
 
-def write_schema(out: Path | None, plan: bool = False) -> None:
-    """Print the schema of scenarios, or of plans, or write it into a file, whole or not at all.
+def write_schema(out: Path | None, kind: str = "scenario") -> None:
+    """Print the schema of a kind of files, or write it into a file, whole or not at all.
 
     Raises
     ------
     ResultError
         The file cannot be written, or exists and holds something other than a schema of TPSS.
     """
-    schema = _plan_schema() if plan else scenario_schema()
+    module, name = SCHEMAS[kind]
+    schema = getattr(import_module(module), name)()
     text = json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
     if out is None:
         print(text, end="")
@@ -31,14 +38,7 @@ def write_schema(out: Path | None, plan: bool = False) -> None:
         raise ResultError(f"{out} exists and is not a schema of TPSS; name another file")
     with explained(out, "name another file"):
         write_file(out, text.encode())
-    kind = "plan" if plan else "scenario"
     print(f"Wrote {out}.  In a {kind}, the first line  #:schema {out.name}  makes editors use it.")
-
-
-def _plan_schema() -> dict[str, Any]:
-    from tpss.planning.schema import plan_schema
-
-    return plan_schema()
 
 
 def _is_our_schema(file: Path) -> bool:

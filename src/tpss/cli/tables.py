@@ -33,7 +33,7 @@ def print_result(result: Result, console: Console) -> None:
     title = f"\n[bold]{summary['name']}[/bold]  {escape(summary['description'])}"
     console.print(title, highlight=False, soft_wrap=True)
     _print_trains(result, console)
-    _print_table(
+    print_table(
         "Feeding stations",
         "station",
         _STATION_COLUMNS,
@@ -109,7 +109,7 @@ _STEP_COLUMNS = [
 def _print_trains(result: Result, console: Console) -> None:
     trips = result.trips
     rows = named_rows(trips.head(MOST_TRAINS), "train")
-    _print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
+    print_table("Trains", "train", _TRAIN_COLUMNS, rows, console)
     if len(trips) > MOST_TRAINS:
         say(console, f"... and {len(trips) - MOST_TRAINS} more trains, in the saved result")
 
@@ -118,10 +118,10 @@ def _print_losses(found: pd.DataFrame, console: Console) -> None:
     """Print the 50 Hz side of stations, without columns of what does not occur."""
     occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
     title = "50 Hz side of converter stations"
-    _print_table(title, "station", occurs, named_rows(found, "station"), console)
+    print_table(title, "station", occurs, named_rows(found, "station"), console)
 
 
-def _print_table(
+def print_table(
     title: str,
     first: str,
     columns: Sequence[Column],

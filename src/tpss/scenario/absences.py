@@ -101,6 +101,12 @@ ABSENCES = (
         "a thermal limit at this place",
         "write rating of a catenary, a converter type or a transformer, or motor_rating of a train",
     ),
+    Absence(
+        r"conductors?$|wires?$|line_geometry",
+        "conductors of a line at this place",
+        "make a catenary of them: tpss line-constants FILE --out catenary.toml, then supply.catenary = "
+        '"catenary.toml"',
+    ),
     Absence(r"storage|battery|accumulator", "stores of energy"),
     Absence(
         r"harmonics?|earth|rail_potential|return_(current|line)", "harmonics and the return circuit"

@@ -36,8 +36,9 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "converter_types", "*"),
     ("supply", "mixed_stations", "*", "units", "*", "type"),
     ("trains", "*", "model"),
+    ("conductors", "*", "wire"),
 )
-"""Where a file may be named; ``*`` is any item or key."""
+"""Where a file may be named, the last one in a geometry; ``*`` is any item or key."""
 
 LOSSES_OF = (
     ("supply", "converter_types", "*", "losses"),

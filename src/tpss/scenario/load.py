@@ -54,4 +54,7 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
     if {"stages", "economics"} <= document.keys():
         remedy = "run it with tpss plan, or name the scenario that it starts from"
         raise ScenarioError([Finding(str(source), "", "", "a plan, not a scenario", remedy)])
+    if "conductors" in document:
+        remedy = "make a catenary of them: tpss line-constants FILE --out catenary.toml"
+        raise ScenarioError([Finding(str(source), "", "", "conductors, not a scenario", remedy)])
     return Scenario.from_own_document(override(document, changes or {}, source), source)

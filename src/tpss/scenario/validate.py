@@ -59,6 +59,10 @@ _REMEDIES = {
 }
 
 
+_OWN = {"type": ("supply", "converter_types"), "wire": ("wires",)}
+"""Keys that take names of one's own beside those of the library, and where these are described."""
+
+
 def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Model:
     """Validated `model` of a document.
 
@@ -103,8 +107,10 @@ def _follows_from_another(
         if location == ("traffic",) and inlined.document.get("timetables"):
             return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
-    if detail["type"] == "unknown_name" and location[-1] == "type":
-        own = inlined.document["supply"].get("converter_types")
+    if detail["type"] == "unknown_name" and location[-1] in _OWN:
+        own = inlined.document
+        for key in _OWN[str(location[-1])]:
+            own = own.get(key, {}) if isinstance(own, dict) else {}
         return isinstance(own, dict) and detail["input"] in own  # which has a fault of its own
     if detail["type"] == "default_factory_not_called":
         return True  # what is left out follows from another key, which has a fault

@@ -1,0 +1,111 @@
+"""The catenary of a scenario that stands for a line of many conductors."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import tomli_w
+from pydantic import ValidationError
+
+from tpss.conductors.equivalents import (
+    AUTOTRANSFORMERS,
+    EARTH,
+    EARTHED,
+    INSULATED,
+    Equivalent,
+    with_autotransformers,
+)
+from tpss.errors import Finding, ScenarioError
+from tpss.scenario.supply import Catenary
+
+if TYPE_CHECKING:
+    from tpss.conductors.constants import LineConstants
+
+DIGITS = 6
+"""Significant digits that are written."""
+
+
+def chosen(constants: "LineConstants") -> Equivalent:
+    """Equivalent that a catenary is made of: autotransformers where there are, or what `rails` says."""
+    found = {each.name: each for each in constants.equivalents}
+    rails = EARTHED if constants.geometry.rails == "earthed" else INSULATED
+    return next(
+        found[name] for name in (AUTOTRANSFORMERS, rails, INSULATED, EARTH) if name in found
+    )
+
+
+def capacitance(constants: "LineConstants") -> float:
+    r"""Capacitance of a track to the earth: all contact lines have one voltage. [F/m]
+
+    With autotransformers the feeders have the opposite voltage, :math:`c = v^T C v / n`; without them
+    they are not connected, and have no charge in all.  Rails lie at earth.
+    """
+    geometry = constants.geometry
+    signs = {"contact": 1.0, "positive": 1.0, "rails": 0.0, "earth": 0.0}
+    if with_autotransformers(geometry) and geometry.has("rails"):
+        signs["feeder"] = -1.0
+    taken = [i for i, each in enumerate(geometry.conductors) if each.group in signs]
+    voltage = np.array([signs[geometry.conductors[i].group] for i in taken])
+    charge = np.linalg.solve(constants.conductor_potential[np.ix_(taken, taken)], voltage)
+    return float(voltage @ charge) / len(geometry.tracks)
+
+
+def catenary_of(constants: "LineConstants") -> dict[str, Any]:
+    """Table for `supply.catenary` of a scenario; see `LineConstants.catenary`.
+
+    Raises
+    ------
+    ScenarioError
+        A catenary of a scenario cannot have these values.
+    """
+    z = chosen(constants)
+    table = {
+        "r_ohm_per_km": _rounded(1e3 * z.own.real),
+        "x_ohm_per_km": _rounded(1e3 * z.own.imag),
+        "capacitance_nf_per_km": _rounded(1e12 * capacitance(constants)),
+    }
+    table |= {
+        f"mutual_{axis}_ohm_per_km": _rounded(1e3 * value)
+        for axis, value in in_common(z).items()
+        if value > 0.0
+    }
+    try:
+        Catenary.model_validate(table)
+    except ValidationError as error:
+        remedy = "check r_ohm_per_km and the places of the conductors"
+        findings = [
+            Finding(str(constants.geometry.source), _key(each), "", each["msg"], remedy)
+            for each in error.errors(include_url=False)
+        ]
+        raise ScenarioError(findings) from error
+    return table
+
+
+def in_common(equivalent: Equivalent) -> dict[str, float]:
+    """Resistance r and reactance x that two tracks have in common; of a single track none. [Ω/m]"""
+    mutual = equivalent.mutual
+    return {} if mutual is None else {"r": mutual.real, "x": mutual.imag}
+
+
+def _key(error: Any) -> str:
+    return f"supply.catenary.{error['loc'][-1]}" if error["loc"] else "supply.catenary"
+
+
+def catenary_text(constants: "LineConstants") -> str:
+    """Text of a file that `supply.catenary` of a scenario may name.
+
+    Raises
+    ------
+    ScenarioError
+        As `catenary_of`.
+    """
+    z = chosen(constants)
+    source = (
+        f"line constants of {constants.geometry.source.name} at {constants.frequency_hz:g} Hz, "
+        f"{constants.geometry.method}: {z.meaning}"
+    )
+    return tomli_w.dumps({"source": source, **catenary_of(constants)})
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else value
