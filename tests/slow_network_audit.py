@@ -203,10 +203,34 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
         (SourceKind.CONVERTER, converter_phasor),
         (SourceKind.GRID, grid_phasor),
         (SourceKind.BOUNDED, bounded_phasor),
+        (SourceKind.RECTIFIER, rectifier_voltage),
     ):
         own = sources.kind == kind
         asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
     return largest(np.where(out, 0.0, node_v - asked_v) / network.system.base_voltage_v)
+
+
+def rectifier_voltage(p: Floats, q: Floats, n: Floats, v: Complexes, sources: Any) -> Complexes:
+    """Voltage of a rectifier station, less what its current differs from that of its law there. [V]
+
+    The difference counts as a fall along the first piece of the characteristic.
+    """
+    asked_v = v.copy()
+    for s, law in enumerate(sources.rectifier):
+        amperes, volts = (np.array(each[: law.points]) for each in (law.current_a, law.voltage_v))
+        ohm = (volts[0] - volts[1]) / amperes[1]
+        last_ohm = (volts[-2] - volts[-1]) / (amperes[-1] - amperes[-2])
+        u = v[:, s].real
+        beyond = amperes[-1] + (volts[-1] - u) / last_ohm
+        given = np.where(u < volts[-1], beyond, np.interp(u, volts[::-1], amperes[::-1]))
+        given *= n[:, s] * (u < volts[0])
+        with np.errstate(invalid="ignore"):
+            taken = np.minimum(
+                (u - law.inverter_from_v) / law.inverter_ohm, law.inverter_power_w / u
+            )
+        given -= np.where(u > law.inverter_from_v, taken, 0.0)
+        asked_v[:, s] -= ohm / n[:, s] * ((p[:, s] + 1j * q[:, s]) / u - given)
+    return np.asarray(asked_v)
 
 
 def converter_phasor(p: Floats, q: Floats, n: Floats, _: Complexes, sources: Any) -> Complexes:

@@ -14,7 +14,8 @@ from tpss.powerflow.chain import WARM
 from tpss.powerflow.network import Flow, Loads, Network, loads_alone, new_flow
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.placing import locate_trains, measure_pieces
-from tpss.powerflow.solve import predict, remember, start_flat
+from tpss.powerflow.raising import start_flat
+from tpss.powerflow.solve import predict, remember
 from tpss.record import Records
 from tpss.track.leg import Leg, along_one_line
 from tpss.vehicle.train import Train

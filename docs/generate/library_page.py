@@ -15,6 +15,7 @@ KINDS = {
         "`line_transformer` and `station_transformer` of `supply.high_voltage_line`",
     ),
     "converters": ("Converters", "`type` of `supply.converter_stations`"),
+    "rectifiers": ("Rectifiers", "`type` of `supply.rectifier_stations`"),
     "locomotives": ("Trains", "`model` of a train"),
     "systems": ("Electrification systems", "`supply.system`"),
     "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),

@@ -7,6 +7,7 @@ from importlib.resources import files
 import pytest
 
 import tpss
+from direct_scenarios import direct_document
 from tpss import library
 from tpss.cli.library import KINDS, usage
 from tpss.conductors.geometry import Geometry
@@ -21,6 +22,10 @@ def test_every_file_of_the_library_is_a_kind():
     names = {file.name for file in files(library).iterdir()}
     assert {f"{kind}.toml" for kind in library.KINDS} == {n for n in names if n.endswith(".toml")}
     assert set(KINDS) == set(library.KINDS)
+
+
+SYSTEM_OF = {"3kV-": "DC-3kV", "1.5k": "DC-1.5kV", "750V": "DC-0.75kV"}
+"""Systems of the rectifiers, by the beginnings of their names."""
 
 
 def test_everything_is_listed_with_its_source(tpss_command):
@@ -70,8 +75,11 @@ def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
 @pytest.mark.parametrize(("kind", "name"), IN_SCENARIOS)
 def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     """The lines are put into a scenario that names something else in that place, or nothing."""
-    document = copy.deepcopy(SHORT_LINE)
-    document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
+    if name.startswith("DC-") or kind == "rectifiers":
+        document = direct_document(name if name.startswith("DC-") else SYSTEM_OF[name[:4]])
+    else:
+        document = copy.deepcopy(SHORT_LINE)
+        document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
     used = tomllib.loads(usage(kind, name))
     for table, part in used.items():
         document.setdefault(table, {})
@@ -82,7 +90,7 @@ def test_the_shown_usage_is_that_of_a_scenario(kind, name):
                 document[table].setdefault(key, {}).update(value)
             else:
                 document[table][key] = value
-    assert tpss.Scenario.from_document(document).name == "short-line"
+    assert tpss.Scenario.from_document(document).name == document["name"]
 
 
 @pytest.mark.parametrize("name", library.entries("wires"))

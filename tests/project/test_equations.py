@@ -93,6 +93,7 @@ COMPUTE_NO_EQUATION = {
         "residual", "is_plausible", "losses", "reserve",
         "unloaded", "unloaded_converter", "unloaded_grid", "unloaded_mixed",
         "set_unloaded", "set_unloaded_converter", "set_unloaded_grid", "set_unloaded_mixed",
+        "unloaded_rectifier", "set_unloaded_rectifier",
         "rounded",
         # Of several types of converters each is asked.
         "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",

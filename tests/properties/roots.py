@@ -16,7 +16,7 @@ from tpss.model.start import start_of
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
-from tpss.powerflow.solve import start_flat
+from tpss.powerflow.raising import start_flat
 from tpss.run.already_running import trains_on_line
 from tpss.run.run import Run, run_of, switch
 from tpss.run.services import departing_trains

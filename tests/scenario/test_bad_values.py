@@ -105,7 +105,7 @@ OUT_OF_RANGE = [
                  "simulation.duration_min", "-90.0", "greater than or equal to 0.001 min",
                  id="negative-duration"),
     pytest.param({"supply.frequency_hz": 0.0}, "supply.frequency_hz", "0.0",
-                 "an alternating current", id="direct-current"),
+                 "choose a system of direct current", id="direct-current"),
     pytest.param({"supply.frequency_hz": 1000.0}, "supply.frequency_hz", "1000.0",
                  "less than or equal to 60 Hz", id="high-frequency"),
     pytest.param({f"{WEST}.converters": 0}, f"{WEST}.converters", "0",

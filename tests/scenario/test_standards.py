@@ -3,6 +3,7 @@
 import pytest
 
 import tpss
+from direct_scenarios import direct_scenario
 from tpss import ScenarioError, library
 from tpss.scenario.standards import VoltageLimits
 
@@ -64,9 +65,10 @@ def test_a_line_of_another_nominal_voltage_is_not_held_against_13_5_kv():
 
 @pytest.mark.parametrize("system", library.entries("systems"))
 def test_the_result_is_judged_by_the_limits_of_the_supply_s_system(system):
-    """The stations of the short line feed 16.5 kV, which both systems' bands hold."""
-    assert short_line({"supply.system": system}).standards.voltage_limits.system == system
-    named = short_line({"supply.system": system, f"{LIMITS}.system": system})
+    """The stations of the short line feed 16.5 kV, which both alternating systems' bands hold."""
+    line = direct_scenario(system) if system.startswith("DC") else short_line()
+    assert line.with_({"supply.system": system}).standards.voltage_limits.system == system
+    named = line.with_({"supply.system": system, f"{LIMITS}.system": system})
     assert named.standards.voltage_limits == VoltageLimits(system=system)
 
 

@@ -90,11 +90,22 @@ def test_the_network_s_forty_trains_keep_their_timetable():
     assert (result.trips.distance_km.round(6) == 96.0).sum() == 4  # those over both lines
 
 
+def test_the_metro_s_middle_station_takes_what_the_line_refuses():
+    """No train leaves the limits of 750 V; an inverter takes some of what was refused, saving energy."""
+    scenario = tpss.load_scenario(EXAMPLES / "metro_750v.toml")
+    base, reversible = tpss.simulate(scenario), tpss.simulate(scenario.variant("reversible"))
+    assert base.standards.violations.empty
+    refused = [each.regeneration.refused_mwh.sum() for each in (base, reversible)]
+    assert refused[1] < 0.7 * refused[0]
+    energy = [each.summary["total_energy_mwh"] for each in (base, reversible)]
+    assert energy[1] < 0.98 * energy[0]
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
-        "both_ways", "emu_25kv", "line_320km", "line_320km_losses", "network", "overloaded",
-        "own_trains", "thesis_original",
+        "both_ways", "emu_25kv", "line_320km", "line_320km_losses", "metro_750v", "network",
+        "overloaded", "own_trains", "thesis_original",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}

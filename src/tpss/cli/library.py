@@ -70,6 +70,15 @@ KINDS = {
         "type",
         OWN_TABLE,
     ),
+    "rectifiers": Kind(
+        "Groups of rectifiers for direct current",
+        "tpss.scenario.supply",
+        "RectifierType",
+        ("rated_current_a", "no_load_voltage_kv", "resistance_ohm"),
+        "[[supply.rectifier_stations]]",
+        "type",
+        OWN_TABLE,
+    ),
     "transformers": Kind(
         "Transformers between high-voltage line and contact line",
         "tpss.scenario.supply",

@@ -23,6 +23,9 @@ from tpss.results.waits import waits_in_words
 from tpss.step.recorded import RECORDED
 from tpss.units import on_line
 
+REACTIVE = "reactive_energy_mvarh"
+"""Column of stations of which a line of direct current has none."""
+
 MOST_TRAINS = 30
 MOST_VIOLATIONS = 5
 
@@ -33,13 +36,10 @@ def print_result(result: Result, console: Console) -> None:
     title = f"\n[bold]{summary['name']}[/bold]  {escape(summary['description'])}"
     console.print(title, highlight=False, soft_wrap=True)
     _print_trains(result, console)
-    print_table(
-        "Feeding stations",
-        "station",
-        _STATION_COLUMNS,
-        named_rows(result.stations, "station"),
-        console,
-    )
+    direct = result.scenario.supply.is_direct
+    columns = [each for each in _STATION_COLUMNS if not (direct and each.key == REACTIVE)]
+    rows = named_rows(result.stations, "station")
+    print_table("Feeding stations", "station", columns, rows, console)
     if len(result.converter_losses):
         _print_losses(result.converter_losses, console)
     for line in key_figures(result):
@@ -73,7 +73,7 @@ _STATION_COLUMNS = (
     Column("line", "on", "", 0),
     Column("position_km", "at", "km", 1),
     Column("energy_mwh", "energy", "MWh", 3),
-    Column("reactive_energy_mvarh", "reactive", "Mvarh", 3),
+    Column(REACTIVE, "reactive", "Mvarh", 3),
     Column("peak_power_mw", "peak P", "MW", 2),
     Column("mean_loading", "mean load", "%", 1, 100.0),
     Column("peak_loading", "peak load", "%", 1, 100.0),

@@ -10,6 +10,7 @@ from tpss.scenario.supply import (
     ConverterType,
     ConverterUnits,
     MixedStation,
+    RectifierStation,
     Station,
     TransformerStation,
 )
@@ -18,6 +19,7 @@ from tpss.sources.converter import ConverterLaw
 from tpss.sources.grid import GridLaw
 from tpss.sources.kinds import Source, SourceKind
 from tpss.sources.mixed import TYPES, MixedLaw
+from tpss.sources.rectifier import MOST_POINTS, RectifierLaw
 from tpss.units import si
 
 
@@ -115,10 +117,36 @@ def _transformer_station(node: int, station: TransformerStation) -> Any:
     )
 
 
+def _rectifier_station(node: int, station: RectifierStation) -> Any:
+    current_a, voltage_kv = zip(*station.type.points, strict=True)
+    points, inverter = len(current_a), station.inverter
+    law: dict[str, Any] = {}
+    if inverter is not None:
+        law["inverter_from_v"] = si(inverter, "starts_at_kv")
+        law["inverter_ohm"] = si(inverter, "resistance_ohm")
+        if inverter.max_power_kw is not None:
+            law["inverter_power_w"] = si(inverter, "max_power_kw")
+    unused = (0.0,) * (MOST_POINTS - points)
+    return Source.row(
+        node=node,
+        kind=SourceKind.RECTIFIER,
+        installed=station.groups,
+        controlled=False,
+        rating_va=si(station, "unit_mva"),
+        rectifier=RectifierLaw.row(
+            points=points,
+            current_a=(*current_a, *unused),
+            voltage_v=(*(kv * 1e3 for kv in voltage_kv), *unused),
+            **law,
+        ),
+    )
+
+
 BUILDERS: dict[type, Callable[[int, Any], Any]] = {
     ConverterStation: _converter_station,
     TransformerStation: _transformer_station,
     MixedStation: _mixed_station,
+    RectifierStation: _rectifier_station,
 }
 """What makes a row of `Source` of a station, by its kind."""
 

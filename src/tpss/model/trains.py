@@ -22,14 +22,14 @@ from tpss.record import Records
 from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationBands
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.standards import VoltageLimits, limits_of_system
-from tpss.scenario.supply.system import DEFAULT_SYSTEM
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, system_named
 from tpss.units import si, si_list
 from tpss.vehicle.braking import lay_out_bands
 from tpss.vehicle.effort.kinds import EffortKind, TractiveEffort
 from tpss.vehicle.effort.limits import EffortLimits as Limits
 from tpss.vehicle.effort.table import MOST_VOLTAGES
 from tpss.vehicle.effort.table import EffortTable as Table
-from tpss.vehicle.regeneration import Regeneration
+from tpss.vehicle.regeneration import ROUNDED_V, Regeneration
 from tpss.vehicle.spared_motors import SparedMotors
 from tpss.vehicle.train_type import LineCurrentLimit, Networks, TrainType
 
@@ -189,6 +189,7 @@ def _regeneration(train: Train, book: CurveBook, limits: VoltageLimits) -> Any:
         whole_up_to_v=_si_or(own, "full_until_kv", si(limits, "umax1_kv")),
         none_from_v=_si_or(own, "zero_from_kv", si(limits, "umax2_kv")),
         efficiency=_over_speed(own.efficiency or train.efficiency, book),
+        rounded_v=0.0 if system_named(limits.system).is_direct else ROUNDED_V,
     )
 
 

@@ -20,7 +20,7 @@ from tpss.kernel import plain
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
 from tpss.powerflow.network import Loads
-from tpss.powerflow.solve import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
+from tpss.powerflow.raising import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.step.advance import (
     begin_step,
     change_length,

@@ -4,8 +4,9 @@
 2. Newton from a flat start (all voltages at their base value).
 3. Linked Newton steps (`powerflow.linked`) from the last step's state: behind many trains whose current
    is limited, Newton over the nodes alone would have to begin very close.
-4. Load continuation from base voltage: all loads are raised together from zero, by steps that shrink
-   where Newton fails.
+4. On lines of direct current: the same as follows with rectifiers that conduct in both directions,
+   whose valves are closed then (`powerflow.valves`).  On all lines: load continuation from base
+   voltage, all loads raised together from zero, by steps that shrink where Newton fails.
 5. The paths of `powerflow.path`, with ever smaller steps: the state without load from that of like
    sources; from there the loads, to the whole of them or to the end of the path, also through states
    that are implausible; and once more, with the loads raised first and the sources brought apart then.
@@ -45,11 +46,8 @@ from tpss.powerflow.path import (
     start_alike,
     take_back,
 )
-
-FIRST_STEP = 0.25
-STEP_GROWTH = 1.5
-SHORTEST_STEP = 1e-4
-"""Continuation gives up where the load can grow by less than this share. [1]"""
+from tpss.powerflow.raising import continue_from_zero, start_flat
+from tpss.powerflow.valves import close_valves, open_valves
 
 UNSUSPICIOUS = 0.5
 """Changes of the stations' powers up to this are not looked into. [p.u. of the base power]"""
@@ -92,15 +90,6 @@ def remember(first: int, flow: Flow) -> None:
         section.last_a = section.current_a
 
 
-@kernel
-def start_flat(network: Network, flow: Flow) -> None:
-    """Set the state without load: base voltage everywhere, no current."""
-    for n in range(flow.nodes.size):
-        flow.nodes[at(n)].voltage_v = network.system.base_voltage_v
-    for s in range(flow.sections.size):
-        flow.sections[at(s)].current_a = 0.0
-
-
 @inlined
 def start_from_last(flow: Flow, loads: Loads) -> None:
     """Start with all voltages, those at the trains too, from the last time step."""
@@ -110,33 +99,6 @@ def start_from_last(flow: Flow, loads: Loads) -> None:
         for k in range(section.first, section.end):
             place = flow.standing[at(k)]
             place.voltage_v = loads.trains[at(place.train)].line_voltage_v
-
-
-@inlined
-def continue_from_zero(network: Network, flow: Flow, loads: Loads) -> tuple[float, int]:
-    """Raise all loads from zero; return the share of the load that is carried, and the passes.
-
-    The state ends at the solution for that share, whether it is 1 or less.
-    """
-    start_flat(network, flow)
-    set_aside(flow)
-    share, step, passes = 0.0, FIRST_STEP, 0
-    while share < 1.0 and step >= SHORTEST_STEP:
-        target = min(1.0, share + step)
-        start = FLAT if share == 0.0 else WARM
-        status, more = newton(target, start, MOST_PASSES, network, flow, loads)
-        passes += more
-        if status == Solution.SOLVED:
-            set_aside(flow)
-            share = target
-            step *= STEP_GROWTH
-        else:
-            take_back(flow)
-            step /= 2.0
-    if 0.0 < share < 1.0:
-        # The last trial has left its voltages at the trains; find those of the share again.
-        newton(share, WARM, MOST_PASSES, network, flow, loads)
-    return share, passes
 
 
 @inlined
@@ -299,6 +261,13 @@ def solve_from_zero(solved: int, network: Network, flow: Flow, loads: Loads) -> 
         if flow.search[0].warm:
             start_from_last(flow, loads)
             status, passes = newton_linked(1.0, network, flow, loads)
+            if status == Solution.SOLVED:
+                return 1.0, passes
+        if open_valves(network):
+            share, more = continue_from_zero(network, flow, loads)
+            passes += more
+            status, more = close_valves(share == 1.0, network, flow, loads)
+            passes += more
             if status == Solution.SOLVED:
                 return 1.0, passes
         share, more = continue_from_zero(network, flow, loads)

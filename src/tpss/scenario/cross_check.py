@@ -9,6 +9,7 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding
+from tpss.scenario.direct_current import check_direct_current
 from tpss.scenario.events import check_events
 from tpss.scenario.feeding_points import check_feeding_points
 from tpss.scenario.feeds import check_feeds
@@ -34,6 +35,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += _planned_order(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
+    findings += check_direct_current(document)
     return [Finding(file, *finding) for finding in findings]
 
 

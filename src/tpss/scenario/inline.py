@@ -35,6 +35,8 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "converter_stations", "*", "type"),
     ("supply", "converter_types", "*"),
     ("supply", "mixed_stations", "*", "units", "*", "type"),
+    ("supply", "rectifier_stations", "*", "type"),
+    ("supply", "rectifier_types", "*"),
     ("trains", "*", "model"),
     ("conductors", "*", "wire"),
 )

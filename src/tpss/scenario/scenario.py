@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
+from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.line import Line
@@ -112,7 +113,7 @@ class Scenario(Part):
         if system not in library.entries(SYSTEMS):
             return given
         standards = {**standards, "voltage_limits": {"system": system, **limits}}
-        return {**given, "standards": standards}
+        return without_reactive_power({**given, "standards": standards})
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))

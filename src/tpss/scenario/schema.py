@@ -53,7 +53,7 @@ def scenario_schema() -> dict[str, Any]:
         {"anyOf": [{"required": ["line"]}, {"required": ["lines"]}]},
         {"anyOf": [{"required": ["traffic"]}, {"required": ["timetables"]}]},
     ]
-    for station in ("ConverterStation", "TransformerStation", "MixedStation"):
+    for station in ("ConverterStation", "TransformerStation", "MixedStation", "RectifierStation"):
         _stand_at_a_station(parts[station])
     schema["description"] = "A line, its power supply, its trains and its traffic."
     return {"$schema": OfToml.schema_dialect, "title": TITLE, **schema}

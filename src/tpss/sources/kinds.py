@@ -34,6 +34,12 @@ from tpss.sources.mixed import (
     set_unloaded_mixed,
     unloaded_mixed,
 )
+from tpss.sources.rectifier import (
+    RectifierLaw,
+    rectifier_residual,
+    set_unloaded_rectifier,
+    unloaded_rectifier,
+)
 
 
 class SourceKind(IntEnum):
@@ -44,6 +50,7 @@ class SourceKind(IntEnum):
     MIXED = 2
     BOUNDED = 3
     """A converter station with bounds."""
+    RECTIFIER = 4
 
 
 class Source(Record):
@@ -63,6 +70,7 @@ class Source(Record):
     grid: GridLaw = GridLaw.row()
     mixed: MixedLaw = MixedLaw.row()
     bounds: Bounds = Bounds.row()
+    rectifier: RectifierLaw = RectifierLaw.row()
 
 
 @inlined
@@ -96,6 +104,8 @@ def residual(
         return mixed_residual(voltage, current, source.mixed)
     if source.kind == SourceKind.BOUNDED:
         return bounded_residual(voltage, current, running, source.converter, source.bounds)
+    if source.kind == SourceKind.RECTIFIER:
+        return rectifier_residual(voltage, current, running, source.rectifier)
     return converter_residual(voltage, current, running, source.converter, derivatives)
 
 
@@ -128,6 +138,8 @@ def unloaded(source: Source) -> tuple[float, float]:
         return unloaded_grid(source.grid)
     if source.kind == SourceKind.MIXED:
         return unloaded_mixed(source.mixed)
+    if source.kind == SourceKind.RECTIFIER:
+        return unloaded_rectifier(source.rectifier)
     return unloaded_converter(source.converter)
 
 
@@ -138,6 +150,8 @@ def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
         set_unloaded_grid(magnitude_v, angle_rad, source.grid)
     elif source.kind == SourceKind.MIXED:
         set_unloaded_mixed(magnitude_v, angle_rad, source.mixed)
+    elif source.kind == SourceKind.RECTIFIER:
+        set_unloaded_rectifier(magnitude_v, source.rectifier)
     else:
         set_unloaded_converter(magnitude_v, angle_rad, source.converter)
 

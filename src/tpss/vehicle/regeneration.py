@@ -6,8 +6,8 @@ Of a braking force F_b at the wheel rim the motors give
 
 with φ rising from 0 to 1 between two speeds; friction brakes give the rest.  They offer the line
 :math:`F_e v \eta`.  Auxiliaries are fed first.  The line takes it whole up to a voltage U₁ and none from
-a voltage U₂ on; the share in between falls along a straight line that is rounded off at both ends, so
-that its slope has no jumps:
+a voltage U₂ on; the share in between falls along a straight line that may be rounded off at both ends,
+so that its slope has no jumps:
 
 .. math:: g = 1 - \frac{s^2}{2 w (L - w)}, \quad 1 - \frac{s - w/2}{L - w}, \quad
           \frac{(L - s)^2}{2 w (L - w)}
@@ -24,7 +24,7 @@ from tpss.numerics.ramp import ramp
 from tpss.record import Record
 
 ROUNDED_V = 50.0
-"""Length of each rounded end, w, no more than a quarter of the whole. [V]"""
+"""Length of each rounded end, w, where nothing else is said. [V]"""
 
 
 class Regeneration(Record):
@@ -46,6 +46,8 @@ class Regeneration(Record):
     """Voltage from which it takes none. [V]"""
     efficiency: Curve = Curve.row()
     """Efficiency over speed, from motor shaft to pantograph. [1]"""
+    rounded_v: float = ROUNDED_V
+    """Length of each rounded end, no more than a quarter of the whole; 0: a straight line. [V]"""
 
 
 @inlined
@@ -94,7 +96,7 @@ def taken_share(voltage_v: float, own: Regeneration) -> tuple[float, float]:
         return 1.0, 0.0
     if above_v >= length_v:
         return 0.0, 0.0
-    rounded_v = min(ROUNDED_V, length_v / 4.0)
+    rounded_v = min(own.rounded_v, length_v / 4.0)
     steepest = 1.0 / (length_v - rounded_v)
     if above_v < rounded_v:
         slope = steepest * above_v / rounded_v

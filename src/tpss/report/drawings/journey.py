@@ -25,6 +25,9 @@ PRINTED = {
 }
 """Labels of a journey's panels, and what is printed instead."""
 
+ALTERNATING = ("reactive power [Mvar]", "minus angle [°]")
+"""Panels of which a line of direct current has none."""
+
 
 def journey(
     runs: Mapping[str, Result],
@@ -32,7 +35,7 @@ def journey(
     against: Literal["position", "distance", "time"] = "position",
     shown: Iterable[str] = tuple(PRINTED),
 ) -> Drawing:
-    """A train's journey: inclination, speed, powers, voltage and angle.
+    """A train's journey: inclination, speed, powers, voltage and angle, as far as there are any.
 
     Parameters
     ----------
@@ -49,7 +52,9 @@ def journey(
     ----------
     [Boullanger2009]_, the layout of figures 3-12 and 3-15, which plot the angle with a minus too.
     """
-    curves: dict[str, list[Curve]] = {label: [] for label in shown}
+    direct = all(result.scenario.supply.is_direct for result in runs.values())
+    left_out = ALTERNATING if direct else ()
+    curves: dict[str, list[Curve]] = {label: [] for label in shown if label not in left_out}
     for k, (name, result) in enumerate(runs.items()):
         data = result.dataset.sel(train=chosen_train(result, train))
         x = _time_or_place(result, data, against)

@@ -14,7 +14,7 @@ VISIBLE_MW = 0.01
 
 
 def station_powers(runs: Mapping[str, Result]) -> Drawing:
-    """Active and reactive power that each feeding station feeds into the railway, over time.
+    """Power that each feeding station feeds into the railway, active and reactive, over time.
 
     A colour is a station, a line style for each run.  Where a station takes power back, a line marks 0:
     what is below it goes to the station.
@@ -32,10 +32,9 @@ def station_powers(runs: Mapping[str, Result]) -> Drawing:
     reactive = _curves(runs, lambda data: data.station_reactive_power / 1e6)
     takes_back = any(np.nanmin(curve.y, initial=0.0) < -VISIBLE_MW for curve in active)
     zero = [Mark(0.0, colour=STRONG_GREY)] if takes_back else []
-    panels = [
-        Panel("active [MW]", [*zero, *active], "$P_G$ [MW]"),
-        Panel("reactive [Mvar]", reactive, "$Q_G$ [MVAr]"),
-    ]
+    panels = [Panel("active [MW]", [*zero, *active], "$P_G$ [MW]")]
+    if not all(result.scenario.supply.is_direct for result in runs.values()):
+        panels.append(Panel("reactive [Mvar]", reactive, "$Q_G$ [MVAr]"))
     return Drawing(TIME, panels, panel_inch=2.0)
 
 

@@ -6,6 +6,7 @@ from tpss.scenario.supply.converter_station import ConverterStation, ConverterTy
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
 from tpss.scenario.supply.losses import ConverterLosses
 from tpss.scenario.supply.mixed_station import ConverterUnits, MixedStation
+from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import TransformerStation
@@ -22,6 +23,8 @@ __all__ = [
     "MixedStation",
     "NeutralSection",
     "Post",
+    "RectifierStation",
+    "RectifierType",
     "SectionBreak",
     "Station",
     "Supply",

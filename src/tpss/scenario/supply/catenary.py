@@ -1,6 +1,6 @@
 """The contact line."""
 
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
@@ -9,6 +9,11 @@ from tpss.scenario.rating import CatenaryRating
 
 SMALLEST_OHM = 0.0001
 """Lumped impedances smaller than this are lost in the rounding of voltages. [Ω]"""
+
+
+def without_reactance(given: Any) -> Any:
+    """A table of a contact line for direct current, of which a reactance need not be given."""
+    return {"x_ohm_per_km": 0.0, **given} if isinstance(given, dict) else given
 
 
 class Catenary(Part):
@@ -41,6 +46,12 @@ class Catenary(Part):
         default=None,
         description="What it bears without getting too hot; leave it out: it is not judged.",
     )
+
+    @property
+    def has_reactance(self) -> bool:
+        """Whether anything of it is there for an alternating current only."""
+        keys = ("x_ohm_per_km", "mutual_x_ohm_per_km", "connection_x_ohm", "capacitance_nf_per_km")
+        return any(getattr(self, key) > 0.0 for key in keys)
 
     @model_validator(mode="after")
     def _tracks_have_impedances_of_their_own(self) -> Self:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticKnownError
 
 from tpss import library
@@ -16,19 +16,26 @@ from tpss.scenario.fields import (
     fault,
     unique,
 )
-from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.catenary import Catenary, without_reactance
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
+from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
 
-Station = ConverterStation | TransformerStation | MixedStation
+Station = ConverterStation | TransformerStation | MixedStation | RectifierStation
 """A feeding station of any kind."""
 
-STATIONS = ("converter_stations", "transformer_stations", "mixed_stations")
+STATIONS = ("converter_stations", "transformer_stations", "mixed_stations", "rectifier_stations")
 """Keys of the supply that list feeding stations, in the order of the results."""
+
+LOWEST_HZ = 10.0
+"""Lowest frequency of an alternating current. [Hz]"""
+
+TYPES = {"converter_types": "converters", "rectifier_types": "rectifiers"}
+"""Keys of the supply that name own types of stations, and the kind of the library's."""
 
 
 def _frequency_of_the_system(data: dict[str, Any]) -> float:
@@ -36,21 +43,19 @@ def _frequency_of_the_system(data: dict[str, Any]) -> float:
     return system_named(system).frequency_hz
 
 
-def _alternates(frequency_hz: Any) -> Any:
-    """The frequency, unless it is that of direct current."""
-    if isinstance(frequency_hz, int | float) and frequency_hz == 0 and frequency_hz is not False:
-        raise fault("not modelled: direct current", "give the frequency of an alternating current")
-    return frequency_hz
+def _is_direct(data: dict[str, Any]) -> bool:
+    """Whether a supply is one of direct current."""
+    return system_named(data.get("system", DEFAULT_SYSTEM)).is_direct
 
 
-def _with_own_types(tables: Any, own: dict[str, ConverterType]) -> Any:
+def _with_own_types(tables: Any, own: dict[str, Any]) -> Any:
     """Tables of stations, or of their units, with own types in place of their names."""
     if not isinstance(tables, list | tuple):
         return tables
     return [_with_own_type(each, own) if isinstance(each, dict) else each for each in tables]
 
 
-def _with_own_type(table: dict[str, Any], own: dict[str, ConverterType]) -> dict[str, Any]:
+def _with_own_type(table: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     if isinstance(table.get("type"), str):
         return {**table, "type": own.get(table["type"], table["type"])}
     if "units" in table:
@@ -65,9 +70,9 @@ class Supply(Part):
         default=DEFAULT_SYSTEM,
         description="Electrification system, a library entry; the result is judged by its limits.",
     )
-    frequency_hz: Annotated[Real, BeforeValidator(_alternates)] = Field(
+    frequency_hz: Real = Field(
         default_factory=_frequency_of_the_system,
-        ge=10,
+        ge=0,
         le=60,
         description="Frequency of the contact line; leave it out: that of the system.",
     )
@@ -106,6 +111,12 @@ class Supply(Part):
     converter_types: dict[Name, Annotated[ConverterType, FromLibrary("converters")]] | None = Field(
         default=None, description="Own types of converters by name, for `type` of a station."
     )
+    rectifier_types: dict[Name, Annotated[RectifierType, FromLibrary("rectifiers")]] | None = Field(
+        default=None, description="Own types of rectifiers by name, for `type` of a station."
+    )
+    rectifier_stations: Annotated[
+        tuple[RectifierStation, ...], unique("name"), unique("position_km", of="line")
+    ] = Field(default=(), description="Rectifier stations of a direct-current line.")
     mixed_stations: Annotated[
         tuple[MixedStation, ...], unique("name"), unique("position_km", of="line")
     ] = Field(default=(), description="Converter stations with converters of several types.")
@@ -117,18 +128,55 @@ class Supply(Part):
         description="Converter stations; there is at least one feeding station.",
     )
 
-    @field_validator("converter_types")
+    @field_validator("frequency_hz", mode="before")
     @classmethod
-    def _own_names(cls, types: dict[str, ConverterType] | None) -> dict[str, ConverterType] | None:
+    def _of_an_alternating_current(cls, frequency_hz: Any, info: ValidationInfo) -> Any:
+        if not isinstance(frequency_hz, int | float) or isinstance(frequency_hz, bool):
+            return frequency_hz
+        if _is_direct(info.data):
+            if frequency_hz != 0:
+                raise fault(f"the system {info.data['system']} has no frequency", "leave it out")
+        elif frequency_hz == 0:
+            raise fault(
+                "direct current is a matter of the system",
+                'choose a system of direct current, such as system = "DC-1.5kV", and leave it out',
+            )
+        elif frequency_hz < LOWEST_HZ:
+            raise PydanticKnownError("greater_than_equal", {"ge": LOWEST_HZ})
+        return frequency_hz
+
+    @field_validator("catenary", mode="before")
+    @classmethod
+    def _without_reactance(cls, catenary: Any, info: ValidationInfo) -> Any:
+        return without_reactance(catenary) if _is_direct(info.data) else catenary
+
+    @field_validator("contact_lines", mode="before")
+    @classmethod
+    def _stretches_without_reactance(cls, stretches: Any, info: ValidationInfo) -> Any:
+        if not _is_direct(info.data) or not isinstance(stretches, list | tuple):
+            return stretches
+        return [
+            {**each, "catenary": without_reactance(each["catenary"])}
+            if isinstance(each, dict) and "catenary" in each
+            else each
+            for each in stretches
+        ]
+
+    @field_validator("converter_types", "rectifier_types")
+    @classmethod
+    def _own_names(
+        cls, types: dict[str, Any] | None, info: ValidationInfo
+    ) -> dict[str, Any] | None:
         for name in types or ():
-            if name in library.entries("converters"):
+            if name in library.entries(TYPES[str(info.field_name)]):
                 raise fault(f"{name} is an entry of the library", "give the own type another name")
         return types
 
-    @field_validator("converter_stations", "mixed_stations", mode="before")
+    @field_validator("converter_stations", "mixed_stations", "rectifier_stations", mode="before")
     @classmethod
     def _own_types_by_name(cls, stations: Any, info: ValidationInfo) -> Any:
-        own = info.data.get("converter_types")
+        rectifies = info.field_name == "rectifier_stations"
+        own = info.data.get("rectifier_types" if rectifies else "converter_types")
         return _with_own_types(stations, own) if own else stations
 
     @field_validator("converter_stations")
@@ -148,7 +196,12 @@ class Supply(Part):
 
     def __hash__(self) -> int:
         """Of all but the own types, which the stations hold."""
-        return hash(tuple(value for name, value in self if name != "converter_types"))
+        return hash(tuple(value for name, value in self if name not in TYPES))
+
+    @property
+    def is_direct(self) -> bool:
+        """Whether it is one of direct current."""
+        return system_named(self.system).is_direct
 
     @property
     def stations(self) -> tuple[Station, ...]:
@@ -160,6 +213,42 @@ class Supply(Part):
         """Types of converters of all stations, each as often as a station has it."""
         mixed = (each.type for station in self.mixed_stations for each in station.units)
         return (*(station.type for station in self.converter_stations), *mixed)
+
+    @model_validator(mode="after")
+    def _parts_fit_the_current(self) -> Self:
+        direct = self.is_direct
+        for station in self.stations:
+            if isinstance(station, RectifierStation) == direct:
+                continue
+            if direct:
+                raise fault(
+                    f"{station.name} is no rectifier station, and the system {self.system} is one of "
+                    "direct current",
+                    "list it among rectifier_stations, or choose another system",
+                )
+            raise fault(
+                f"{station.name} is a rectifier station, and the system {self.system} is none of direct "
+                "current",
+                "choose a system of direct current, such as DC-1.5kV, or another kind of station",
+            )
+        if direct:
+            self._demand_resistances_only()
+        return self
+
+    def _demand_resistances_only(self) -> None:
+        """Raise a fault for what only an alternating current has."""
+        if self.high_voltage_line is not None:
+            raise fault(
+                f"a high-voltage line beside the system {self.system} of direct current",
+                "leave high_voltage_line out",
+            )
+        lines = [self.catenary, *(each.catenary for each in self.contact_lines if each.catenary)]
+        if any(each.has_reactance for each in lines):
+            raise fault(
+                "the contact line has a reactance or a capacitance, of which the system "
+                f"{self.system} knows none",
+                "give resistances only",
+            )
 
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:

@@ -21,6 +21,11 @@ class System(Part):
     lowest_pu: Real = Field(gt=0, description="Voltages of a healthy line are above this.")
     highest_pu: Real = Field(gt=0, description="And below this.")
 
+    @property
+    def is_direct(self) -> bool:
+        """Whether its current is direct."""
+        return self.frequency_hz == 0.0
+
 
 SystemName = Annotated[str, entry_of(SYSTEMS)]
 """Name of a system of the library."""
