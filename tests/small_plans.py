@@ -97,7 +97,7 @@ def modelled(folder, changes=None, tamper=None):
     """Model of the small plan; its cases are simulated once for all tests."""
     listed, cases = CaseList(plan(folder, changes)), CaseFolder(folder / "out")
     with cases.opened():
-        table = simulate_cases(listed, cases, listed.cases, threads=1)
+        table = simulate_cases(listed, cases, listed.cases, workers=1)
     if tamper is not None:
         table = tamper(table.copy())
     return model_of(listed, table)

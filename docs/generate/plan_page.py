@@ -6,6 +6,7 @@ from typing import Any
 from markdown_pieces import code, described, table
 from pydantic.fields import FieldInfo
 
+from tpss.planning.excel import HOLDS
 from tpss.planning.plan import (
     LEVEL,
     Area,
@@ -47,7 +48,8 @@ levels = [3, 4]
 cost = [45.0, 90.0]
 ```
 
-All measures of an area are ordered the same number of stages ahead. What is built stays, and is
+All measures of an area are ordered the same number of stages ahead; each area has its own. What is
+built stays, and is
 renewed like for like after its life; it is charged its annuities until the end of the plan only."""
 
 FUTURES = """A row of values is a list with one for each stage, or one value for all; what it does
@@ -95,26 +97,21 @@ service has `service.NAME.` with these:
 | `mean_late_min` | how late they arrive, early ones counted as 0; null where none is scheduled |
 | `mean_lost_min` | minutes lost against a supply that holds its voltage; null with an outage |"""
 
-TABLES = """`tpss plan run` writes `plan.json` and these files of CSV into the folder's `tables/`:
+TABLES = """`tpss plan run` writes `plan.json` and these files of CSV into the folder's `tables/`, and
+`plan.xlsx` with a sheet for each of them (up to 20,000 rows):
 
 | file | what it holds |
 |---|---|
-| `decisions` | what is ordered and in service when, if which scenarios may still come |
-| `first_decisions` | every first decision with the expected cost of the best plan that contains it |
-| `first_costs` | these costs by component, of the best first decisions |
-| `best_plans` | the best plans in the order of their costs; empty with a budget |
-| `costs` | cost of the plan by component, stage and scenario, plain and discounted |
-| `regret` | what each plan costs more in a scenario than the best one of that scenario |
-| `values` | worth of knowing the future, and of being able to decide later |
-| `configurations` | every configuration with every traffic: whether it carries it, and why not |
-| `switching_values` | at which price, cost, rate or probability the first decision turns |
+{rows}
 
-`switching_values` is empty with a budget, of an area whose scenarios part at once, and of plans of more
-than some thousand configurations, which `tpss plan price --sweep` may be asked about one by one."""
+`best_plans` holds 20 of them, with a budget as many as are found in 10 s. `switching_values` is empty of
+an area whose scenarios part at once, and of plans of more than some thousand configurations (with a
+budget some dozens), which `tpss plan price --sweep` may be asked about one by one."""
 
 
 def page() -> str:
     """Text of the page."""
+    rows = "\n".join(f"| `{name}` | {holds} |" for name, holds in HOLDS.items())
     uncounted = "\n".join(f"- {each}" for each in GENERAL)
     sections: list[tuple[str, type[Any], str]] = [
         ("The whole file", PlanFile, ""),
@@ -135,7 +132,7 @@ def page() -> str:
     for title, part, words in sections:
         parts += [f"## {title}", *filter(None, [words]), _keys(part)]
     parts += ["## Cases", CASES, described(COLUMNS, COLUMNS, "column"), EACH]
-    parts += ["## The answer", TABLES, "## What is not counted", uncounted]
+    parts += ["## The answer", TABLES.replace("{rows}", rows), "## What is not counted", uncounted]
     return "\n\n".join(parts)
 
 

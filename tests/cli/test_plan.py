@@ -62,7 +62,7 @@ def test_run_answers_in_a_sentence_and_in_tables(tpss_command, tmp_path):
     tables = {file.stem for file in (tmp_path / "out" / "tables").glob("*.csv")}
     assert tables == {
         "decisions", "first_decisions", "first_costs", "best_plans", "costs", "regret", "values",
-        "configurations", "switching_values",
+        "configurations", "switching_values", "finer_step",
     }  # fmt: skip
     decisions = pd.read_csv(tmp_path / "out" / "tables" / "decisions.csv")
     assert decisions.in_service.tolist() == [2030, 2040, 2040]
@@ -137,7 +137,12 @@ def test_a_budget_that_no_plan_meets_is_bad_input(tpss_command, tmp_path):
     changes = {"renewals": {"line": due}, "budget": {"per_stage": [10.0, 10.0]}}
     said = run(tpss_command, tmp_path, changes)
     assert said.code == 2
-    assert "budget" in said.err
+    assert "no plan meets the budget: it takes" in said.err
+    assert "more in stage 1 (2030), every scenario" in said.err
+    assert not (tmp_path / "out").exists()  # nothing was simulated
+    said = tpss_command("plan", "check", tmp_path / "plan.toml")
+    assert said.code == 2
+    assert "no plan meets the budget" in said.err
 
 
 def test_a_folder_without_a_plan_is_refused(tpss_command, tmp_path):

@@ -13,7 +13,7 @@ from tpss.planning.sentence import sentences
 from tpss.planning.switching import costs_of_first
 from tpss.planning.turning import all_turns, first_costs, nearest, turns_of
 
-from small_plans import modelled, write_plan
+from small_plans import PLAN, modelled, write_plan
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +137,7 @@ def test_futures_that_part_at_once_have_a_first_decision_each(folder):
 def test_a_plan_is_run_from_python(tmp_path):
     """The same answer as by its parts, and the files of the command line."""
     answered = tpss.run_plan(
-        tpss.load_plan(write_plan(tmp_path, TIGHT)), tmp_path / "out", threads=1
+        tpss.load_plan(write_plan(tmp_path, TIGHT)), tmp_path / "out", workers=1
     )
     by_parts = answer_of(modelled(tmp_path, TIGHT))
     assert answered.answer.best.cost == by_parts.best.cost
@@ -149,3 +149,24 @@ def test_costs_of_first_decisions_are_those_of_the_plans_that_contain_them(folde
     for changes in (TIGHT, {**TIGHT, **lead}):
         problem = modelled(folder, changes).problem
         assert first_costs(problem, 0) == pytest.approx(costs_of_first(problem), rel=1e-12)
+
+
+def test_each_area_has_its_own_lead_time(tmp_path):
+    """What is ordered at once and what is ordered a stage ahead stand in one plan."""
+    two = {
+        "scenario": None,
+        "areas": {name: {"scenario": "line.toml"} for name in ("north", "south")},
+        "measures": {
+            "north.AT": PLAN["measures"]["AT"],
+            "south.AT": {**PLAN["measures"]["AT"], "lead_time_years": 10},
+        },
+        "scenarios": {
+            "low": {"probability": 0.5, "north.traffic.eastbound.headway_min": [20.0, 20.0]},
+            "high": {"probability": 0.5, "north.traffic.eastbound.headway_min": [20.0, 5.0]},
+        },
+    }
+    answer = answer_of(modelled(tmp_path, {**TIGHT, **two}))
+    table = tables.decisions(answer)
+    ordered = {name: own.ordered.fillna(0).tolist() for name, own in table.groupby("area")}
+    assert ordered == {"north": [2030, 2040, 2040], "south": [0, 2030, 2030]}
+    assert answer.is_closed

@@ -12,10 +12,20 @@ from tpss.planning import dynamic, program, ranking
 from tpss.planning.costs import meets_budget, outlay
 from tpss.planning.money import Stages
 from tpss.planning.problem import Problem
+from tpss.planning.ranking_within import best_plans_within
 from tpss.planning.relaxation import relax, worth_keeping
+from tpss.planning.switching import costs_of_first, switching
 from tpss.planning.tree import make_tree
+from tpss.planning.turning_within import Optima, turn_within
 
-from made_up_plans import one_area, random_plan, two_stages
+from made_up_plans import (
+    every_policy,
+    one_area,
+    random_plan,
+    slow_cost,
+    slow_spending,
+    two_stages,
+)
 
 INF = np.inf
 
@@ -59,7 +69,9 @@ def test_a_budget_that_no_plan_meets_is_named_with_what_it_lacks():
     """Weak supply is not allowed, so both have to be built at once: 200 where there are 150."""
     problem = two_lines([150.0, 0.0])
     must = [np.where([True, False], INF, area.yearly_cost) for area in problem.areas]
-    with pytest.raises(NoPlanError, match="it takes 50 more in stage 1, every scenario") as caught:
+    with pytest.raises(
+        NoPlanError, match=r"it takes 50 more in stage 1 \(0\), every scenario; allow it"
+    ) as caught:
         program.solve_any(problem.with_costs(must))
     assert (caught.value.limit, caught.value.nodes) == ("budget", (0,))
 
@@ -132,3 +144,80 @@ def test_highs_prints_nothing():
     )
     done = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True, check=True)
     assert done.stdout == ""
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_best_plans_within_a_budget_are_those_of_all(seed):
+    """The first eight of all plans by cost, by looking at each; ties in any order."""
+    problem = random_plan(seed, areas=1 + seed % 2, budget=True, nodes=3 + seed % 2)
+    every = sorted(
+        slow_cost(problem, policy)
+        for policy in every_policy(problem)
+        if (slow_spending(problem, policy) <= problem.budget).all()
+    )
+    every = [cost for cost in every if cost < INF]
+    if not every:
+        pytest.skip("no plan meets this budget")
+    found = best_plans_within(problem, program.solve_any(problem), 8)
+    assert [each.cost for each in found] == pytest.approx(every[:8], rel=1e-8)
+    assert len({each.policy.tobytes() for each in found}) == len(found)
+    assert all(meets_budget(problem, each.policy) for each in found)
+
+
+def test_when_all_plans_are_found_there_are_no_more():
+    """Each of two lines at once, later or never, one in each stage: 9 pairs but two."""
+    problem = two_lines([100.0, 100.0])
+    assert len(best_plans_within(problem, program.solve_any(problem), 99)) == 7
+
+
+@pytest.mark.parametrize("limit", [150.0, 190.0])
+def test_a_decision_turns_with_a_price_within_a_budget(limit):
+    """Of two lines one can be built, for 100. The first saves 9 a year, the second 8 times v.
+
+    So the second leads from v = 9/8 on.
+    """
+
+    def at(v):
+        problem = two_lines([limit, 0.0])
+        second = replace(problem.areas[1], yearly_cost=problem.areas[1].yearly_cost * v)
+        return replace(problem, areas=(problem.areas[0], second))
+
+    found = turn_within(Optima(at), 0, 1.0, 0.0, 4.0)
+    assert (found.first, found.above_to) == (1, 0)
+    assert found.above == pytest.approx(9.0 / 8.0, rel=1e-9)
+    assert found.below is None
+    other = turn_within(Optima(at), 1, 1.0, 0.0, 4.0)
+    assert (other.first, other.above_to) == (0, 1)
+    assert other.above == pytest.approx(9.0 / 8.0, rel=1e-9)
+
+
+def test_a_decision_turns_where_the_budget_ends():
+    """The first line is built for 100 as long as there are 130: beyond a cost of 130 the second is."""
+
+    def at(cost):
+        problem = two_lines([130.0, 0.0])
+        change = np.array([[[0.0, cost], [INF, 0.0]]] * 2)
+        first = one_area([[100.0, 1.0]] * 2, change, (0, 1), name="first")
+        return replace(problem, areas=(first, problem.areas[1]))
+
+    found = turn_within(Optima(at), 0, 100.0, 50.0, 400.0)
+    assert found.above == pytest.approx(130.0, rel=1e-8)
+    assert found.above_to == 0
+
+
+def test_without_a_budget_it_turns_where_dynamic_programming_says():
+    for seed in range(6):
+        problem = random_plan(seed, areas=2)
+
+        def at(v, problem=problem):
+            return problem.with_costs([each.yearly_cost * v for each in problem.areas])
+
+        try:
+            expected = switching(lambda v, at=at: costs_of_first(at(v)), 1.0, 0.1, 4.0)
+        except PlanError:
+            continue  # scenarios part at once
+        found = turn_within(Optima(at), 0, 1.0, 0.1, 4.0)
+        for own, other in ((found.below, expected.below), (found.above, expected.above)):
+            assert (own is None) == (other is None)
+            if own is not None:
+                assert own == pytest.approx(other, rel=1e-7)

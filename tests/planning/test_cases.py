@@ -5,7 +5,7 @@ import pytest
 import tpss
 from sweep.studies import small_cluster
 from tpss.errors import StudyError
-from tpss.planning import simulate
+from tpss.planning import local, simulate
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList, distinct
 from tpss.planning.load import load_plan
@@ -20,19 +20,19 @@ def run(loaded, folder, **options):
     """Table of all cases of a plan, and its cases."""
     listed, cases = CaseList(loaded), CaseFolder(folder)
     with cases.opened():
-        return listed, simulate_cases(listed, cases, listed.cases, threads=1, **options)
+        return listed, simulate_cases(listed, cases, listed.cases, workers=1, **options)
 
 
 @pytest.fixture
 def counted(monkeypatch):
     """Digests of the cases that are simulated."""
-    seen, original = [], simulate.row_of
+    seen, original = [], local.row_of
 
     def row_of(case, scenario, evaluation):
         seen.append(case.digest)
         return original(case, scenario, evaluation)
 
-    monkeypatch.setattr(simulate, "row_of", row_of)
+    monkeypatch.setattr(local, "row_of", row_of)
     return seen
 
 
@@ -161,3 +161,17 @@ def test_workers_of_a_scheduler_come_to_the_same_rows(tmp_path):
         _, there = run(loaded, tmp_path / "there", scheduler=address)
     own = [name for name in here.columns if not name.startswith("timing.")]
     assert there.loc[here.index, own].equals(here[own])
+
+
+def test_rows_are_the_same_on_processes_of_their_own(tmp_path, monkeypatch):
+    """Eight cases, the first two in this process; no case is in the folder twice."""
+    monkeypatch.setattr("tpss.sweep.campaign.WORTHWHILE_S", 0.0)
+    listed = CaseList(plan(tmp_path))
+    tables = []
+    for workers in (1, 2):
+        cases = CaseFolder(tmp_path / f"by-{workers}")
+        with cases.opened():
+            tables.append(simulate_cases(listed, cases, listed.cases, workers=workers))
+    own = [name for name in tables[0].columns if not name.startswith("timing.")]
+    assert tables[0].index.is_unique
+    assert tables[1].loc[tables[0].index, own].equals(tables[0][own])

@@ -114,8 +114,8 @@ def test_a_traffic_that_is_no_valid_scenario_is_named(tmp_path):
 
 def test_a_value_of_a_future_that_leads_nowhere_is_named(tmp_path):
     found = faults(tmp_path, {"scenarios/high/traffic.westbound.headway_min": [20.0, 5.0]})
-    assert {each.key for each in found} == {"scenarios.*.traffic.westbound.headway_min"}
-    assert {each.value for each in found} == {"20.0", "5.0"}
+    assert [each.key for each in found] == ["scenarios.high.traffic.westbound.headway_min"]
+    assert found[0].value == "[20.0, 5.0]"
 
 
 def test_cases_need_a_common_time_step(tmp_path):

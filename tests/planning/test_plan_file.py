@@ -149,6 +149,13 @@ BAD = {
     ),
     "an unknown key": ({"measures/AT/sets": {}}, "measures.AT.sets", "unknown key", "set"),
     "no scenario": ({"scenario": "lines.toml"}, "scenario", "1 fault(s)", "name another"),
+    "an unknown area": (
+        {
+            "scenario": None, "areas": {"north": {"scenario": "line.toml"}},
+            "measures": {"noth": PLAN["measures"]}, "scenarios": None,
+        },
+        "measures.noth", "no such area", "north",
+    ),
     "two kinds of lines": (
         {"areas": {"north": {"scenario": "line.toml"}}}, "", "either scenario or areas", "name one",
     ),

@@ -234,8 +234,9 @@ def test_areas_have_figures_of_their_own_and_a_budget_its_table(tmp_path):
     assert "north: Line <north>" in text
     assert "south: Line <south>" in text
     assert "Budget, and what is spent of it" in text
-    assert len(pictures(page)) == 2 * 3 + 1  # where it turns is not known with a budget
-    assert "It is not known where the first decision turns" in text
+    assert len(pictures(page)) == 2 * 4 + 1
+    assert re.search(r"The best \d+ plans, with what is in service where they differ", text)
+    assert "Where the first decision turns" in text
 
 
 def test_areas_for_whose_pictures_there_is_no_room_are_named(tmp_path, monkeypatch):
@@ -245,7 +246,7 @@ def test_areas_for_whose_pictures_there_is_no_room_are_named(tmp_path, monkeypat
     monkeypatch.setattr("tpss.planning.report.MOST_LETTERS", room)
     page = plan_report(written)
     assert "Not drawn, for want of room: south; the tables have all of them." in Page(page).text
-    assert len(pictures(page)) == 3 + 1
+    assert len(pictures(page)) == 4 + 1
 
 
 def test_names_that_look_like_numbers_stay_names(tmp_path):

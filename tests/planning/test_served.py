@@ -6,6 +6,7 @@ import pytest
 import tpss
 from tpss.planning.served import NO_TRAFFIC
 from tpss.planning.solve import price_of_node
+from tpss.planning.uncounted import uncounted
 
 from small_plans import modelled
 
@@ -95,6 +96,17 @@ def fed_back(table):
 def test_energy_that_is_given_back_needs_a_price(folder):
     with pytest.raises(tpss.ScenarioError, match=r"economics\.fed_back_per_kwh"):
         modelled(folder, tamper=fed_back)
+
+
+def test_what_rounding_gives_back_needs_none(folder):
+    """1e-17 MWh a year, of some thousand drawn: a sum that did not end at 0."""
+
+    def rounded(table):
+        table["fed_back_to_grid_mw"] = 2e-21
+        return table
+
+    model = modelled(folder, tamper=rounded)
+    assert "No energy is given back to the grid." in list(uncounted(model))
 
 
 def test_energy_that_is_given_back_is_paid_for(folder):

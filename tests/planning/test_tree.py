@@ -48,12 +48,6 @@ def test_scenarios_that_never_part_are_one():
     assert tree.partings() == ()
 
 
-def test_a_node_in_words():
-    tree = demonstration()
-    assert tree.label(0) == "stage 1, every scenario"
-    assert tree.label(6) == "stage 3, high"
-
-
 @pytest.mark.parametrize(
     ("names", "probabilities", "values", "words"),
     [

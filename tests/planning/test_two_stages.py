@@ -102,3 +102,10 @@ def test_the_best_plan_beside_leaving_everything_as_it_is():
     problem = two_stages()
     beside = compare(problem, solve(problem).policy, np.zeros((1, 3), dtype=np.int64))
     assert (beside.saved, beside.invested, beside.ratio) == pytest.approx((32.0, 40.0, 0.8))
+
+
+def test_a_node_in_words():
+    """Its stage, counted from 1, the year in which it begins, and what may still come."""
+    problem = two_stages()
+    assert problem.label(0) == "stage 1 (2030), every scenario"
+    assert problem.label(2) == "stage 2 (2040), high"

@@ -306,7 +306,7 @@ def _candidates(table: pd.DataFrame, form: Form) -> tuple[list[str], list[str]]:
             f"the table has no column {', '.join(absent)}; it is of another version of TPSS: run the "
             "study again"
         )
-    is_named = OWN not in set(table[NAMED_CATENARY])
+    is_named = NAMED_CATENARY not in table or OWN not in set(table[NAMED_CATENARY])
     impedances = [name for name in form.numbers if name.startswith(("catenary_", "connection_"))]
     numbers = [name for name in form.numbers if not (is_named and name in impedances)]
     choices = [name for name in form.choices if is_named or name != NAMED_CATENARY]

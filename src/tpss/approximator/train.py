@@ -76,7 +76,29 @@ def train_approximator(
     used = usable(table)
     _demand_enough(used, len(table))
     chosen = form or fitting_form(used)
-    return _train(table, used, origin, chosen, seed, report or (lambda *_: None))
+    own = form_named(chosen, used)
+    return _train(table, used, origin, (chosen, own), seed, report or (lambda *_: None))
+
+
+def train_on(table: pd.DataFrame, form: Form, origin: "Origin", seed: int = 0) -> Approximator:
+    """Train an approximator on a table of any origin, with a form made for it.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Columns of the form, and ``case``, ``status``, ``audit_passed`` and ``time_step_min``.
+    form : Form
+        Each of its outputs differs between some cases.
+    origin : Origin
+    seed : int
+        Seed of the random numbers.
+
+    Raises
+    ------
+    ApproximatorError
+        An input lacks values, or none varies.
+    """
+    return _train(table, usable(table), origin, (VARIED, form), seed, lambda *_: None)
 
 
 @dataclass(frozen=True)
@@ -145,11 +167,11 @@ def _train(
     table: pd.DataFrame,
     used: pd.DataFrame,
     origin: Origin,
-    form: str,
+    named: tuple[str, Form],
     seed: int,
     report: Callable[[int, int], None],
 ) -> Approximator:
-    own = form_named(form, used)
+    form, own = named
     inputs = inputs_of_table(used, own)
     names, untold = (
         _outputs(own, used)

@@ -144,7 +144,7 @@ def run_plan(
     try:
         with progress_bar(plan.file.name, PROGRESS, _progress, console) as report:
             answered = run(
-                plan, out, threads=workers, scheduler=scheduler, gap=gap,
+                plan, out, workers=workers, scheduler=scheduler, gap=gap,
                 time_limit_s=time_limit_s, report=report,
                 tell=_rounds(console),
             )  # fmt: skip
@@ -157,7 +157,7 @@ def run_plan(
         print(str(error), file=sys.stderr)
         return exit_code_of(error)
     if not quiet:
-        print_answer(answered.answer, answered.turns, Console())
+        print_answer(answered.answer, answered.turns, answered.finer, Console())
         say(Console(), f"The plan is in {out / 'plan.json'}, its tables are in {out / 'tables'}")
     return DONE if answered.answer.is_closed else GAP_LEFT
 

@@ -84,15 +84,16 @@ def run(
         bool,
         option(
             "--all",
-            help='Simulate every case, also of a plan that is proved by bounds (by = "bounds").',
+            help='Simulate every case, also of a plan that is proved by bounds (by = "bounds" or '
+            '"approximator").',
         ),
     ] = False,
     quiet: Quiet = False,
 ) -> None:
     """Simulate the cases of a plan, find the best plan of all, and write it with its tables.
 
-    Of a plan with `by = "bounds"` only those cases are simulated that prove it to be the best one, if
-    no case costs less than its bound. That is tested on every simulated case.
+    Of a plan with `by = "bounds"` or `"approximator"` only those cases are simulated that prove it to be
+    the best one, if no case costs less than its bound. That is tested on every simulated case.
 
     After an interruption of any kind the same command continues, and simulates no case twice; so it
     does after a change of the plan.

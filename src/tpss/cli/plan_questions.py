@@ -21,7 +21,7 @@ def price_plan(
     demand_packages()
     from tpss.planning.answer import Effort, answer_of
     from tpss.planning.lazily import ALL
-    from tpss.planning.plan import BOUNDS
+    from tpss.planning.plan import SIMULATION
     from tpss.planning.sentence import sentences
     from tpss.planning.turning import varied
     from tpss.planning.uncounted import unknown
@@ -41,7 +41,7 @@ def price_plan(
     console = Console()
     for sentence in sentences(answer, ()):
         say(console, sentence)
-    if model.plan.file.evaluate.by == BOUNDS:
+    if model.plan.file.evaluate.by != SIMULATION:
         say(console, answer.claim)
     print_firsts(answer, console)
     for line in unknown(model):
@@ -57,7 +57,9 @@ def price_plan(
         table = switching_table(model, turns)
         for column in ("now", "below", "above"):
             table[column] = [_shown(value) for value in table[column]]
-        headings = {name: name.replace("_", " ") for name in table.columns if name != "area"}
+        several = len(model.areas) > 1
+        shown = [name for name in table.columns if name != "area" or several]
+        headings = {name: name.replace("_", " ") for name in shown}
         print_frame(table, "Where the first decision turns", headings, console)
     return DONE if answer.is_closed else GAP_LEFT
 

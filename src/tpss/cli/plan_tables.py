@@ -13,15 +13,22 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tpss.planning.answer import Answer
+    from tpss.planning.finer import Compared
     from tpss.planning.turning import Turn
 
 MOST_FIRSTS = 6
 """First decisions of an area that are printed."""
 
 
-def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) -> None:
+def print_answer(
+    answer: "Answer",
+    turns: Sequence["Turn"],
+    finer: Sequence[Sequence["Compared"]],
+    console: Console,
+) -> None:
     """Print an answer: its sentences, what is done when, what else one could do, what it is worth."""
     from tpss.planning import tables
+    from tpss.planning.finer import finer_sentences
     from tpss.planning.sentence import sentences
     from tpss.planning.uncounted import estimated, uncounted, unknown
 
@@ -30,7 +37,7 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     for sentence in sentences(answer, turns):
         say(console, sentence)
     say(console, answer.claim)
-    for line in unknown(answer.model):
+    for line in (*finer_sentences(answer, finer), *unknown(answer.model)):
         say(console, line)
     if not answer.is_closed and answer.proof.holds:
         say(
@@ -50,9 +57,25 @@ def print_answer(answer: "Answer", turns: Sequence["Turn"], console: Console) ->
     print_firsts(answer, console)
     values = tables.values(answer)[["meaning", "cost"]]
     print_frame(values, f"Values [{unit}, discounted]", {"meaning": "", "cost": ""}, console)
+    if words := _mean_in_words(answer):
+        say(console, words)
     if found := list(estimated(answer.model)):
         say(console, "By estimate: " + " ".join(found))
     say(console, "Not counted: " + " ".join(uncounted(answer.model)))
+
+
+def _mean_in_words(answer: "Answer") -> str:
+    """What the mean future is, if there is one."""
+    from tpss.planning import tables
+    from tpss.planning.wording import mean_in_words
+    from tpss.planning.written import rows_of
+
+    model = answer.model
+    traffic = {
+        area.name: {state.name: state for state in own.states.states}
+        for area, own in zip(model.problem.areas, model.areas, strict=True)
+    }
+    return mean_in_words(rows_of(tables.mean_future(answer)), traffic)
 
 
 def print_firsts(answer: "Answer", console: Console) -> None:

@@ -12,6 +12,7 @@ from tpss.planning.costs import expected_cost
 from tpss.planning.counting import number_of_plans
 from tpss.planning.dynamic import FirstDecision, first_decisions
 from tpss.planning.lazily import proof_of
+from tpss.planning.mean_future import MeanFuture, mean_future_of
 from tpss.planning.problem import Problem, Solution
 from tpss.planning.program import GAP, solve_any
 from tpss.planning.prove import Proof
@@ -44,6 +45,8 @@ class Answer:
     """Whether no better plan is possible, up to the gap that was asked for, as far as is known."""
     proof: Proof
     """What the claim stands on."""
+    mean: MeanFuture | None
+    """What someone would plan for who knows the means only; None where there is none."""
 
     @property
     def best(self) -> Solution:
@@ -77,13 +80,13 @@ def answer_of(model: Model, effort: Effort = Effort()) -> Answer:
         There is no plan yet when the time is over, a solver is not installed, or the best plan uses
         what was not simulated.
     """
-    problem = model.problem
-    worth = worth_of(problem, solver=solver_of(effort))
+    problem, mean = model.problem, mean_future_of(model)
+    worth = worth_of(problem, None if mean is None else mean.yearly_cost, solver_of(effort))
     proof = proof_of(model, worth.best)
     firsts = first_choices(problem, worth.best, effort)
     sentence = claim(proof, number_of_plans(problem), effort.gap)
     is_closed = worth.best.gap <= effort.gap and proof.holds
-    return Answer(model, worth, tuple(firsts), sentence, is_closed, proof)
+    return Answer(model, worth, tuple(firsts), sentence, is_closed, proof, mean)
 
 
 def solver_of(effort: Effort) -> Callable[[Problem], Solution]:

@@ -1,25 +1,18 @@
 """Cases on the workers of a Dask scheduler: they are sent as documents, and rows come back."""
 
 import time
-from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Generator, Sequence
 
 from tpss.planning.cases import Case, CaseList
-from tpss.planning.plan import Evaluation
-from tpss.planning.rows import row_of
-from tpss.scenario.scenario import Scenario
+from tpss.planning.documents import Row, run_documents, warm_up
 
 MOST_IN_BATCH = 200
 """Documents that are sent at a time, some thousand bytes each."""
 
-Sent = tuple[Case, dict[str, Any]]
-"""A case, and the document of its scenario."""
-
 
 def rows_on_cluster(
     case_list: CaseList, cases: Sequence[Case], scheduler: str
-) -> Iterator[dict[str, Any]]:
+) -> Generator[Row, None, None]:
     """Rows of cases, as they are done.
 
     Parameters
@@ -61,25 +54,3 @@ def rows_on_cluster(
         )
         for _, rows in in_turn(client, tasks, BATCHES_AHEAD * threads):
             yield from rows
-
-
-def warm_up(sent: list[Sent], evaluation: str) -> None:
-    """Prepare a process: a case compiles the kernels, or loads them."""
-    run_documents(sent, evaluation)
-
-
-def run_documents(sent: list[Sent], evaluation: str) -> list[dict[str, Any]]:
-    """Rows of cases that are given as documents: the task of a worker.
-
-    Parameters
-    ----------
-    sent : list of Case and document
-    evaluation : str
-        How they are evaluated, in JSON.
-    """
-    how = Evaluation.model_validate_json(evaluation)
-    return [row_of(case, _maker(document), how) for case, document in sent]
-
-
-def _maker(document: dict[str, Any]) -> Any:
-    return lambda: Scenario.from_document(document, Path("case"))

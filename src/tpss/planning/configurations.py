@@ -88,7 +88,7 @@ def document_of(
     for (name, measure), level in zip(area.measures.items(), configuration.levels, strict=True):
         if level:
             make_changes(document, area.key(name), variant_of(measure, level), plan.source)
-    put_state(document, state, area, plan.source)
+    put_state(document, state, area, plan)
     simulation = dict(document.get("simulation", {}))
     if plan.file.evaluate.time_step_min is not None:
         simulation["time_step_min"] = plan.file.evaluate.time_step_min

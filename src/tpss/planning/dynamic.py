@@ -168,8 +168,7 @@ def _with_each(
 
 def no_plan(problem: Problem, k: int) -> NoPlanError:
     """Why an area has no plan: the nodes at which none of its configurations can be in service."""
-    area, tree = problem.areas[k], problem.tree
-    decisions = decisions_of(problem, k)
+    area, decisions = problem.areas[k], decisions_of(problem, k)
     reached = np.zeros((decisions.groups, area.configurations), dtype=np.bool_)
     for g, parent in enumerate(decisions.parent):
         start = np.arange(area.configurations) == area.transitions.initial
@@ -179,7 +178,7 @@ def no_plan(problem: Problem, k: int) -> NoPlanError:
     stuck = [g for g in range(decisions.groups) if not reached[g].any()]
     first = [g for g in stuck if decisions.parent[g] == NONE or reached[decisions.parent[g]].any()]
     nodes = [int(n) for g in first for n in decisions.nodes(g)]
-    where = "; ".join(tree.label(n) for n in nodes[:3])
+    where = "; ".join(problem.label(n) for n in nodes[:3])
     where = where or "some branch: each choice that serves one node leaves another without any"
     return NoPlanError(
         "requirement",

@@ -1,8 +1,8 @@
-"""Prove a plan by bounds: simulate the strongest supplies and today's, then what the best plan uses.
+"""Prove a plan by bounds: simulate what gives the bounds, then what the best plan uses.
 
-What is simulated is a configuration with a traffic, with all outages required.  First come those of
-the strongest configurations and of today's, which give the bounds (`tpss.planning.strongest`); then the
-loop of `tpss.planning.prove`.  Everything is kept in the folder of the plan, so an interrupted proof
+What is simulated is a configuration with a traffic, with all outages required.  First come those that
+give the bounds, whichever way (`tpss.planning.ways`), and all that have none; then the loop of
+`tpss.planning.prove`.  Everything is kept in the folder of the plan, so an interrupted proof
 goes on where it was.
 """
 
@@ -15,16 +15,17 @@ import pandas as pd
 
 from tpss.errors import Finding, PlanError, ScenarioError
 from tpss.planning.cases import Case, CaseList
+from tpss.planning.learnt import Learnt
 from tpss.planning.money import Array
 from tpss.planning.plan import SIMULATION
 from tpss.planning.problem import Problem, Solution
 from tpss.planning.prove import ROUNDING, Costs, Evidence, Grade, Proof, Round, Violation, audit_of
 from tpss.planning.prove import Case as Cell
 from tpss.planning.prove import prove as proved
+from tpss.planning.served import bounds_of
 from tpss.planning.solve import Model, Units, model_of
-from tpss.planning.steady import FINISHED
-from tpss.planning.strongest import anchors, strongest
 from tpss.planning.tree import Indices
+from tpss.planning.ways import WAYS, Way
 
 Simulate = Callable[[Sequence[Case]], pd.DataFrame]
 """Gives the rows of a folder, by digest, once some cases are among them."""
@@ -38,6 +39,7 @@ def prove_lazily(
     simulate: Simulate,
     solver: Callable[[Problem], Solution],
     tell: Callable[[Round], None] | None = None,
+    learnt: Learnt | None = None,
 ) -> Model:
     """Simulate what proves a plan to be the best one, if the bounds hold.
 
@@ -49,6 +51,8 @@ def prove_lazily(
         Finds the best plan of a problem.
     tell : callable, optional
         Is told how far the proof has come, each round.
+    learnt : Learnt, optional
+        What was learnt before for the bounds.
 
     Returns
     -------
@@ -64,16 +68,16 @@ def prove_lazily(
     NoPlanError
         There is no plan.
     """
-    search = _Search(case_list, simulate)
-    evaluation = case_list.plan.file.evaluate
+    search = _Search(case_list, simulate, learnt or Learnt())
+    way, (count, seed) = search.way, audit_asked(case_list)
     while True:
         evidence = evidence_of(search.model)
         proof = proved(
             evidence,
             partial(search.find_out, evidence=evidence),
-            Grade.BOUNDED,
-            evaluation.audit_cases,
-            evaluation.audit_seed,
+            way.grade,
+            count,
+            seed,
             solver,
             None if tell is None else lambda each: tell(search.counted(each)),
         )
@@ -85,33 +89,45 @@ def prove_lazily(
             return model
 
 
+def audit_asked(case_list: CaseList) -> tuple[int, int]:
+    """How many configurations with a traffic are drawn to test the bounds of a plan, and the seed."""
+    evaluation = case_list.plan.file.evaluate
+    count = evaluation.audit_cases
+    if count is None:
+        count = WAYS[evaluation.by].audit_cases
+    return count, evaluation.audit_seed
+
+
 class _Search:
     """What was simulated so far, and the model that it makes."""
 
-    def __init__(self, case_list: CaseList, simulate: Simulate) -> None:
-        self.case_list, self.simulate = case_list, simulate
+    def __init__(self, case_list: CaseList, simulate: Simulate, learnt: Learnt) -> None:
+        self.case_list, self.simulate, self.learnt = case_list, simulate, learnt
+        self.way: Way = WAYS[case_list.plan.file.evaluate.by]
         self.table = simulate([])
         self.own = {case.digest for case in case_list.cases}
         self.by_unit: dict[tuple[int, int, int], list[Case]] = {}
         for case in self.case_list.cases:
             unit = (case.area, case.state, case.configuration)
             self.by_unit.setdefault(unit, []).append(case)
-        first = [set(anchors(area).tolist()) for area in self.case_list.areas]
-        self._simulate({unit for unit in self.by_unit if unit[2] in first[unit[0]]})
-        best = [set(strongest(area).tolist()) for area in self.case_list.areas]
-        bounded = self._with_bounds(best)
-        if rest := {unit for unit in self.by_unit if unit[:2] not in bounded}:
-            self._simulate(rest)
-        self.model = model_of(self.case_list, self.table)
+        evaluation = case_list.plan.file.evaluate
+        self._simulate(
+            {(k, *pair) for k, area in enumerate(case_list.areas)
+             for pair in self.way.first(area, evaluation)}
+        )  # fmt: skip
+        self._simulate(self._without_bounds())
+        self.model = self._modelled()
 
-    def _with_bounds(self, best: list[set[int]]) -> set[tuple[int, int]]:
-        """Areas and traffics that some strongest configuration comes through with."""
-        status = self.table.status
-        return {
-            (area, d)
-            for (area, d, c), cases in self.by_unit.items()
-            if c in best[area] and status[cases[0].digest] == FINISHED
-        }
+    def _without_bounds(self) -> Units:
+        """Configurations with a traffic that have no bound."""
+        found: Units = set()
+        for k in range(len(self.case_list.areas)):
+            bound = bounds_of(self.case_list, k, self.table, self.learnt)
+            found |= {(k, int(d), int(c)) for d, c in np.argwhere(np.isnan(bound).any(axis=2))}
+        return found
+
+    def _modelled(self) -> Model:
+        return model_of(self.case_list, self.table, self.learnt)
 
     def _simulate(self, units: Units) -> None:
         cases = [case for unit in sorted(units) for case in self.by_unit[unit]]
@@ -127,7 +143,7 @@ class _Search:
         """Simulate what the costs of some configurations with a traffic depend on."""
         while lacking := {unit for cell in cells for unit in self._lacking(cell, evidence)}:
             self._simulate(lacking)
-            self.model = model_of(self.case_list, self.table)
+            self.model = self._modelled()
         evidence.tighten([each.yearly_cost for each in self.model.priced])
         return list(_costs(self.model, cells, evidence))
 
@@ -164,10 +180,10 @@ def _lower(model: Model) -> list[Array]:
         quantities, bound = each.quantities, each.bound
         if bound is None:
             raise PlanError("a plan that is simulated as a whole has no bounds")
-        there = ~np.isnan(bound).any(axis=1)
+        there = ~np.isnan(bound).any(axis=2)
         operation, carried = quantities.operation.copy(), quantities.carried.copy()
         fixed = operation[-1]
-        operation[:-1][there] = bound[there][:, np.newaxis] + fixed
+        operation[:-1][there] = (bound + fixed)[there]
         carried[:-1][there] = True
         without = replace(quantities, operation=operation, carried=carried)
         found.append(without.priced(priced.price).yearly_cost)
@@ -203,10 +219,11 @@ def proof_of(model: Model, best: Solution) -> Proof:
     if model.plan.file.evaluate.by == SIMULATION:
         return Proof(best, Grade.EXHAUSTIVE, (), (), simulated, cases, 0)
     refuse_bounds(model, best.policy, "the best plan")
-    evaluation, evidence = model.plan.file.evaluate, evidence_of(model)
-    drawn = audit_of(evidence, evaluation.audit_cases, evaluation.audit_seed)
+    evidence = evidence_of(model)
+    drawn = audit_of(evidence, *audit_asked(model.case_list))
     audited = len(drawn) if all(cell in evidence.known for cell in drawn) else 0
-    return Proof(best, Grade.BOUNDED, violations(model), (), simulated, cases, audited)
+    grade = WAYS[model.plan.file.evaluate.by].grade
+    return Proof(best, grade, violations(model), (), simulated, cases, audited)
 
 
 def refuse_bounds(model: Model, policy: Indices, what: str) -> None:
@@ -234,7 +251,7 @@ def violations(model: Model) -> tuple[Violation, ...]:
         if own.bound is None:
             continue
         prices, of = np.unique(priced.price, axis=0), own.quantities
-        bound = (own.bound[:, np.newaxis] + of.operation[-1]) @ prices.T
+        bound = (own.bound + of.operation[-1]) @ prices.T
         cost = of.operation[:-1] @ prices.T
         tested = own.is_simulated[:-1] & of.carried[:-1]
         below = np.where(tested[:, :, np.newaxis], bound - cost - ROUNDING * np.abs(bound), 0.0)

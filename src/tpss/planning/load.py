@@ -131,7 +131,8 @@ def plan_of(document: Mapping[str, Any], source: Path) -> Plan:
             findings += error.findings
     for area in areas:
         findings += price_faults(file, area.today, str(source))
-    findings += _of_outages(file, areas, source)
+    if len(areas) == len(_scenarios(file)):
+        findings += _of_outages(file, areas, source)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
     return Plan(file, copy_of(document), source.absolute(), tuple(areas))
@@ -152,6 +153,9 @@ def read_plan_file(given: Mapping[str, Any], source: Path) -> PlanFile:
         if isinstance(document.get(kind), Mapping):
             document[kind] = _by_area(document[kind], areas)
     findings: list[Finding] = []
+    for kind, part in (("measures", PlannedMeasure), ("renewals", PlannedRenewal)):
+        if areas and isinstance(document.get(kind), Mapping):
+            _of_unknown_areas(document[kind], kind, part, areas, str(source), findings)
     measures = document.get("measures")
     if isinstance(measures, Mapping):
         document["measures"] = _with_likes(measures, areas, str(source), findings)
@@ -182,6 +186,27 @@ def _by_area(tables: Mapping[str, Any], areas: set[str]) -> dict[str, Any]:
         else:
             found[name] = table
     return found
+
+
+def _of_unknown_areas(
+    tables: dict[str, Any],
+    kind: str,
+    part: type[PlannedMeasure | PlannedRenewal],
+    areas: set[str],
+    source: str,
+    findings: list[Finding],
+) -> None:
+    """Tables of tables that have no key of a measure or renewal: their area has another name."""
+    keys = {field.alias or name for name, field in part.model_fields.items()}
+    for name in list(tables):
+        within = tables[name] if "." not in name else None
+        if not isinstance(within, Mapping) or not within or keys & set(within):
+            continue
+        if all(isinstance(each, Mapping) for each in within.values()):
+            findings.append(
+                Finding(source, f"{kind}.{name}", "", *no_such("area", name, list(areas)))
+            )
+            del tables[name]
 
 
 def _with_likes(

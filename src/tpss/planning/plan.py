@@ -10,10 +10,13 @@ from tpss.scenario.fields import Flag, Name, Part, Real, Version, Whole, ascendi
 PlainName = Annotated[Name, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 """A name without spaces, from which others are made."""
 
-SIMULATION, BOUNDS = "simulation", "bounds"
+SIMULATION, BOUNDS, APPROXIMATOR = "simulation", "bounds", "approximator"
 """Ways in which a plan is proved: every case is simulated, or what the proof takes."""
 
-PROOF_KEYS = {"by", "bound_margin_percent", "audit_cases", "audit_seed", "most_cases"}
+PROOF_KEYS = {
+    "by", "bound_margin_percent", "training_cases", "audit_cases", "audit_seed", "most_cases",
+    "finer_step_min",
+}  # fmt: skip
 """Keys of the evaluation that say which cases are simulated, not what comes of one."""
 
 LEVEL = "{level}"
@@ -235,30 +238,46 @@ class Area(Part):
 class Evaluation(Part):
     """How the operation of a year is found by simulation."""
 
-    by: Literal["simulation", "bounds"] = Field(
+    by: Literal["simulation", "bounds", "approximator"] = Field(
         default="simulation",
         description="Whether every case is simulated, or only what proves a plan to be the best if no "
-        "case costs less than a bound: what the strongest supplies use, less a margin.",
+        "case costs less than a bound. By bounds: what the strongest supplies use, less a margin. By an "
+        "approximator: the lower end of what it predicts of the case, less a margin.",
     )
     bound_margin_percent: Real = Field(
         default=5.0,
         ge=0,
         lt=100,
-        description="How much less energy than with the strongest supplies a case may take, by bounds.",
+        description="How much less energy a case may take than with the strongest supplies, or than the "
+        "approximator's lower end.",
     )
-    audit_cases: Whole = Field(
-        default=0,
+    training_cases: Whole = Field(
+        default=300,
+        ge=30,
+        le=1_000_000,
+        description="Configurations with a traffic of each area that are drawn at random and simulated "
+        "first, to train the approximator on.",
+    )
+    audit_cases: Whole | None = Field(
+        default=None,
         ge=0,
         le=10_000_000,
-        description="Configurations with a traffic that are drawn at random and simulated, by bounds, "
-        "to test these.",
+        description="Configurations with a traffic that are drawn at random and simulated to test the "
+        "bounds; left out: none by bounds, 60 by an approximator.",
     )
-    audit_seed: Whole = Field(default=0, ge=0, description="Seed of that draw.")
+    audit_seed: Whole = Field(default=0, ge=0, description="Seed of these draws.")
     time_step_min: Real | None = Field(
         default=None,
         ge=0.001,
         le=10,
         description="Time step of all cases; left out: that of the scenario.",
+    )
+    finer_step_min: Real | None = Field(
+        default=None,
+        ge=0.001,
+        le=10,
+        description="Time step at which what the best first decisions use is simulated once more, to "
+        "see whether the step decides between them; left out: it is not.",
     )
     measured_min: Real = Field(
         default=60.0,

@@ -101,7 +101,10 @@ class Quantities:
         missing = np.where(self.may_serve[states], missing, np.inf)
         cost: Array = np.matmul(self._operation, price.T)
         cost += self._blocked[:, :, np.newaxis]
-        return cost + missing.T
+        if len(price) < len(states):  # one price for all
+            return cost + missing.T
+        cost += missing.T  # in its place: memory for another such table takes longer than the sum
+        return cost
 
     @cached_property
     def _blocked(self) -> Array:

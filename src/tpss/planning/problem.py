@@ -107,6 +107,13 @@ class Problem:
         weight: Array = self.tree.probability * self.stages.discount[self.tree.stage]
         return weight
 
+    def label(self, node: int) -> str:
+        """A node in words: its stage, counted from 1, the year it begins, and its scenarios."""
+        through = self.tree.scenarios_through(node)
+        whose = "every scenario" if len(through) == len(self.tree.names) else " or ".join(through)
+        stage = int(self.tree.stage[node])
+        return f"stage {stage + 1} ({self.stages.start_year[stage]:g}), {whose}"
+
     @property
     def is_limited(self) -> bool:
         """Whether a budget couples areas or nodes."""

@@ -124,17 +124,34 @@ def _solution(problem: Problem, policy: Indices, bound: float) -> Solution:
     return Solution(policy, cost, min(bound, cost))
 
 
+def demand_enough(problem: Problem) -> None:
+    """Refuse budgets that no plan meets even if parts of changes could be made.
+
+    They may leave no plan though they pass: that is seen when it is looked for.
+
+    Raises
+    ------
+    NoPlanError
+        By how much they are exceeded, and where.
+    PlanError
+        HiGHS is not installed.
+    """
+    if problem.is_limited and (_least_excess(problem, program_of(problem)) > 0.0).any():
+        raise over_budget(problem)
+
+
 def over_budget(problem: Problem) -> NoPlanError:
     """Fault of budgets that no plan meets: those that are exceeded if as little as possible is."""
     program = program_of(problem)
     excess = _least_excess(problem, program)
     over = np.flatnonzero(excess > 0.0)
     nodes = program.budget_nodes[over]
-    tree = problem.tree
     words = "; ".join(
-        f"{excess[k]:.6g} more in {tree.label(int(n))}" for k, n in zip(over, nodes, strict=True)
+        f"{excess[k]:.6g} more in {problem.label(int(n))}" for k, n in zip(over, nodes, strict=True)
     )
-    return NoPlanError("budget", f"no plan meets the budget: it takes {words}", nodes.tolist())
+    remedy = "allow it, or let less fall due there"
+    told = f"no plan meets the budget: it takes {words}; {remedy}"
+    return NoPlanError("budget", told, nodes.tolist())
 
 
 def _least_excess(problem: Problem, program: Program) -> Array:

@@ -11,6 +11,7 @@ from tpss.planning.program import solve_any
 from tpss.planning.sentence import measure_names
 from tpss.planning.solve import Model
 from tpss.planning.states import TODAY
+from tpss.planning.wording import in_order, traffic_in_words
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,10 @@ def not_carried(question: Question, model: Model) -> list[str]:
     )
     if c is None:
         return []
+    states = {state.name: state for state in area.states.states}
+    words, number = traffic_in_words(states).full, list(states)
     return [
-        f"{area.configurations[c].name} does not carry {state.name}: {'; '.join(reasons)}"
-        for d, state in enumerate(area.states.states)
-        if (reasons := served.reasons.get((d, c)))
+        f"{area.configurations[c].name} does not carry {words[name]}: {'; '.join(reasons)}"
+        for name in in_order(states)
+        if (reasons := served.reasons.get((number.index(name), c)))
     ]

@@ -13,6 +13,7 @@ from tpss.planning.report_prices import tables_of_prices, without_source
 from tpss.planning.report_tables import tables_of, values
 from tpss.planning.sentence import TIE
 from tpss.planning.tables import KNOWN, SIMULATED
+from tpss.planning.wording import mean_in_words
 from tpss.planning.written import Written, read_written
 from tpss.report.html import check_target
 from tpss.report.page import fill
@@ -99,6 +100,7 @@ def plan_report(written: Written) -> str:
             written.of("configurations", area).configuration.nunique() for area in written.areas
         ),
         values=values(written),
+        mean=mean_in_words(document.get("mean_future", []), written.traffic),
         drawn=drawn,
         left_out=left_out,
         tables=tables_of(written),

@@ -8,16 +8,20 @@ from pathlib import Path
 import pandas as pd
 
 from tpss.errors import Finding, ScenarioError
-from tpss.planning.answer import Answer, Effort, answer_of, solver_of
+from tpss.planning.answer import Answer, Effort, answer_of, as_today, solver_of
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList
 from tpss.planning.configurations import check_configurations
+from tpss.planning.costs import meets_budget
+from tpss.planning.finer import Compared, compare_finer
 from tpss.planning.lazily import prove_lazily
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan
 from tpss.planning.plan import SIMULATION
+from tpss.planning.program import demand_enough
 from tpss.planning.prove import Round
 from tpss.planning.simulate import simulate_cases
-from tpss.planning.solve import model_of, tree_of
+from tpss.planning.solve import model_of, unpriced_problem
 from tpss.planning.turning import Turn, all_turns
 from tpss.planning.write import write_answer
 from tpss.sweep.progress import Advance
@@ -29,6 +33,8 @@ class Answered:
 
     answer: Answer
     turns: tuple[Turn, ...]
+    finer: list[list[Compared]]
+    """First decisions at a finer step, if the plan asks for one."""
 
 
 def check_plan(plan: Plan) -> CaseList:
@@ -38,25 +44,37 @@ def check_plan(plan: Plan) -> CaseList:
     ------
     ScenarioError
         Configurations are no valid scenarios, or there are more cases than the plan allows.
+    NoPlanError
+        No plan meets the budgets.
     """
     case_list = CaseList(plan)
     most = plan.file.evaluate.most_cases
     if len(case_list) > most and plan.file.evaluate.by == SIMULATION:
         problem = f"{len(case_list):,} cases are more than that"
-        remedy = 'raise it, let measures exclude each other, or prove by bounds: by = "bounds"'
+        remedy = (
+            'raise it, let measures exclude each other, or prove by bounds: by = "bounds" or '
+            '"approximator"'
+        )
         place = (str(plan.source), "evaluate.most_cases", str(most))
         raise ScenarioError([Finding(*place, problem, remedy)])
     for each in case_list.areas:
         check_configurations(plan, each.area, list(each.configurations), each.states)
-    tree_of(case_list)
+    _demand_enough(case_list)
     return case_list
+
+
+def _demand_enough(case_list: CaseList) -> None:
+    """Refuse budgets that no plan meets, before anything is simulated."""
+    problem = unpriced_problem(case_list)
+    if not meets_budget(problem, as_today(problem)):
+        demand_enough(problem)
 
 
 def run_plan(
     plan: Plan,
     folder: str | Path,
     *,
-    threads: int | None = None,
+    workers: int | None = None,
     scheduler: str | None = None,
     gap: float | None = None,
     time_limit_s: float | None = None,
@@ -65,18 +83,19 @@ def run_plan(
 ) -> Answered:
     """Simulate the cases of a plan that its folder does not hold, solve it, and write the answer there.
 
-    With ``evaluate.by = "bounds"`` only those cases that prove a plan to be the best one, if no case
-    costs less than its bound.
+    With ``evaluate.by = "bounds"`` or ``"approximator"`` only those cases that prove a plan to be the
+    best one, if no case costs less than its bound.
 
     Parameters
     ----------
     plan : Plan
     folder : path
         Made, or continued if it is one of a plan.
-    threads : int, optional
-        Cases at a time; by default one for each core.
+    workers : int, optional
+        Cases at a time; by default one for each core.  Many of them are simulated on processes of their
+        own: call it below ``if __name__ == "__main__":`` in a script.
     scheduler : str, optional
-        Address of a Dask scheduler, whose workers simulate in place of threads.
+        Address of a Dask scheduler, whose workers simulate in place of this computer.
     gap : float, optional
         With a budget: share of the cost within which a better plan is not looked for.
     time_limit_s : float, optional
@@ -108,16 +127,21 @@ def run_plan(
     case_list, target = check_plan(plan), CaseFolder(Path(folder))
     with target.opened():
 
-        def simulate(cases: Sequence[Case]) -> pd.DataFrame:
+        def simulate_of(of: CaseList, cases: Sequence[Case]) -> pd.DataFrame:
             return simulate_cases(
-                case_list, target, cases, threads=threads, scheduler=scheduler, report=report
+                of, target, cases, workers=workers, scheduler=scheduler, report=report
             )
+
+        def simulate(cases: Sequence[Case]) -> pd.DataFrame:
+            return simulate_of(case_list, cases)
 
         if plan.file.evaluate.by == SIMULATION:
             model = model_of(case_list, simulate(case_list.cases))
         else:
-            model = prove_lazily(case_list, simulate, solver_of(effort), tell)
+            learnt = Learnt(target.path)
+            model = prove_lazily(case_list, simulate, solver_of(effort), tell, learnt)
         answer = answer_of(model, effort)
-        answered = Answered(answer, tuple(all_turns(answer)))
-        write_answer(target.path, answer, answered.turns)
+        finer = compare_finer(answer, simulate_of)
+        answered = Answered(answer, tuple(all_turns(answer)), finer)
+        write_answer(target.path, answer, answered.turns, finer)
     return answered

@@ -6,11 +6,16 @@ from tpss.planning.answer import Answer
 from tpss.planning.configurations import Configuration
 from tpss.planning.dynamic import FirstDecision
 from tpss.planning.load import PlannedArea
+from tpss.planning.plan_faults import PRICES
 from tpss.planning.tables import built
-from tpss.planning.turning import Turn, nearest
+from tpss.planning.turning import DISCOUNT_RATE, Turn, nearest
+from tpss.planning.wording import number, varied_in_words
 
 ALTERNATIVES = 2
 """Other first decisions that are named."""
+
+WAITING = "waiting"
+"""Names the first decision to build nothing."""
 
 TIE = 1e-3
 """Share of the cost below which what one costs more is a tie: a time step moves energies as much. [1]"""
@@ -25,10 +30,15 @@ def sentences(answer: Answer, turns: Sequence[Turn]) -> list[str]:
     turns : sequence of Turn
         Where first decisions turn; none where that is not known.
     """
+    return [_sentence(answer, firsts, turns) for firsts in groups_of(answer)]
+
+
+def groups_of(answer: Answer) -> list[list[FirstDecision]]:
+    """First decisions by what they are alternatives to: one list for each area and its futures."""
     groups: dict[tuple[int, tuple[int, ...]], list[FirstDecision]] = {}
     for each in answer.firsts:
         groups.setdefault((each.area, tuple(each.nodes.tolist())), []).append(each)
-    return [_sentence(answer, firsts, turns) for firsts in groups.values()]
+    return list(groups.values())
 
 
 def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]) -> str:
@@ -53,7 +63,8 @@ def _sentence(answer: Answer, firsts: list[FirstDecision], turns: Sequence[Turn]
         for i, (name, each) in enumerate(zip(names[1:], firsts[1:], strict=True))
         if i < ALTERNATIVES
     )
-    parts = [f"{where}{what}{when}: {money(firsts[0].cost)} {currency} expected", others]
+    together = " in all areas" if where else ""
+    parts = [f"{where}{what}{when}: {money(firsts[0].cost)} {currency} expected{together}", others]
     parts.append(_turn_in_words(answer, [turn for turn in turns if turn.area == k]))
     return "; ".join(part for part in parts if part) + "."
 
@@ -69,7 +80,7 @@ def _other(answer: Answer, name: str, first: FirstDecision, is_first: bool) -> s
 
 def in_words(answer: Answer, first: FirstDecision) -> str:
     """What is built in a first decision; waiting, if nothing is."""
-    return " and ".join(built(answer.model, first.area, 0, first.configuration)) or "waiting"
+    return " and ".join(built(answer.model, first.area, 0, first.configuration)) or WAITING
 
 
 def _turn_in_words(answer: Answer, turns: list[Turn]) -> str:
@@ -84,8 +95,13 @@ def _turn_in_words(answer: Answer, turns: list[Turn]) -> str:
         if end is not None and to is not None
     ]
     value, to = min(ends, key=lambda end: abs(end[0] - found.now))
-    names = [each.name for each in answer.model.areas[turn.area].configurations]
-    return f"the choice turns to {names[to]} at {turn.key} = {value:.4g} (now {found.now:.4g})"
+    configurations = answer.model.areas[turn.area].configurations
+    names = [each.name if each.size else WAITING for each in configurations]
+    what = varied_in_words(turn.key)
+    if turn.key.startswith(f"{PRICES}.") and turn.key != DISCOUNT_RATE:
+        what = f"price of {what}"
+    now = number(found.now)
+    return f"the choice turns to {names[to]} if the {what} is {number(value)} (now {now})"
 
 
 def money(amount: float) -> str:

@@ -4,11 +4,11 @@ A configuration that does not carry the traffic asked for runs less: another sta
 carries, with no more trains of any service, or no train at all.  What it does not run is missed.  So
 every plan is possible, and what a weak supply costs is the value of trains.
 
-Of a plan that is proved by bounds, what was not simulated has those of `tpss.planning.strongest`.
+Of a plan that is proved by bounds, what was not simulated has those of `tpss.planning.ways`.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,30 +16,28 @@ import pandas as pd
 
 from tpss.errors import Finding, PlanError, ScenarioError
 from tpss.planning.cases import INTACT, Case, CaseList
+from tpss.planning.learnt import Learnt
 from tpss.planning.money import Array
-from tpss.planning.outcome import trains_per_h
-from tpss.planning.period import period_of
-from tpss.planning.plan import BOUNDS, PlanFile
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.prices import Flags, Quantities
 from tpss.planning.requirements import records_of, verdicts
 from tpss.planning.states import State
-from tpss.planning.steady import FINISHED
-from tpss.planning.strongest import UNCHANGED, Energies, bound_of, strongest
 from tpss.planning.tree import Indices
-from tpss.scenario.scenario import Scenario
+from tpss.planning.ways import WAYS
+from tpss.planning.yearly_use import (
+    FED_BACK,
+    FIXED,
+    NOT_RUN,
+    Simulated,
+    Trains,
+    components_of,
+    gives_back,
+    trains_of,
+)
 from tpss.scenario.traffic import DEPARTURES
 
 NO_TRAFFIC = "no train"
 """Names what runs where a configuration carries none of the traffic."""
-
-ENERGY, FED_BACK, FIXED = "energy_per_kwh", "fed_back_per_kwh", "fixed"
-"""Components with one price for all trains."""
-
-LOST, LATE, NOT_RUN = "lost_minute", "late_minute", "train_not_run"
-"""Components with a price for each type of train."""
-
-KWH_PER_MWH = 1e3
 
 
 @dataclass(frozen=True)
@@ -55,21 +53,13 @@ class Served:
     """Whether what a configuration uses of a traffic was simulated, not a bound, shape (traffic,
     configurations)."""
     bound: Array | None
-    """Of a plan that is proved by bounds: least use of a traffic by any configuration, without its
-    fixed cost, NaN where none is known, shape (states, components)."""
+    """Of a plan that is proved by bounds: least use of a traffic by a configuration, without its fixed
+    cost, NaN where none is known, shape (states, configurations, components)."""
 
 
-def components_of(file: PlanFile) -> tuple[str, ...]:
-    """Names of what has a price, in the order of the quantities."""
-    economics = file.economics
-    per_type = [
-        f"{key}.{train}" for key in (LOST, LATE, NOT_RUN) for train in getattr(economics, key)
-    ]
-    paid_for = (FED_BACK,) if economics.fed_back_per_kwh is not None else ()
-    return (ENERGY, *paid_for, *per_type, FIXED)
-
-
-def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node: Indices) -> Served:
+def served(
+    case_list: CaseList, number: int, table: pd.DataFrame, state_of_node: Indices, learnt: Learnt
+) -> Served:
     """What an area uses and misses in a year.
 
     Parameters
@@ -81,6 +71,8 @@ def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node:
         Outcomes by digest, of all its cases.
     state_of_node : array of int, shape (nodes,)
         State of traffic that each node of the tree asks for.
+    learnt : Learnt
+        What was learnt before for bounds.
 
     Raises
     ------
@@ -93,31 +85,29 @@ def served(case_list: CaseList, number: int, table: pd.DataFrame, state_of_node:
     """
     area, file = case_list.areas[number], case_list.plan.file
     own = [case for case in case_list.cases if case.area == number]
-    is_bounded = file.evaluate.by == BOUNDS
-    if is_bounded:
+    way = WAYS.get(file.evaluate.by)
+    if way is not None:
         own = whole_ones(own, table)
     reasons = verdicts(area, own, table, file.require)
-    runs = [_trains(case_list, number, d) for d in range(len(area.states.states))]
+    simulated = _simulated(case_list, number, own, table)
     states, configurations = len(area.states.states), len(area.configurations)
     components = components_of(file)
     operation = np.zeros((states + 1, configurations, len(components)))
     carried = np.ones((states + 1, configurations), dtype=np.bool_)
-    rows = _intact_rows(own, table)
-    _demand_payment(case_list, number, rows)
-    hours = file.economics.running_hours_per_year
+    _demand_payment(simulated)
     for (d, c), failed in reasons.items():
         carried[d, c] = not failed
         if not failed:
-            operation[d, c] = _operation(rows[d, c], runs[d], components, hours)
+            operation[d, c] = simulated.use(d, c)
     is_simulated, bound = np.ones_like(carried), None
-    if is_bounded:
+    if way is not None:
         is_simulated[:states] = [
             [(d, c) in reasons for c in range(configurations)] for d in range(states)
         ]
-        bound = _bounds(case_list, number, rows, runs)
+        bound = way.bound(simulated, learnt)
         _put_bounds(operation[:states], is_simulated[:states], bound)
     operation[:, :, components.index(FIXED)] += _fixed(case_list, number)
-    unserved, may_serve = _missed(area.states.states, runs, components, hours)
+    unserved, may_serve = _missed(area.states.states, simulated)
     quantities = Quantities(components, operation, carried, unserved, may_serve, state_of_node)
     names = (*(state.name for state in area.states.states), NO_TRAFFIC)
     return Served(quantities, names, reasons, is_simulated, bound)
@@ -132,113 +122,99 @@ def whole_ones(cases: Sequence[Case], table: pd.DataFrame) -> list[Case]:
     return [case for case in cases if (case.area, case.state, case.configuration) not in lacking]
 
 
-def _bounds(
-    case_list: CaseList,
-    number: int,
-    rows: Mapping[tuple[int, int], Mapping[str, Any]],
-    runs: list[dict[str, "_Run"]],
-) -> Array:
-    """Least use of each state of traffic, NaN where no strongest supply came through."""
-    file = case_list.plan.file
-    components, hours = components_of(file), file.economics.running_hours_per_year
-    energies = Energies(
-        components.index(ENERGY), components.index(FED_BACK) if FED_BACK in components else None
-    )
-    through = {key: row for key, row in rows.items() if row["status"] == FINISHED}
-    lost = {key: _lost_by_converters(row) * hours * KWH_PER_MWH for key, row in through.items()}
-    # Where today's supply does not come through, its converters lose no less than with other traffic.
-    ever = min((lost[key] for key in lost if key[1] == UNCHANGED), default=0.0)
-    bound = np.full((len(runs), len(components)), np.nan)
-    best = strongest(case_list.areas[number]).tolist()
-    for d, own in enumerate(runs):
-        there = [c for c in best if (d, c) in through]
-        if there:
-            uses = np.array([_operation(through[d, c], own, components, hours) for c in there])
-            losses = np.array([lost[d, c] for c in there])
-            least = min(float(losses.min()), lost.get((d, UNCHANGED), ever))
-            margin = file.evaluate.bound_margin_percent / 100.0
-            bound[d] = bound_of(uses, losses, least, margin, energies)
-    return bound
-
-
-def _lost_by_converters(row: Mapping[str, Any]) -> float:
-    """What converters lose that describe it, in the mean. [MW]"""
-    lost = row.get("converter_losses_mw")
-    return 0.0 if lost is None or np.isnan(lost) else float(lost)
-
-
 def _put_bounds(operation: Array, is_simulated: Flags, bound: Array) -> None:
     """Let what was not simulated use what is least."""
     lacking = ~is_simulated
-    if unknown := int(lacking[np.isnan(bound).any(axis=1)].sum()):
+    if unknown := int((lacking & np.isnan(bound).any(axis=2)).sum()):
         raise PlanError(
             f"{unknown:,} configurations with a traffic were neither simulated nor have a "
             "bound: the plan or its scenarios have changed; run tpss plan run again, which adds them"
         )
-    operation[lacking] = np.broadcast_to(bound[:, np.newaxis], operation.shape)[lacking]
+    operation[lacking] = bound[lacking]
 
 
-def _intact_rows(own: list[Case], table: pd.DataFrame) -> dict[tuple[int, int], Mapping[str, Any]]:
+def with_outcomes(
+    known: Served, case_list: CaseList, number: int, own: Sequence[Case], table: pd.DataFrame
+) -> Served:
+    """What an area uses and misses, with some outcomes in the place of those that are known.
+
+    Only those that are put in count as simulated, and traffic of no train.
+
+    Parameters
+    ----------
+    known : Served
+    case_list : CaseList
+        Of the same configurations and traffic.
+    number : int
+        Of the area.
+    own : sequence of Case
+        Whose outcomes are put in, with all outages of each.
+    table : DataFrame
+        Outcomes by digest.
+
+    Raises
+    ------
+    ScenarioError, AuditError
+        As `served`.
+    """
+    reasons = verdicts(case_list.areas[number], list(own), table, case_list.plan.file.require)
+    simulated = _simulated(case_list, number, list(own), table)
+    operation, carried = known.quantities.operation.copy(), known.quantities.carried.copy()
+    is_simulated = np.zeros_like(carried)
+    is_simulated[-1] = True
+    fixed = operation[-1]
+    for (d, c), failed in reasons.items():
+        carried[d, c], is_simulated[d, c] = not failed, True
+        operation[d, c] = fixed[c] if failed else simulated.use(d, c) + fixed[c]
+    quantities = replace(known.quantities, operation=operation, carried=carried)
+    return replace(known, quantities=quantities, is_simulated=is_simulated)
+
+
+def bounds_of(case_list: CaseList, number: int, table: pd.DataFrame, learnt: Learnt) -> Array:
+    """Least use of each traffic by each configuration of an area, as `Served.bound`.
+
+    Parameters
+    ----------
+    case_list : CaseList
+        Of a plan that is proved by bounds.
+    number : int
+        Of the area.
+    table : DataFrame
+        Outcomes by digest.
+    learnt : Learnt
+        What was learnt before for bounds.
+    """
+    own = [case for case in case_list.cases if case.area == number]
+    simulated = _simulated(case_list, number, whole_ones(own, table), table)
+    return WAYS[case_list.plan.file.evaluate.by].bound(simulated, learnt)
+
+
+def _simulated(case_list: CaseList, number: int, own: list[Case], table: pd.DataFrame) -> Simulated:
+    """Rows of some cases of an area, and the trains of its traffic."""
     records = records_of(table)
-    return {
+    rows = {
         (case.state, case.configuration): records[case.digest]
         for case in own
         if case.outage == INTACT
     }
+    states = range(len(case_list.areas[number].states.states))
+    return Simulated(case_list, number, rows, [trains_of(case_list, number, d) for d in states])
 
 
-def _demand_payment(
-    case_list: CaseList, number: int, rows: Mapping[tuple[int, int], Mapping[str, Any]]
-) -> None:
+def _demand_payment(simulated: Simulated) -> None:
     """Refuse a plan without a price of energy that is given back, if some is."""
-    file, area = case_list.plan.file, case_list.areas[number]
+    case_list = simulated.case_list
+    file, area = case_list.plan.file, case_list.areas[simulated.number]
     if file.economics.fed_back_per_kwh is not None:
         return
-    for (d, c), row in rows.items():
-        if row["status"] == FINISHED and row["fed_back_to_grid_mw"] > 0.0:
+    for (d, c), row in simulated.through.items():
+        if gives_back(row):
             place = f"{area.configurations[c].name} with {area.states.states[d].name}"
             mwh = row["fed_back_to_grid_mw"] * file.economics.running_hours_per_year
             problem = f"the price is missing; {place} gives back {mwh:.4g} MWh a year to the grid"
             remedy = "add it, with its source; 0 only if nobody pays for it"
             key = f"{PRICES}.{FED_BACK}"
             raise ScenarioError([Finding(str(case_list.plan.source), key, "", problem, remedy)])
-
-
-@dataclass(frozen=True)
-class _Run:
-    """Trains of a service."""
-
-    train: str
-    per_h: float
-    is_scheduled: bool
-
-
-def _trains(case_list: CaseList, number: int, state: int) -> dict[str, _Run]:
-    """Trains that a state asks for, by service."""
-    case = next(each for each in case_list.cases if (each.area, each.state) == (number, state))
-    scenario = case_list.scenario(case)
-    return dict(_runs(scenario, period_of(scenario, case_list.plan.file.evaluate) / 60.0))
-
-
-def _runs(scenario: Scenario, hours: float) -> Iterator[tuple[str, _Run]]:
-    for number, entry in enumerate(scenario.traffic):
-        scheduled = entry.arrive_after_min is not None
-        yield entry.name, _Run(entry.train, trains_per_h(scenario, number, hours), scheduled)
-
-
-def _operation(
-    row: Mapping[str, Any], runs: Mapping[str, _Run], components: tuple[str, ...], hours: float
-) -> Array:
-    """What a supply uses in a year of a traffic, and its trains lose, by component."""
-    found = dict.fromkeys(components, 0.0)
-    found[ENERGY] = row["drawn_from_grid_mw"] * hours * KWH_PER_MWH
-    if FED_BACK in found:
-        found[FED_BACK] = row["fed_back_to_grid_mw"] * hours * KWH_PER_MWH
-    for service, run in runs.items():
-        key, column = (LATE, "mean_late_min") if run.is_scheduled else (LOST, "mean_lost_min")
-        minutes = float(row[f"service.{service}.{column}"])
-        found[f"{key}.{run.train}"] += minutes * run.per_h * hours
-    return np.array([found[name] for name in components])
 
 
 def _fixed(case_list: CaseList, number: int) -> Array:
@@ -250,14 +226,10 @@ def _fixed(case_list: CaseList, number: int) -> Array:
     return fixed
 
 
-def _missed(
-    states: tuple[State, ...],
-    runs: list[dict[str, _Run]],
-    components: tuple[str, ...],
-    hours: float,
-) -> tuple[Array, Any]:
+def _missed(states: tuple[State, ...], simulated: Simulated) -> tuple[Array, Any]:
     """Trains that are not run if other traffic is than asked for, and which may be."""
-    none: list[dict[str, _Run]] = [{}]
+    runs, components, hours = simulated.trains, simulated.components, simulated.hours
+    none: list[dict[str, Trains]] = [{}]
     unserved = np.zeros((len(states), len(states) + 1, len(components)))
     may_serve = np.zeros((len(states), len(states) + 1), dtype=np.bool_)
     for d, asked in enumerate(runs):
@@ -266,7 +238,7 @@ def _missed(
                 name in asked and each.per_h <= asked[name].per_h * (1.0 + 1e-12)
                 for name, each in run.items()
             )
-            alike = g == len(states) or _beside_trains(states[d]) == _beside_trains(states[g])
+            alike = g == len(states) or beside_trains(states[d]) == beside_trains(states[g])
             may_serve[d, g] = is_less and alike
             for name, each in asked.items() if may_serve[d, g] else ():
                 left = each.per_h - (run[name].per_h if name in run else 0.0)
@@ -275,7 +247,7 @@ def _missed(
     return unserved, may_serve
 
 
-def _beside_trains(state: State) -> dict[str, Any]:
+def beside_trains(state: State) -> dict[str, Any]:
     """Values of a state that are not the number of its trains: those must be as asked for."""
     counts = (*DEPARTURES, "file")
     return {path: v for path, v in state.values.items() if path.split(".")[-1] not in counts}

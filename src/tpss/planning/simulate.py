@@ -1,16 +1,16 @@
 """Simulate the cases of a plan that its folder does not hold yet."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import closing
 from typing import Any
 
 import pandas as pd
 
-from tpss.many import in_threads
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList, distinct
 from tpss.planning.cluster import rows_on_cluster
-from tpss.planning.rows import row_of
+from tpss.planning.local import rows_here
 from tpss.sweep.progress import Advance
 
 FILE_S = 1.0
@@ -22,7 +22,7 @@ def simulate_cases(
     folder: CaseFolder,
     cases: Sequence[Case],
     *,
-    threads: int | None = None,
+    workers: int | None = None,
     scheduler: str | None = None,
     report: Callable[[Advance], None] | None = None,
 ) -> pd.DataFrame:
@@ -34,10 +34,10 @@ def simulate_cases(
     folder : CaseFolder
         Opened.
     cases : sequence of Case
-    threads : int, optional
-        Number of threads; by default one for each core.
+    workers : int, optional
+        How many are simulated at a time; by default one for each core.
     scheduler : str, optional
-        Address of a Dask scheduler, whose workers simulate in place of threads.
+        Address of a Dask scheduler, whose workers simulate in place of this computer.
     report : callable, optional
         Called after every case.
 
@@ -51,28 +51,19 @@ def simulate_cases(
     todo = [case for case in wanted if case.digest not in known]
     started, before = time.perf_counter(), len(wanted) - len(todo)
     if scheduler is None:
-        rows = _in_threads(case_list, todo, threads)
+        rows = rows_here(case_list, todo, workers)
     else:
         rows = rows_on_cluster(case_list, todo, scheduler)
-    for done in _written(rows, folder):
-        if report is not None:
-            elapsed_s = time.perf_counter() - started
-            report(Advance(len(wanted), before + done, before, elapsed_s))
+    # Closed at once, whatever ends it: processes end with it.
+    with closing(rows), closing(_written(rows, folder)) as written:
+        for done in written:
+            if report is not None:
+                elapsed_s = time.perf_counter() - started
+                report(Advance(len(wanted), before + done, before, elapsed_s))
     return folder.table()
 
 
-def _in_threads(
-    case_list: CaseList, cases: Sequence[Case], threads: int | None
-) -> Iterator[dict[str, Any]]:
-    evaluation = case_list.plan.file.evaluate
-
-    def work(case: Case) -> dict[str, Any]:
-        return row_of(case, lambda: case_list.scenario(case), evaluation)
-
-    return in_threads(work, cases, threads)
-
-
-def _written(rows: Iterable[dict[str, Any]], folder: CaseFolder) -> Iterator[int]:
+def _written(rows: Iterable[dict[str, Any]], folder: CaseFolder) -> Generator[int, None, None]:
     """Numbers of rows, as they are done; they are written now and then, and when it ends early too."""
     waiting: list[dict[str, Any]] = []
     written_at = time.perf_counter()

@@ -9,15 +9,17 @@ import pandas as pd
 
 from tpss.planning import measures as built
 from tpss.planning.cases import AreaCases, CaseList
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan, PlannedArea
 from tpss.planning.money import Array, Stages, ordered_at
 from tpss.planning.plan_faults import PRICES, prices_of
 from tpss.planning.prices import Priced
 from tpss.planning.problem import Area, Problem
-from tpss.planning.served import FED_BACK, FIXED, Served, components_of, served
+from tpss.planning.served import Served, served
 from tpss.planning.states import at_stage
 from tpss.planning.transitions import Changes
 from tpss.planning.tree import Indices, Tree, make_tree
+from tpss.planning.yearly_use import FED_BACK, FIXED, components_of
 
 Units = set[tuple[int, int, int]]
 """Areas, traffics and configurations that are simulated together, with all outages required."""
@@ -50,9 +52,7 @@ class Model:
     @cached_property
     def stages(self) -> Stages:
         """Stages with their discount rate."""
-        file = self.plan.file
-        start = tuple(float(year) for year in file.stages.start)
-        return Stages(start, float(file.stages.end), file.economics.discount_rate)
+        return stages_of(self.plan)
 
     @cached_property
     def priced(self) -> tuple[Priced, ...]:
@@ -72,9 +72,7 @@ class Model:
             )
             for each, priced in zip(self.areas, self.priced, strict=True)
         )
-        budget = self.plan.file.budget
-        limit = None if budget is None else np.array(budget.per_stage)[self.tree.stage]
-        return Problem(self.tree, self.stages, areas, limit)
+        return Problem(self.tree, self.stages, areas, limit_of(self.plan, self.tree))
 
     @cached_property
     def has_bounds(self) -> bool:
@@ -121,7 +119,7 @@ class Model:
         return found
 
 
-def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
+def model_of(case_list: CaseList, table: pd.DataFrame, learnt: Learnt | None = None) -> Model:
     """Model of a plan all of whose cases were simulated, or have bounds.
 
     Parameters
@@ -129,6 +127,8 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     case_list : CaseList
     table : DataFrame
         Outcomes by digest.
+    learnt : Learnt, optional
+        What was learnt before for bounds.
 
     Raises
     ------
@@ -139,12 +139,40 @@ def model_of(case_list: CaseList, table: pd.DataFrame) -> Model:
     PlanError
         The tables make no plan, or a case was neither simulated nor has a bound.
     """
-    tree = tree_of(case_list)
+    tree, learnt = tree_of(case_list), learnt or Learnt()
     each = tuple(
-        served(case_list, number, table, state_of_node(area, tree))
+        served(case_list, number, table, state_of_node(area, tree), learnt)
         for number, area in enumerate(case_list.areas)
     )
     return Model(case_list, table, each)
+
+
+def unpriced_problem(case_list: CaseList) -> Problem:
+    """The problem of a plan as far as it is known without a simulation: operation costs nothing."""
+    plan, tree = case_list.plan, tree_of(case_list)
+    stages = stages_of(plan)
+    areas = tuple(
+        Area(
+            each.area.name or plan.file.name,
+            np.zeros((tree.nodes, len(each.configurations))),
+            transitions_of(plan, each, stages),
+            orders_of(each.area, stages),
+        )
+        for each in case_list.areas
+    )
+    return Problem(tree, stages, areas, limit_of(plan, tree))
+
+
+def stages_of(plan: Plan) -> Stages:
+    """Stages of a plan with their discount rate."""
+    start = tuple(float(year) for year in plan.file.stages.start)
+    return Stages(start, float(plan.file.stages.end), plan.file.economics.discount_rate)
+
+
+def limit_of(plan: Plan, tree: Tree) -> Array | None:
+    """What may be spent in each node, shape (nodes,); None without a budget."""
+    budget = plan.file.budget
+    return None if budget is None else np.array(budget.per_stage)[tree.stage]
 
 
 def tree_of(case_list: CaseList) -> Tree:

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from tpss.errors import ScenarioError
@@ -68,20 +67,27 @@ def at_stage(value: Any, stage: int) -> Any:
     return value[stage] if isinstance(value, list | tuple) else value
 
 
-def put_state(document: dict[str, Any], state: State, area: PlannedArea, source: Path) -> None:
+def put_state(document: dict[str, Any], state: State, area: PlannedArea, plan: Plan) -> None:
     """Put the values of a state into a document of an area's scenario.
 
     Raises
     ------
     ScenarioError
-        A path leads to no place; findings name the plan's key.
+        A path leads to no place; findings name the plan's keys.
     """
     try:
         apply(document, state.values, area.source)
     except ScenarioError as error:
         before = f"{area.name}." if area.name else ""
         findings = [
-            replace(each, file=str(source), key=f"scenarios.*.{before}{each.key}")
+            replace(
+                each,
+                file=str(plan.source),
+                key=f"scenarios.{name}.{before}{each.key}",
+                value=repr(future.values[f"{before}{each.key}"]),
+            )
             for each in error.findings
+            for name, future in plan.futures.items()
+            if f"{before}{each.key}" in future.values
         ]
         raise ScenarioError(findings) from error

@@ -10,11 +10,16 @@ import pandas as pd
 from tpss.planning.answer import Answer, as_today, saved_against_today
 from tpss.planning.cases import INTACT
 from tpss.planning.costs import change_costs, change_outlays
+from tpss.planning.problem import Solution
 from tpss.planning.ranking import best_plans as ranked
+from tpss.planning.ranking_within import best_plans_within
 from tpss.planning.regret import least_regret, parts_at_orders, regrets
 from tpss.planning.solve import Model
 from tpss.planning.tree import NONE, Indices
 from tpss.planning.worth import costs_by_part
+
+RANKING_S = 10.0
+"""Time that it may take to find the best plans within a budget. [s]"""
 
 INVESTMENT = "investment"
 """Names what is charged for changes, among the components of costs."""
@@ -146,14 +151,13 @@ def cost_difference(model: Model, policy: Indices, other: Indices) -> pd.DataFra
 
 
 def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
-    """The best plans in the order of their costs, node by node; none with a budget.
+    """The best plans in the order of their costs, node by node.
 
-    Where some costs are bounds: only as far as the order is known.
+    With a budget as many as are found in `RANKING_S`.  Where some costs are bounds: only as far as the
+    order is known.
     """
     model = answer.model
     columns = ["rank", "cost", "surplus", "area", "in_service", "if", "configuration"]
-    if model.problem.is_limited:
-        return pd.DataFrame(columns=columns)
     start = model.plan.file.stages.start
     return pd.DataFrame(
         [
@@ -167,9 +171,7 @@ def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
                 "configuration": configuration_names(model, k)[solution.policy[k, n]],
             }
             for rank, solution in enumerate(
-                takewhile(
-                    lambda each: not answer.is_bound(each.policy), ranked(model.problem, count)
-                ),
+                takewhile(lambda each: not answer.is_bound(each.policy), _ranked(answer, count)),
                 start=1,
             )
             for k, area in enumerate(model.problem.areas)
@@ -177,6 +179,14 @@ def best_plans(answer: Answer, count: int = 20) -> pd.DataFrame:
         ],
         columns=columns,
     )
+
+
+def _ranked(answer: Answer, count: int) -> list[Solution]:
+    """The best plans, within budgets too."""
+    problem = answer.model.problem
+    if not problem.is_limited:
+        return ranked(problem, count)
+    return best_plans_within(problem, answer.best, count, time_limit_s=RANKING_S)
 
 
 def regret(answer: Answer) -> pd.DataFrame:
@@ -216,7 +226,7 @@ def values(answer: Answer) -> pd.DataFrame:
     decided = worth.fixed is not None and answer.is_bound(worth.fixed.policy)
     today = answer.is_bound(as_today(answer.model.problem))
     fixed = np.nan if worth.fixed is None else worth.fixed.cost
-    rows = [
+    rows: list[tuple[str, float, str]] = [
         ("plan", worth.best.cost, "expected cost of the plan"),
         ("bound", worth.best.bound, "no plan costs less"),
         (
@@ -231,6 +241,7 @@ def values(answer: Answer) -> pd.DataFrame:
             fixed - worth.best.cost,
             f"worth of being able to decide later{least * decided}",
         ),
+        *_of_the_mean(answer),
         (
             "saved",
             saved_against_today(answer),
@@ -238,6 +249,30 @@ def values(answer: Answer) -> pd.DataFrame:
         ),
     ]
     return pd.DataFrame(rows, columns=["value", "cost", "meaning"])
+
+
+def _of_the_mean(answer: Answer) -> Iterator[tuple[str, float, str]]:
+    """What it costs to plan for the mean future, where there is one."""
+    worth = answer.worth
+    if answer.mean is not None:
+        held = np.nan if worth.mean is None else worth.mean.cost
+        yield ("mean", held, "expected cost with the first decision of the mean future")
+        yield ("tree", held - worth.best.cost, "cost of planning for the mean future only")
+
+
+def mean_future(answer: Answer) -> pd.DataFrame:
+    """Traffic of the mean future by area and stage; empty where there is none."""
+    model, mean = answer.model, answer.mean
+    rows = [
+        {
+            "area": model.problem.areas[k].name,
+            "stage": model.plan.file.stages.start[s],
+            "traffic": model.areas[k].states.states[d].name,
+        }
+        for k, states in enumerate(mean.states if mean is not None else ())
+        for s, d in enumerate(states.tolist())
+    ]
+    return pd.DataFrame(rows, columns=["area", "stage", "traffic"])
 
 
 SHOWN = (

@@ -89,12 +89,6 @@ class Tree:
         rows = np.flatnonzero(self.node_of[:, self.stage[node]] == node)
         return tuple(self.names[row] for row in rows)
 
-    def label(self, node: int) -> str:
-        """A node in words: its stage, counted from 1, and its scenarios."""
-        through = self.scenarios_through(node)
-        whose = "every scenario" if len(through) == len(self.names) else " or ".join(through)
-        return f"stage {self.stage[node] + 1}, {whose}"
-
     def partings(self) -> tuple[Parting, ...]:
         """Where scenarios part, in the order of the stages: from then on one knows."""
         found = []

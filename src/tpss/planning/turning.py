@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,18 +14,25 @@ from tpss.planning.dynamic import values_of
 from tpss.planning.money import Array, Stages
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.problem import Problem
-from tpss.planning.served import FIXED
 from tpss.planning.solve import Model, price_of_node, transitions_of
 from tpss.planning.switching import Switching, switching
+from tpss.planning.turning_within import Optima, turn_within
+from tpss.planning.yearly_use import FIXED
 
 WIDEST = 4.0
 """Times today's price or cost up to which it is looked where the decision turns; down to 0. [1]"""
+
+DISCOUNT_RATE = f"{PRICES}.discount_rate"
+"""Key path of the discount rate, which is no price."""
 
 HIGHEST_RATE = 0.12
 """Highest discount rate that is looked at. [1/a]"""
 
 MOST_TO_TURN = 10_000
 """Configurations times nodes up to which it is looked where all numbers turn: some seconds."""
+
+MOST_WITHIN = 200
+"""The same with a budget, where each look takes HiGHS some hundredths of a second."""
 
 EDGE = 1e-3
 """Least probability of a scenario, and of the others, that is looked at. [1]"""
@@ -53,8 +61,15 @@ class Varied:
     problem_at: Callable[[float], Problem]
     """The problem at a value."""
 
+    @cached_property
+    def optima(self) -> Optima:
+        """Best plans at its values, within budgets."""
+        return Optima(self.problem_at)
+
     def turn(self, area: int, low: float, high: float) -> Turn:
         """Where the first decision of an area turns between two values."""
+        if self.problem_at(self.now).is_limited:
+            return Turn(self.key, area, turn_within(self.optima, area, self.now, low, high))
 
         def cost_of(value: float) -> Array:
             return first_costs(self.problem_at(value), area)
@@ -63,17 +78,15 @@ class Varied:
 
 
 def first_costs(problem: Problem, area: int) -> Array:
-    """Least cost of a plan with each first decision of an area, shape (configurations,).
+    """Least cost of a plan without budgets with each first decision of an area, shape (configurations,).
 
     That of `tpss.planning.switching.costs_of_first`, without the plans, in a fraction of the time.
 
     Raises
     ------
     PlanError
-        There is a budget, or the area has several first decisions, as scenarios part at once.
+        The area has several first decisions, as scenarios part at once.
     """
-    if problem.is_limited:
-        raise PlanError("where a decision turns is not looked for with a budget")
     own = problem.areas[area]
     values = [values_of(each, decisions_of(problem, k)) for k, each in enumerate(problem.areas)]
     stage = own.first_free
@@ -93,20 +106,22 @@ def first_costs(problem: Problem, area: int) -> Array:
 def all_turns(answer: Answer) -> list[Turn]:
     """Where the first decision of each area turns that has a single one.
 
-    An area has several if scenarios part at once.  There are none with a budget, and none of a plan of
-    so many configurations that it would take minutes: `Varied.turn` looks for single ones.  Nor are
-    there any where some costs are bounds: at other prices others might not hold.
+    An area has several if scenarios part at once.  There are none of a plan of so many configurations
+    that it would take minutes, which are fewer with a budget: `Varied.turn` looks for single ones.  Nor
+    are there any where some costs are bounds: at other prices others might not hold.
     """
     model = answer.model
     size = sum(area.configurations for area in model.problem.areas) * model.tree.nodes
-    if model.problem.is_limited or model.has_bounds or size > MOST_TO_TURN:
+    most = MOST_WITHIN if model.problem.is_limited else MOST_TO_TURN
+    if model.has_bounds or size > most:
         return []
     nodes = [
         {tuple(each.nodes.tolist()) for each in answer.firsts if each.area == area}
         for area in range(len(model.areas))
     ]
     single = [area for area, own in enumerate(nodes) if len(own) == 1]
-    return [turn for area in single for turn in turns_of(model, area)]
+    numbers = list(varied(model))
+    return [each.turn(area, each.low, each.high) for area in single for each in numbers]
 
 
 def turns_of(model: Model, area: int) -> list[Turn]:
@@ -117,7 +132,7 @@ def turns_of(model: Model, area: int) -> list[Turn]:
     Raises
     ------
     PlanError
-        There is a budget, or the area has several first decisions, as scenarios part at once.
+        The area has several first decisions, as scenarios part at once.
     """
     return [each.turn(area, each.low, each.high) for each in varied(model)]
 
@@ -138,7 +153,7 @@ def varied(model: Model) -> Iterator[Varied]:
                 yield Varied(f"{cases.area.key(name)}.cost", now, 0.0, WIDEST * now, at)
     rate = file.economics.discount_rate
     highest = max(HIGHEST_RATE, rate)
-    yield Varied(f"{PRICES}.discount_rate", rate, 0.0, highest, _at_rate(model, problem))
+    yield Varied(DISCOUNT_RATE, rate, 0.0, highest, _at_rate(model, problem))
     for w, name in enumerate(model.tree.names if len(model.tree.names) > 1 else ()):
         now = float(model.tree.scenario_probability[w])
         key, at = f"scenarios.{name}.probability", _at_probability(problem, w)

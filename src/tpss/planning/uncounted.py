@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from tpss.planning.lazily import ALL
 from tpss.planning.solve import Model
+from tpss.planning.yearly_use import POWERS, gives_back
 from tpss.scenario.supply import ConverterType
 
 GENERAL = (
@@ -20,7 +21,7 @@ def uncounted(model: Model) -> Iterator[str]:
     """What a plan does not count: of any plan, and of this one."""
     yield from GENERAL
     yield from _converter_losses(_converters(model))
-    if not (model.table["fed_back_to_grid_mw"].fillna(0.0) > 0.0).any():
+    if not gives_back(model.table.astype(POWERS)).any():
         yield "No energy is given back to the grid."
     if model.plan.file.budget is None:
         yield "There is no budget."

@@ -1,13 +1,14 @@
 """States of traffic, components of costs and varied numbers of a plan, in short words for figures."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from tpss import units
-from tpss.planning.served import ENERGY, FED_BACK, FIXED, LATE, LOST, NO_TRAFFIC, NOT_RUN
+from tpss.planning.served import NO_TRAFFIC
 from tpss.planning.states import State
 from tpss.planning.tables import INVESTMENT
+from tpss.planning.yearly_use import ENERGY, FED_BACK, FIXED, LATE, LOST, NOT_RUN
 
 MOST_KEYS = 3
 """Values by which states of traffic are told apart in words; with more of them they are numbered."""
@@ -65,6 +66,33 @@ def traffic_in_words(states: Mapping[str, State]) -> Traffic:
     path = told[0]
     short = {name: _value(state.values.get(path)) for name, state in states.items()} | nothing
     return Traffic(_axis(path), short, full, numbered=False)
+
+
+def mean_in_words(
+    rows: Sequence[Mapping[str, Any]], traffic: Mapping[str, Mapping[str, State]]
+) -> str:
+    """What the mean future of a plan is; empty if there is none.
+
+    Parameters
+    ----------
+    rows : sequence of mappings
+        Traffic by area and stage, as `tpss.planning.tables.mean_future` has it.
+    traffic : mapping
+        States by area and name.
+    """
+    if not rows:
+        return ""
+    parts = []
+    for area, states in traffic.items():
+        words = traffic_in_words(states).full
+        own = ", ".join(
+            f"{words[str(row['traffic'])]} in {row['stage']}" for row in rows if row["area"] == area
+        )
+        parts.append(f"{area}: {own}" if len(traffic) > 1 else own)
+    return (
+        "The mean future has the mean prices of each stage, and of the traffic of the plan the one "
+        f"with the number of trains nearest to the mean: {'; '.join(parts)}."
+    )
 
 
 def in_order(states: Mapping[str, State]) -> list[str]:

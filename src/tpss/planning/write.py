@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,10 @@ from tpss.planning import tables
 from tpss.planning.answer import Answer
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import CaseList
+from tpss.planning.excel import WORKBOOK, excel_of
+from tpss.planning.finer import Compared, finer_sentences, finer_table
 from tpss.planning.first_costs import first_costs
+from tpss.planning.learnt import Learnt
 from tpss.planning.load import plan_of
 from tpss.planning.plan import SIMULATION
 from tpss.planning.prove import Grade
@@ -32,8 +35,22 @@ FORMAT_KEY, FORMAT = "plan_format", 1
 """Key and number of the format of ``plan.json``."""
 
 
-def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
+def write_answer(
+    folder: Path,
+    answer: Answer,
+    turns: Sequence[Turn],
+    finer: Sequence[Sequence[Compared]] = (),
+) -> None:
     """Write an answer into the folder of its cases.
+
+    Parameters
+    ----------
+    folder : Path
+    answer : Answer
+    turns : sequence of Turn
+        Where first decisions turn.
+    finer : sequence
+        First decisions at a finer step.
 
     Raises
     ------
@@ -43,23 +60,27 @@ def write_answer(folder: Path, answer: Answer, turns: Sequence[Turn]) -> None:
     found = {
         "decisions": tables.decisions(answer),
         "first_decisions": tables.first_decisions(answer),
-        "best_plans": tables.best_plans(answer),
         "first_costs": first_costs(answer),
+        "best_plans": tables.best_plans(answer),
         "costs": tables.costs(answer),
         "regret": tables.regret(answer),
         "values": tables.values(answer),
         "configurations": tables.configurations(answer.model),
         "switching_values": switching_table(answer.model, turns),
+        "finer_step": finer_table(answer, finer),
     }
     with explained(folder, REMEDY, PlanError, within=True):
         (folder / TABLES).mkdir(exist_ok=True)
         for name, table in found.items():
             write_file(folder / TABLES / f"{name}.csv", table.to_csv(index=False).encode())
-        document = _as_json(answer, turns, found["decisions"])
+        write_file(folder / TABLES / WORKBOOK, excel_of(found, answer.model.plan.file.economics))
+        document = _as_json(answer, turns, found) | {"finer": finer_sentences(answer, finer)}
         write_file(folder / PLAN, json.dumps(document, indent=1, allow_nan=False).encode())
 
 
-def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> dict[str, Any]:
+def _as_json(
+    answer: Answer, turns: Sequence[Turn], found: Mapping[str, pd.DataFrame]
+) -> dict[str, Any]:
     model = answer.model
     economics = model.plan.file.economics
     return {
@@ -76,8 +97,13 @@ def _as_json(answer: Answer, turns: Sequence[Turn], decisions: pd.DataFrame) -> 
         "bound": answer.best.bound,
         "gap": answer.best.gap,
         "is_closed": answer.is_closed,
+        "values": {
+            str(row["value"]): _plain(row["cost"]) for row in found["values"].to_dict("records")
+        },
+        "mean_future": tables.mean_future(answer).to_dict("records"),
         "decisions": [
-            {str(k): _plain(v) for k, v in row.items()} for row in decisions.to_dict("records")
+            {str(k): _plain(v) for k, v in row.items()}
+            for row in found["decisions"].to_dict("records")
         ],
         **versions(),
         "source": str(model.plan.source),
@@ -172,4 +198,4 @@ def read_model(folder: Path, changes: dict[str, Any]) -> Model:
             f"{missing:,} of {len(case_list.cases):,} cases were not simulated: the plan or its "
             "scenarios have changed in more than prices; run tpss plan run again, which adds them"
         )
-    return model_of(case_list, table)
+    return model_of(case_list, table, Learnt(folder))

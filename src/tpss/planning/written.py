@@ -9,17 +9,12 @@ import pandas as pd
 
 from tpss.errors import PlanError
 from tpss.files.refusals import reason
+from tpss.planning.excel import HOLDS
 from tpss.planning.load import ONLY_FUTURE, read_plan_file
 from tpss.planning.plan import Future, PlanFile
 from tpss.planning.plan_faults import PRICES
 from tpss.planning.states import State, at_stage
 from tpss.planning.write import PLAN, TABLES, read_document
-
-NAMES = (
-    "decisions", "first_decisions", "first_costs", "best_plans", "costs", "regret", "values",
-    "configurations", "switching_values",
-)  # fmt: skip
-"""Tables of a plan, by the names of their files."""
 
 TEXTS = (
     "area", "if", "builds", "configuration", "traffic_asked_for", "traffic_run", "component", "scenario",
@@ -113,7 +108,7 @@ def read_written(folder: Path) -> Written:
     document = read_document(folder)
     file = read_plan_file(document["plan"], folder / PLAN)
     tables = {}
-    for name in NAMES:
+    for name in HOLDS:
         place = folder / TABLES / f"{name}.csv"
         try:
             tables[name] = _read(place)

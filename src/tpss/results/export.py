@@ -3,12 +3,10 @@
 Headings carry the units, as in ``energy [MWh]``.
 """
 
-import io
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -18,18 +16,12 @@ from tpss.files.several import check_files, save_files
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.file_kinds import Kind
 from tpss.results.result import Result
+from tpss.results.workbook import MOST_ROWS, workbook
 
 TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
     name: attrgetter(place) for name, place in TABLE_PLACES.items()
 }
 """Tables by the names of their files, or of their sheets."""
-
-MOST_ROWS = 2**20
-"""Rows of a sheet of Excel, its heading included."""
-
-WIDEST = 40
-"""Widest column of a sheet, in characters."""
-
 
 NEEDS = {Kind.XLSX: ("openpyxl", "openpyxl"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
 """Package that a file type needs, and what to install for it."""
@@ -100,38 +92,18 @@ def _bytes(table: pd.DataFrame, kind: Kind) -> bytes:
     return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
 
 
-def _cell(value: Any, sheet: Any) -> Any:
-    """A value as it is: openpyxl would turn a name that begins with "=" into a formula."""
-    if not (isinstance(value, str) and value.startswith("=")):
-        return value
-    from openpyxl.cell import WriteOnlyCell
-
-    cell = WriteOnlyCell(sheet, value)
-    cell.data_type = "s"
-    return cell
-
-
 def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
-    """A workbook with one sheet per table; headings stay visible."""
-    import openpyxl  # a tenth of a second to load
+    """A workbook with one sheet per table.
 
+    Raises
+    ------
+    ResultError
+        A table is too long for a sheet.
+    """
     for name, table in tables.items():
         if len(table) >= MOST_ROWS:
             raise ResultError(
                 f"the table {name} has {len(table)} rows, a sheet of Excel has at most "
                 f"{MOST_ROWS - 1}: choose csv or parquet"
             )
-    book = openpyxl.Workbook(write_only=True)
-    for name, table in tables.items():
-        sheet = book.create_sheet(name)
-        sheet.freeze_panes = "A2"
-        for i, heading in enumerate(table.columns):
-            letter = openpyxl.utils.get_column_letter(i + 1)
-            sheet.column_dimensions[letter].width = min(WIDEST, len(heading) + 2)
-        sheet.append(list(table.columns))
-        known = table.astype(object).where(table.notna(), None)
-        for row in known.itertuples(index=False, name=None):
-            sheet.append([_cell(value, sheet) for value in row])
-    file = io.BytesIO()
-    book.save(file)
-    return file.getvalue()
+    return workbook(tables)

@@ -9,9 +9,10 @@ import time
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from tpss.sweep.batch import Plan, batch_size, run_batch, run_case
+from tpss.sweep.batch import Plan, batch_size, run_batch, run_case, run_cases, warm_up
 from tpss.sweep.check import TRIAL_CASES, TRIAL_S, check, spread, time_per_case
 from tpss.sweep.design import Design, design_of
 from tpss.sweep.folder import (
@@ -23,7 +24,7 @@ from tpss.sweep.folder import (
     batches,
     missing,
 )
-from tpss.sweep.processes import in_processes, trial
+from tpss.sweep.processes import Work, in_processes, trial
 from tpss.sweep.progress import Advance
 from tpss.sweep.step_sample import sample_steps
 from tpss.sweep.study import Study
@@ -79,7 +80,8 @@ def estimate(study: Study, workers: int | None = None, *, step_check: bool = Fal
         plan = Plan(study.as_json(), names.stations, names.services)
         each = max(1, min(TRIAL_CASES, round(TRIAL_S / case_s)))
         tried = list(spread(design.cases, count * each))
-        start_s, case_s = trial(plan, tried, min(count, len(tried)))
+        prepare, run = partial(warm_up, plan), partial(run_cases, plan)
+        start_s, case_s = trial(prepare, run, tried, min(count, len(tried)))
         before_s += start_s
     return Estimate(design.cases, case_s, count, before_s)
 
@@ -168,7 +170,16 @@ def _results(
     if count == 1:
         yield from ((first, end, run_batch(plan, first, end)) for first, end in cut)
     else:
-        yield from in_processes(plan, cut, count)
+        work = Work(partial(warm_up, plan), partial(_batch, plan), _name)
+        yield from ((*batch, rows) for batch, rows in in_processes(work, cut, count))
+
+
+def _batch(plan: Plan, batch: tuple[int, int]) -> bytes:
+    return run_batch(plan, *batch)
+
+
+def _name(batch: tuple[int, int]) -> str:
+    return f"cases {batch[0]} to {batch[1] - 1}"
 
 
 def processes_for(left: int, case_s: float, workers: int | None) -> int:

@@ -46,9 +46,9 @@ FIGURES: dict[str, Figure] = {
         "How far each number may go, alone, before another first decision is the best one; which one "
         "stands behind the bar.",
         switching_values,
-        "It is not known where the first decision turns: that is told without a budget, where one "
-        "decision is the same for all scenarios, and where all cases were simulated. tpss plan price "
-        "with --set prices the plan anew.",
+        "It is not known where the first decision turns: that is told where one decision is the same "
+        "for all scenarios, all cases were simulated, and configurations are not very many. tpss plan "
+        "price with --sweep or --set looks for it.",
     ),
     "regret": Figure(
         "Regret",
