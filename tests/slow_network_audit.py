@@ -19,6 +19,7 @@ from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
 from tpss.run.run import Outcome
 from tpss.sources.kinds import SourceKind
 from tpss.sources.mixed import TYPES
+from tpss.sources.rectifier import LEAK
 from tpss.step.model import Model
 from tpss.step.state import TrainState
 
@@ -227,7 +228,7 @@ def rectifier_voltage(p: Floats, q: Floats, n: Floats, v: Complexes, sources: An
         u = v[:, s].real
         beyond = amperes[-1] + (volts[-1] - u) / last_ohm
         given = np.where(u < volts[-1], beyond, np.interp(u, volts[::-1], amperes[::-1]))
-        given *= n[:, s] * (u < volts[0])
+        given = n[:, s] * np.where(u > volts[0], LEAK * (volts[0] - u) / ohm, given)
         with np.errstate(invalid="ignore"):
             taken = np.minimum(
                 (u - law.inverter_from_v) / law.inverter_ohm, law.inverter_power_w / u

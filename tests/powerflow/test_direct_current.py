@@ -76,8 +76,16 @@ def test_where_all_stations_block_the_braking_trains_hold_the_voltage():
     ]
     station_v, station_a, train_v = solved(direct_line(1500.0, 0.055, [WEST, EAST], trains))
     assert station_v == pytest.approx([1790.134326, 1772.59656], abs=1e-3)
-    assert station_a == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert station_a == pytest.approx([0.0, 0.0], abs=1e-3)
     assert train_v == pytest.approx([1790.134326, 1744.791267, 1772.59656], abs=1e-3)
+
+
+def test_a_line_on_which_hardly_anybody_draws_has_the_voltage_without_load():
+    """The stations' 750 V are the base voltage too, at which rectifiers neither conduct nor block."""
+    case = direct_line(750.0, 0.02, [(0.0, diode(750.0, 0.015))], [Drawing(1.0, 1e-3)])
+    station_v, _, train_v = solved(case)
+    assert station_v == pytest.approx([750.0], abs=1e-6)
+    assert train_v == pytest.approx([750.0], abs=1e-6)
 
 
 def test_a_characteristic_of_several_pieces_holds_in_each_of_them():

@@ -23,7 +23,12 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from .crowds import crowded_scenarios
 from .judge import judge, warm_up
-from .strategies import scenarios_that_feed_back, sound_scenarios, spoilt_scenarios
+from .strategies import (
+    direct_scenarios,
+    scenarios_that_feed_back,
+    sound_scenarios,
+    spoilt_scenarios,
+)
 
 Document = dict[str, Any]
 
@@ -35,6 +40,7 @@ KINDS = {
     "spoilt": spoilt_scenarios,
     "crowded": crowded_scenarios,
     "feeding back": scenarios_that_feed_back,
+    "direct current": direct_scenarios,
 }
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from .bounds import with_bounds
+from .direct import into_direct_current
 from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .given_tracks import give_tracks
@@ -264,11 +265,12 @@ def with_one_retardation(trains: Document) -> None:
 
 
 @st.composite
-def sound_scenarios(draw: Draw, feed_back: bool = False) -> Document:
+def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -> Document:
     """A scenario without faults, but for trains that may be placed too fast to stop.
 
     A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.  All trains
-    have electric brakes if they are to feed back, and half of the equipment says more of itself.
+    have electric brakes if they are to feed back, and half of the equipment says more of itself.  A
+    railway of direct current has the lines, the traffic and the outages of any other.
     """
     begin_km = draw(BEGINNINGS_KM)
     line = draw(lines())
@@ -315,6 +317,9 @@ def sound_scenarios(draw: Draw, feed_back: bool = False) -> Document:
         with_electric_brakes(draw, document)
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 7)) == 7:
         with_spare_time(draw, document)
+    if direct:
+        into_direct_current(draw, document)
+        return document
     rarely = st.sampled_from([False, True] if feed_back else [False, False, False, True])
     for say_more in (with_bounds, with_mixed_stations, with_losses, with_ratings, with_protection):
         if draw(rarely):
@@ -325,6 +330,11 @@ def sound_scenarios(draw: Draw, feed_back: bool = False) -> Document:
 def scenarios_that_feed_back() -> st.SearchStrategy[Document]:
     """Sound scenarios all of whose trains have electric brakes."""
     return sound_scenarios(feed_back=True)
+
+
+def direct_scenarios() -> st.SearchStrategy[Document]:
+    """Sound scenarios of direct current."""
+    return sound_scenarios(direct=True)
 
 
 JUNK: list[Any] = [None, True, "x", "", [], {}, [None], {"x": 1}, math.nan, math.inf, -math.inf]

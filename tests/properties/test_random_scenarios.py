@@ -17,7 +17,7 @@ import tpss
 from properties.crowds import crowded_scenarios
 from properties.judge import judge, warm_up
 from properties.junctions import junctions
-from properties.strategies import sound_scenarios, spoilt_scenarios
+from properties.strategies import direct_scenarios, sound_scenarios, spoilt_scenarios
 
 CASES = settings(
     max_examples=200,
@@ -71,6 +71,19 @@ def test_trains_that_meet_at_junctions_of_few_tracks_all_come_through():
         result = tpss.simulate(tpss.Scenario.from_document(document, "junctions"))
         assert result.status == "finished", (seed, result.summary.get("problem"))
         assert result.trips.arrival_min.notna().all(), seed
+
+
+def test_railways_of_direct_current_run_by_the_rules_or_say_why_not():
+    """The same lines and traffic, fed by rectifiers that block where trains feed back."""
+    outcomes: Counter[str] = Counter()
+
+    @settings(CASES, max_examples=60)
+    @given(direct_scenarios())
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document)] += 1
+
+    look()
+    assert outcomes["finished"] > sum(outcomes.values()) / 3
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():

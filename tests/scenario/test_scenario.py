@@ -373,6 +373,6 @@ def test_faults_that_the_model_finds_name_the_file_as_it_was_given(tmp_path, mon
     """A station that trips has to say which overloads it bears."""
     scenario = relative(tmp_path, monkeypatch).with_({"protection.trip": True})
     monkeypatch.chdir("/")
-    with pytest.raises(ScenarioError, match="none trips") as caught:
+    with pytest.raises(ScenarioError, match="nothing trips") as caught:
         simulate(scenario)
     assert files_of(caught) == {str(Path("of mine/line.toml"))}

@@ -200,6 +200,7 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.transformer_stations.*.position_km",
         "supply.high_voltage_line.transformers_km.*",
         "supply.mixed_stations.*.position_km",
+        "supply.rectifier_stations.*.position_km",
         "supply.contact_lines.*.from_km",
         "supply.contact_lines.*.to_km",
         "supply.posts.*.position_km",

@@ -44,6 +44,7 @@ def scenario_schema() -> dict[str, Any]:
             add_unit(key, field)
     _start_from_a_model(parts["Train"])
     _start_from_a_system(parts["VoltageLimits"])
+    _demand_reactance_of_alternating_current(parts["Supply"], parts["Catenary"])
     line = schema["properties"]["line"]
     schema["properties"]["line"] = {"description": "The line.", "anyOf": [OWN_FILE, line]}
     lines = schema["properties"]["lines"]
@@ -70,6 +71,24 @@ def _stand_at_a_station(station: dict[str, Any]) -> None:
     """A station of the line gives the position of what stands at it."""
     station["required"].remove("position_km")
     station["anyOf"] = [{"required": ["position_km"]}, {"required": ["at"]}]
+
+
+def _demand_reactance_of_alternating_current(
+    supply: dict[str, Any], catenary: dict[str, Any]
+) -> None:
+    """The contact line of an alternating current has a reactance, that of a direct one has none."""
+    key = "x_ohm_per_km"
+    catenary["required"].remove(key)
+    own = {"if": {"type": "object"}, "then": {"required": [key]}}
+    systems = library.entries("systems")
+    direct = sorted(name for name, each in systems.items() if each["frequency_hz"] == 0.0)
+    supply["if"] = {"properties": {"system": {"enum": direct}}, "required": ["system"]}
+    supply["else"] = {
+        "properties": {
+            "catenary": own,
+            "contact_lines": {"items": {"properties": {"catenary": own}}},
+        }
+    }
 
 
 def _start_from_a_model(train: dict[str, Any]) -> None:

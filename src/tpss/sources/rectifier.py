@@ -4,7 +4,8 @@ r"""Rectifier station of a direct-current line: a current for each voltage, and 
 
 I(U) consists of straight pieces.  n equal groups of rectifiers, of which one gives the current i at the
 voltage u along a curve through the points (i_k, u_k), the first one at no current, the last piece going
-on; above the first point they block.  An inverter beside them takes current from a higher voltage on,
+on.  Above the first point they block, but for a leak: without one, a line on which nobody draws power
+would have any voltage above it.  An inverter beside them takes current from a higher voltage on,
 
 .. math:: I(U) = -\min\Big(\frac{U - U_i}{R_i}, \frac{P_i}{U}\Big) \text{ for } U > U_i .
 
@@ -42,6 +43,10 @@ Floats = npt.NDArray[np.float64]
 MOST_POINTS = 6
 """Points of the curve of a group."""
 
+LEAK = 1e-7
+"""Conductance with which groups that block conduct nevertheless, of that of their first piece: less than
+a watt of a station's megawatts. [1]"""
+
 HOLD = 1e-3
 """κ times the resistance of the station's first piece. [1]"""
 
@@ -62,8 +67,8 @@ class RectifierLaw(Record):
     inverter_power_w: float = math.inf
     """Highest power that it takes. [W]"""
     reverse_share: float = 0.0
-    """Conductance with which groups that block conduct nevertheless, of that of their first piece: 0,
-    but in a search for a solution, which closes them little by little. [1]"""
+    """Conductance with which groups that block conduct besides, of that of their first piece: 0, but in
+    a search for a solution, which closes them little by little. [1]"""
 
 
 @inlined
@@ -75,8 +80,9 @@ def rectified(voltage_v: float, law: RectifierLaw) -> tuple[float, float]:
     [Steimel2014]_, on the characteristic of rectifiers; the formulae at the top of this file.
     """
     volts, amperes = law.voltage_v, law.current_a
-    if voltage_v >= volts[0]:
-        slope = law.reverse_share * (amperes[1] - amperes[0]) / (volts[1] - volts[0])
+    if voltage_v > volts[0]:
+        share = LEAK + law.reverse_share
+        slope = share * (amperes[1] - amperes[0]) / (volts[1] - volts[0])
         return slope * (voltage_v - volts[0]), slope
     k = 1
     while k < law.points - 1 and voltage_v < volts[at(k)]:

@@ -8,7 +8,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from tpss.scenario.fields import FromLibrary, Part, Real, Whole, either_or, fault, library_name
 from tpss.scenario.supply.feeding_station import FeedingStation
-from tpss.sources.rectifier import MOST_POINTS
+
+MOST_POINTS = 6
+"""Points of a characteristic; as many as `sources.rectifier` has room for."""
 
 IDEAL = 3.0 * math.sqrt(2.0) / math.pi
 """Mean voltage of a six-pulse bridge without load over the line-to-line voltage at its valves. [1]"""
