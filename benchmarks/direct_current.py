@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from direct_lines import Braking, Drawing, diode, direct_line
 from tpss.powerflow.solve import solve
+
+from direct_lines import Braking, Drawing, diode, direct_line
 
 NOMINAL_V, U1_V, U2_V = 1500.0, 1755.0, 1800.0
 OHM_PER_KM = 0.05

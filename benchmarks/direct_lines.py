@@ -1,45 +1,26 @@
 """Lines of direct current with constant and with braking trains."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tpss.powerflow.network import (
     BranchPart,
-    Flow,
-    Loads,
-    Network,
     SectionPart,
     assemble,
     loads_alone,
-    new_flow,
 )
-from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.system import system
 from tpss.sources.kinds import Source, SourceKind
 from tpss.sources.rectifier import MOST_POINTS, RectifierLaw
-from tpss.track.leg import along_one_line
 from tpss.vehicle.regeneration import Regeneration
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
+from line_cases import Case, place
+
 BASE_W = {600.0: 1e6, 750.0: 1e6, 1500.0: 3e6, 3000.0: 5e6}
-
-
-@dataclass
-class Case:
-    """A network with trains on it, ready to be solved."""
-
-    network: Network
-    flow: Flow
-    loads: Loads
-
-    @property
-    def train_voltage(self) -> np.ndarray:
-        """Voltages in the order along the line. [V]"""
-        return self.flow.standing.voltage_v
 
 
 class Braking(NamedTuple):
@@ -128,8 +109,4 @@ def direct_line(
             )]
         )[0]  # fmt: skip
         records[k].demand.offered_power_w = train.offered_w
-    loads = loads_alone(records, types)
-    flow = new_flow(network, len(trains))
-    locate_trains(len(trains), records, along_one_line(len(sections)), network, flow)
-    measure_pieces(len(trains), network, flow)
-    return Case(network, flow, loads)
+    return place(network, loads_alone(records, types))

@@ -1,31 +1,28 @@
 """Small supply networks with constant loads, for tests of the load flow."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import fsolve
 
 from tpss.powerflow.network import (
     BranchPart,
-    Flow,
     Loads,
     Network,
     SectionPart,
     assemble,
     loads_alone,
-    new_flow,
 )
-from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.system import system
 from tpss.record import Records
 from tpss.sources.converter import ConverterLaw, terminal_voltage
 from tpss.sources.kinds import Source, SourceKind
-from tpss.track.leg import Leg, along_one_line
+from tpss.track.leg import Leg
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
 from continuation import admittance_matrix
+from line_cases import Case, place
 
 SYSTEM = system(15e3, 16.5e3, 10e6, 16.7, 0.5, 1.2)
 """15 kV, 16.7 Hz, with the base quantities of the thesis."""
@@ -43,26 +40,6 @@ ROTARY = {
     "generator_reactance_ohm": 0.53 * 16.5**2 / 10,
     "motor_reactance_ohm": 0.49 * 16.5**2 / 10.7,
 }
-
-
-@dataclass
-class Case:
-    """A network with trains on it, ready to be solved."""
-
-    network: Network
-    flow: Flow
-    loads: Loads
-
-    @property
-    def train_voltage(self) -> np.ndarray:
-        """Voltages in the order along the line. [V]"""
-        return self.flow.standing.voltage_v
-
-    @property
-    def fed(self) -> np.ndarray:
-        """P + jQ of each source. [VA]"""
-        nodes = self.flow.nodes[self.network.sources.node]
-        return nodes.voltage_v * nodes.leaving_current_a.conj()
 
 
 def network_of(
@@ -107,16 +84,6 @@ def constant_loads(positions_m: list[float], powers_va: list[complex]) -> Loads:
     trains.motion.position_m = positions_m
     trains.demand.per_efficiency = 1.0
     return loads_alone(trains, types)
-
-
-def place(network: Network, loads: Loads, legs: Records[Leg] | None = None) -> Case:
-    """Put the trains of `loads` onto the line, or onto the legs of their routes."""
-    count = loads.trains.size
-    flow = new_flow(network, count)
-    legs = along_one_line(network.sections.size) if legs is None else legs
-    locate_trains(count, loads.trains, legs, network, flow)
-    measure_pieces(count, network, flow)
-    return Case(network, flow, loads)
 
 
 def simple_line(

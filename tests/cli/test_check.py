@@ -65,6 +65,11 @@ def test_what_departs_from_the_library_and_the_defaults_is_told(tpss_command):
         assert words in said.out, words
 
 
+def test_a_line_of_direct_current_is_told_without_a_frequency_or_a_reactance(tpss_command):
+    said = check(tpss_command, EXAMPLES / "metro_750v.toml")
+    assert "system DC-0.75kV catenary own: 0.019 Ω/km high voltage" in said.out
+
+
 def test_long_lists_are_cut(tpss_command, short_file):
     said = check(
         tpss_command, short_file, "supply.high_voltage_line={type = '132kV', transformers = 20}"

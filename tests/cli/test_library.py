@@ -7,11 +7,11 @@ from importlib.resources import files
 import pytest
 
 import tpss
-from direct_scenarios import direct_document
 from tpss import library
 from tpss.cli.library import KINDS, usage
 from tpss.conductors.geometry import Geometry
 
+from direct_scenarios import direct_document
 from scenarios import SHORT_LINE
 
 ENTRIES = [(kind, name) for kind in library.KINDS for name in library.entries(kind)]

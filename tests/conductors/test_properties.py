@@ -15,6 +15,7 @@ from tpss.conductors.load import geometry_of
 
 from conductor_cases import CONDUCTORS
 from conftest import EXAMPLES
+from direct_scenarios import direct_scenario
 
 DOUBLE_TRACK = EXAMPLES / "geometry_double_track.toml"
 
@@ -70,6 +71,13 @@ def test_matrices_are_symmetric_and_passive(conductors, frequency_hz, earth_ohm_
     for each in found.equivalents:  # what comes on top in a cell may be anything, its sum may not
         if each.name != "autotransformers-in-cell":
             assert np.linalg.eigvalsh(each.impedance.real).min() > 0.0
+
+
+def test_a_catenary_of_direct_current_feeds_a_line_of_direct_current():
+    catenary = at(0.0).catenary
+    assert "capacitance_nf_per_km" not in catenary
+    supply = direct_scenario(**{"supply.catenary": catenary}).supply
+    assert supply.catenary.r_ohm_per_km == catenary["r_ohm_per_km"]
 
 
 def test_a_low_frequency_comes_to_the_resistances_of_direct_current():

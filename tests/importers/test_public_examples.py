@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 import tpss
-from public_files import PublicFile
 from tpss.cli.main import main
 from tpss.importers import gtfs, osrd, railml
 from tpss.importers.network import ImportedNetwork
 from tpss.importers.network_files import files
 from tpss.importers.railml2 import ImportedTrains
+
+from public_files import PublicFile
 
 OSRD = ("OpenRailAssociation/osrd", "66c30bb34e55f46c0d62bde258d2275797dedbac")
 INFRAS = {

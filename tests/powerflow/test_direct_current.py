@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from direct_lines import Braking, Drawing, curve, diode, direct_line
 from tpss.powerflow.solve import solve
+
+from direct_lines import Braking, Drawing, curve, diode, direct_line
 
 WEST, EAST = (0.0, diode(1650.0, 0.06)), (14.0, diode(1640.0, 0.09))
 LINE = [Braking(2.0, 2.4e6, 1750.0, 1800.0, 100e3), Drawing(6.0, 900e3), Drawing(11.5, 1800e3)]

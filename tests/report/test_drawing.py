@@ -7,11 +7,20 @@ import pytest
 from tpss.report.contact_line import line_voltage
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.stations import station_powers
+from tpss.report.drawings.time_distance import colour_range
 from tpss.report.render.interactive import render
 from tpss.report.sampling import kept, sample_trains
 from tpss.report.tables import of_frame
 
 from scenarios import run
+
+
+@pytest.mark.parametrize(
+    ("kv", "lowest"),
+    [([16.0, 16.4], 14.4), ([0.7, 0.8], 0.64), ([0.5, 0.8], 0.5), ([12.0, 16.0], 12.0)],
+)
+def test_a_scale_of_voltages_spans_two_kilovolts_or_a_fifth_of_low_ones(kv, lowest):
+    assert colour_range(np.array(kv)) == pytest.approx((lowest, max(kv)))
 
 
 def test_a_short_curve_stays_whole():

@@ -3,10 +3,10 @@
 import pytest
 
 import tpss
-from direct_scenarios import direct_scenario
 from tpss import ScenarioError, library
 from tpss.scenario.standards import VoltageLimits
 
+from direct_scenarios import direct_scenario
 from scenarios import short_line
 
 LIMITS = "standards.voltage_limits"

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 import tpss
-from direct_scenarios import OHM_PER_KM, direct_document, direct_scenario
 from tpss import library
 from tpss.results.regeneration import fed_back
 from tpss.scenario.supply import rectifier_station
 from tpss.sources import rectifier
+
+from direct_scenarios import OHM_PER_KM, direct_document, direct_scenario
 
 INVERTER = {"starts_at_kv": 0.84, "resistance_ohm": 0.02}
 EAST = "supply.rectifier_stations.East"

@@ -6,6 +6,7 @@ resistance of 0.1 m/s², which also slows it down when it coasts.
 
 import math
 
+import pandas as pd
 import pytest
 
 import tpss
@@ -15,7 +16,9 @@ from tpss.model.build import build_model
 from tpss.model.searches import lowest_between, root_between
 from tpss.model.spare_time import Leg, way_that_takes
 from tpss.model.traffic import build_services
+from tpss.savings.table import spare_time_savings
 
+from conftest import EXAMPLES
 from properties.rules import keep_the_rules
 from scenarios import short_line
 
@@ -149,6 +152,14 @@ def test_a_train_that_feeds_back_has_less_to_gain_from_coasting():
         )
         gained.append(1.0 - best / held)
     assert 0.0 < gained[1] < gained[0]
+
+
+def test_savings_are_found_of_a_scenario_that_leaves_its_step_open():
+    """A way from stop to stop is one passage: no figure depends on the step."""
+    given = tpss.load_scenario(EXAMPLES / "emu_25kv.toml")
+    is_open = given.with_({"simulation.time_step_min": None})
+    found, expected = (spare_time_savings(each, [5.0]) for each in (is_open, given))
+    pd.testing.assert_frame_equal(found, expected)
 
 
 def test_spare_time_without_time_and_with_steps_is_a_fault():

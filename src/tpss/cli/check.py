@@ -123,9 +123,11 @@ def _listed(texts: list[str]) -> str:
 
 
 def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
-    yield "system", f"{supply.system}, {supply.frequency_hz:g} Hz"
+    frequency = "" if supply.is_direct else f", {supply.frequency_hz:g} Hz"
+    yield "system", f"{supply.system}{frequency}"
     catenary = supply.catenary
-    impedance = f"{catenary.r_ohm_per_km:g} + j{catenary.x_ohm_per_km:g} Ω/km"
+    reactance = "" if supply.is_direct else f" + j{catenary.x_ohm_per_km:g}"
+    impedance = f"{catenary.r_ohm_per_km:g}{reactance} Ω/km"
     yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.stations:

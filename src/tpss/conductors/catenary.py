@@ -62,8 +62,9 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
     table = {
         "r_ohm_per_km": _rounded(1e3 * z.own.real),
         "x_ohm_per_km": _rounded(1e3 * z.own.imag),
-        "capacitance_nf_per_km": _rounded(1e12 * capacitance(constants)),
     }
+    if constants.frequency_hz > 0.0:  # a capacitance has no effect on direct current
+        table["capacitance_nf_per_km"] = _rounded(1e12 * capacitance(constants))
     table |= {
         f"mutual_{axis}_ohm_per_km": _rounded(1e3 * value)
         for axis, value in in_common(z).items()

@@ -7,6 +7,9 @@ from enum import IntEnum
 
 from tpss.kernel import inlined, kernel
 
+MOTORS_OF_LOCOMOTIVE = 4.0
+"""Motors whose currents the armature current adds up: those of a locomotive. [1]"""
+
 
 class MotorModel(IntEnum):
     """Model of motor voltage or motor current."""
@@ -128,4 +131,8 @@ def motor_current(armature_current_a: float, model: int) -> float:
     ----------
     [Boullanger2009]_, eq. (2.17) and, former, (2.18).
     """
-    return armature_current_a if model == MotorModel.FORMER else armature_current_a / 4.0
+    return (
+        armature_current_a
+        if model == MotorModel.FORMER
+        else armature_current_a / MOTORS_OF_LOCOMOTIVE
+    )

@@ -14,6 +14,7 @@ from tpss.model.traffic import build_services
 from tpss.results.standards.windows import table_of
 from tpss.results.tables import J_PER_MWH
 from tpss.run.services import Service
+from tpss.scenario.open_step import with_step
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 
@@ -76,6 +77,7 @@ def spare_time_savings(
         Columns are the fields of `Saving`, with units in their names.  Services whose trains drive
         alike are one; a service whose trains do not reach their destination has no rows.
     """
+    scenario = with_step(scenario)  # a way from stop to stop is found without one
     model, _ = build_model(scenario)
     groups = list(_groups(scenario, model))
     rows: list[Saving] = []

@@ -3,11 +3,11 @@
 import math
 
 from tpss.kernel import at, kernel
-from tpss.physics.motor import MotorModel
+from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE, MotorModel
 from tpss.step.model import Model
 from tpss.step.recording import Recording
 from tpss.step.state import Counter, State
-from tpss.vehicle.spared_motors import MOTORS, allowed_current, state_after_step
+from tpss.vehicle.spared_motors import allowed_current, state_after_step
 from tpss.vehicle.train import Phase
 
 ROUNDING = 1e-9
@@ -46,7 +46,7 @@ def heat_motors(step: int, step_s: float, model: Model, state: State, recording:
         if kind.spared.continuous_a < math.inf:
             current_a = recording.trains[at(step), at(i)].motor_current
             if kind.current_model == MotorModel.NEW:
-                current_a *= MOTORS
+                current_a *= MOTORS_OF_LOCOMOTIVE
             if current_a >= train.allowed_current_a * (1.0 - ROUNDING):
                 recording.counters[Counter.MOTORS_SPARED] += 1
             train.motor_state = state_after_step(train.motor_state, current_a, step_s, kind.spared)

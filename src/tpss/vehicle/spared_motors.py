@@ -15,10 +15,8 @@ A cold motor bears any load for a short step: the short-time current limits it t
 import math
 
 from tpss.kernel import inlined
+from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE
 from tpss.record import Record
-
-MOTORS = 4.0
-"""Motors whose currents the armature current adds up, [Boullanger2009]_, eq. (2.17)."""
 
 
 class SparedMotors(Record):
@@ -52,7 +50,7 @@ def allowed_current(state: float, step_s: float, motors: SparedMotors) -> float:
     left = math.exp(-step_s / motors.time_constant_s)
     square = max(0.0, (1.0 - state * left) / (1.0 - left))
     load = min(motors.short_time_load, math.sqrt(square))
-    return MOTORS * motors.continuous_a * load
+    return MOTORS_OF_LOCOMOTIVE * motors.continuous_a * load
 
 
 @inlined
@@ -63,6 +61,6 @@ def state_after_step(state: float, current_a: float, step_s: float, motors: Spar
     ----------
     [IEC60255149]_, the thermal replica of one time constant.
     """
-    load = current_a / (MOTORS * motors.continuous_a)
+    load = current_a / (MOTORS_OF_LOCOMOTIVE * motors.continuous_a)
     left = math.exp(-step_s / motors.time_constant_s)
     return load * load + (state - load * load) * left

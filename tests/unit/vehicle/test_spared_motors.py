@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from tpss.physics.motor import armature_current
+from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE, armature_current
 from tpss.vehicle.billing import billed_power, force_of_current, motors_current
-from tpss.vehicle.spared_motors import MOTORS, SparedMotors, allowed_current, state_after_step
+from tpss.vehicle.spared_motors import SparedMotors, allowed_current, state_after_step
 from vehicles import demand_at, kind_of
 
 TIME_CONSTANT_S = -360.0 / math.log1p(-1.0 / (2080.0 / 1250.0) ** 2)
@@ -25,16 +25,20 @@ def motors(initial_state: float = 0.0):
 
 def test_a_cold_motor_may_take_its_short_time_current_for_just_its_short_time(as_run):
     """In one step of six minutes 2080 A bring θ from 0 to 1; in a longer one less is allowed."""
-    assert as_run(allowed_current)(0.0, 360.0, motors()) == pytest.approx(MOTORS * 2080.0)
+    assert as_run(allowed_current)(0.0, 360.0, motors()) == pytest.approx(
+        MOTORS_OF_LOCOMOTIVE * 2080.0
+    )
     longer = as_run(allowed_current)(0.0, 361.0, motors())
-    assert 0.99 * 2080.0 < longer / MOTORS < 2080.0
-    after = as_run(state_after_step)(0.0, MOTORS * 2080.0, 360.0, motors())
+    assert 0.99 * 2080.0 < longer / MOTORS_OF_LOCOMOTIVE < 2080.0
+    after = as_run(state_after_step)(0.0, MOTORS_OF_LOCOMOTIVE * 2080.0, 360.0, motors())
     assert after == pytest.approx(1.0, rel=1e-12)
 
 
 def test_a_motor_at_its_rated_temperature_may_take_its_continuous_current(as_run):
-    assert as_run(allowed_current)(1.0, 7.0, motors()) == pytest.approx(MOTORS * 1250.0)
-    assert as_run(state_after_step)(1.0, MOTORS * 1250.0, 7.0, motors()) == 1.0
+    assert as_run(allowed_current)(1.0, 7.0, motors()) == pytest.approx(
+        MOTORS_OF_LOCOMOTIVE * 1250.0
+    )
+    assert as_run(state_after_step)(1.0, MOTORS_OF_LOCOMOTIVE * 1250.0, 7.0, motors()) == 1.0
 
 
 @pytest.mark.parametrize("state", [0.0, 0.3, 0.9, 0.999, 1.0])
@@ -43,10 +47,10 @@ def test_after_what_is_allowed_no_motor_is_too_hot(as_run, state, step_s):
     """θ' = 1, or less where the short-time current is what limits."""
     allowed_a = as_run(allowed_current)(state, step_s, motors())
     after = as_run(state_after_step)(state, allowed_a, step_s, motors())
-    if allowed_a < MOTORS * 2080.0 * (1.0 - 1e-12):
+    if allowed_a < MOTORS_OF_LOCOMOTIVE * 2080.0 * (1.0 - 1e-12):
         assert after == pytest.approx(1.0, rel=1e-12)
     else:
-        assert allowed_a == pytest.approx(MOTORS * 2080.0)
+        assert allowed_a == pytest.approx(MOTORS_OF_LOCOMOTIVE * 2080.0)
         assert after <= 1.0 + 1e-12
 
 

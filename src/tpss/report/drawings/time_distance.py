@@ -13,6 +13,9 @@ from tpss.results.result import Result
 LEAST_SPAN_KV = 2.0
 """Span of a scale of voltages at least, so that a small drop does not look like a large one."""
 
+LEAST_SHARE = 0.2
+"""The same of lower voltages, as of direct current: a share of the highest one. [1]"""
+
 
 def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.Drawing:
     """Paths of all trains over time, coloured by the voltage at their pantographs.
@@ -65,4 +68,5 @@ def _shown(km: Floats, with_gaps: bool) -> npt.NDArray[np.bool_]:
 def colour_range(kv: Floats) -> tuple[float, float]:
     """Lowest and highest voltage of the colour scale. [kV]"""
     highest = float(np.nanmax(kv))
-    return min(float(np.nanmin(kv)), highest - LEAST_SPAN_KV), highest
+    span = min(LEAST_SPAN_KV, LEAST_SHARE * highest)
+    return min(float(np.nanmin(kv)), highest - span), highest

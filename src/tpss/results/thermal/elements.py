@@ -12,6 +12,7 @@ from tpss.model.feeding import feedings_of
 from tpss.model.outages import layout_of
 from tpss.model.rated import rated_sections, rated_transformers
 from tpss.model.supply import CONTACT_LINE, NOTHING_PARTED, TRANSFORMER, SupplyPlan, layouts_of
+from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE
 from tpss.results.grid_side import powers_of_types
 from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body, body_of
@@ -24,9 +25,6 @@ from tpss.units import si
 CONVERTER, MOTORS = "converter", "motors"
 KINDS = (CONTACT_LINE, TRANSFORMER, CONVERTER, MOTORS)
 """Kinds of equipment."""
-
-FORMER_MOTORS = 4.0
-"""Motors whose currents the former model adds up."""
 
 
 @dataclass(frozen=True)
@@ -232,7 +230,7 @@ def _motors(readings: Readings, scenario: Scenario) -> Iterator[Loaded]:
         train = trains[service]
         if train.motor_rating is None or not known[i]:
             continue
-        motors = FORMER_MOTORS if train.motor_current == "former" else 1.0
+        motors = MOTORS_OF_LOCOMOTIVE if train.motor_current == "former" else 1.0
         body = body_of(train.motor_rating)
         element = Element(f"{MOTORS} of {name}", MOTORS, -1, float("nan"), body, train=i)
         yield element, current_a[i] / (motors * train.motor_rating.continuous_a)
