@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import tpss
 from tpss.errors import ResultError
 from tpss.report.contact_line import line_voltage
 from tpss.report.drawings.effort import machine_limit
@@ -12,6 +13,7 @@ from tpss.report.drawings.energy import used_by_trains
 from tpss.report.figures import FIGURES, draw, effort, energy_flow, time_distance, voltage_envelope
 from tpss.report.trains import NothingToDrawError
 
+from conftest import EXAMPLES
 from scenarios import run, short_line, stops
 
 LOSSES = {"supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)"}
@@ -140,6 +142,12 @@ def test_a_train_s_points_are_its_speed_and_force_below_the_machine_s_limit(hill
     highest_kv = float(data.pantograph_voltage.max()) / 1e3
     assert curves[0] == f"machine at {highest_kv:.2f} kV"
     assert curves[2:] == ["adhesion, dry", "running resistance"]
+
+
+def test_a_machine_gives_at_standstill_what_it_gives_close_to_it():
+    train = tpss.load_scenario(EXAMPLES / "emu_25kv.toml").trains["emu"]
+    still, slow = machine_limit(train, np.array([0.0, 0.01]), 25e3)
+    assert still == pytest.approx(slow) == pytest.approx(200e3)
 
 
 def test_the_machine_s_limit_follows_a_current_limitation():

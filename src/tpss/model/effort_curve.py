@@ -24,7 +24,7 @@ def machine_limit(train: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
     types, points = build_train_types([Running(train)])
     kind, demand, scratch = types[0], Demand.blank(1)[0], np.empty(SCRATCH_SHAPE)
     demand.force_cap_n = demand.adhesion_n = FULL_EFFORT_N
-    demand.voltage_v, demand.speed_m_s, demand.free_band_v = voltage_v, -1.0, -1.0
+    demand.voltage_v, demand.terms_speed_m_s, demand.free_band_v = voltage_v, -1.0, -1.0
     force, resistance_n = np.empty_like(speed_m_s), level_resistance(train, speed_m_s)
     for k, speed in enumerate(speed_m_s):
         demand.resistance_n = resistance_n[k]
