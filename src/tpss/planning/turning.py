@@ -120,8 +120,7 @@ def all_turns(answer: Answer) -> list[Turn]:
         for area in range(len(model.areas))
     ]
     single = [area for area, own in enumerate(nodes) if len(own) == 1]
-    numbers = list(varied(model))
-    return [each.turn(area, each.low, each.high) for area in single for each in numbers]
+    return [turn for area in single for turn in turns_of(model, area)]
 
 
 def turns_of(model: Model, area: int) -> list[Turn]:
