@@ -10,6 +10,8 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
+from tpss.powerflow.bundle import losses_of_bundles
+from tpss.powerflow.bundle_points import is_bundled
 from tpss.powerflow.coupled import is_coupled, losses_of_groups
 from tpss.powerflow.links import record_links
 from tpss.powerflow.network import Flow, Network, Standing
@@ -224,9 +226,10 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        if not is_coupled(network.groups, s):
+        if not (is_coupled(network.groups, s) or is_bundled(network.bundles, s)):
             lost_w += section_losses(s, network, flow)
     lost_w += losses_of_groups(network.groups, flow)
+    lost_w += losses_of_bundles(network.bundles, flow)
     lost_w += record_links(network.links, step, flow.nodes, recording.links)
     recording.network_losses[at(step)] = lost_w
 
