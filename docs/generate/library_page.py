@@ -9,6 +9,11 @@ from tpss.units import label
 
 KINDS = {
     "catenaries": ("Contact-line systems", "`supply.catenary`"),
+    "contact_lines": (
+        "Contact lines and third rails of a direct current",
+        "`contact_line` of `supply.catenary`",
+    ),
+    "rails": ("Running rails", "`rails` of `supply.catenary`"),
     "high_voltage_lines": ("High-voltage lines", "`supply.high_voltage_line.type`"),
     "transformers": (
         "Transformers",

@@ -132,7 +132,9 @@ MEANINGS = {
     "brakes",
     "braking.friction_mwh": "part of it: friction brakes",
     "braking.machine_losses_mwh": "part of it: lost in the machines",
-    "braking.refused_mwh": "part of it: offered to the line, which does not take it",
+    "braking.refused_mwh": "part of it: offered to the line, which does not take it, so that friction "
+    "brakes do",
+    "braking.rheostat_mwh": "part of it: likewise, and burnt in rheostats of trains",
     "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
     "braking.fed_back_mwh": "part of it: what trains feed back into the line",
     "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",

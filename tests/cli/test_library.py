@@ -75,7 +75,10 @@ def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
 @pytest.mark.parametrize(("kind", "name"), IN_SCENARIOS)
 def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     """The lines are put into a scenario that names something else in that place, or nothing."""
-    if name.startswith("DC-") or kind == "rectifiers":
+    if kind in ("contact_lines", "rails"):
+        document = direct_document("DC-3kV")
+        document["supply"]["catenary"] = {"contact_line": "CA-160-3kV", "rails": "60E1"}
+    elif name.startswith("DC-") or kind == "rectifiers":
         document = direct_document(name if name.startswith("DC-") else SYSTEM_OF[name[:4]])
     else:
         document = copy.deepcopy(SHORT_LINE)

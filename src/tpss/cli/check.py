@@ -27,7 +27,7 @@ from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
-from tpss.scenario.supply import HighVoltageLine, Post, SectionBreak, Supply
+from tpss.scenario.supply import Catenary, HighVoltageLine, Post, SectionBreak, Supply
 from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.scenario.traffic import Stop, Traffic
 from tpss.units import kilometres, on_line
@@ -128,7 +128,7 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     catenary = supply.catenary
     reactance = "" if supply.is_direct else f" + j{catenary.x_ohm_per_km:g}"
     impedance = f"{catenary.r_ohm_per_km:g}{reactance} Ω/km"
-    yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
+    yield "catenary", f"{_conductors(catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
@@ -140,6 +140,23 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
             yield kind, _listed([_switch(each) for each in switches])
     for section in supply.neutral_sections:
         yield "neutral", section.in_words
+
+
+def _conductors(catenary: Catenary) -> str:
+    """Library names of a contact line: of the whole, or of its conductors, worn and warm."""
+    if catenary.contact_line is None or catenary.rails is None:
+        return library_name("catenaries", catenary)
+    state = {
+        "worn by {:g} %": catenary.wear_percent,
+        "at {:g} °C": catenary.conductor_temperature_c,
+        "rails at {:g} °C": catenary.rails_temperature_c,
+    }
+    names = (
+        library_name("contact_lines", catenary.contact_line),
+        f"rails {library_name('rails', catenary.rails)}",
+    )
+    told = (words.format(value) for words, value in state.items() if value is not None)
+    return ", ".join((*names, *told))
 
 
 def _switch(switch: Post | SectionBreak) -> str:

@@ -190,6 +190,7 @@ BRAKED = {
     "friction_mwh": "braked by friction",
     "machine_losses_mwh": "lost in machines that brake",
     "refused_mwh": "refused by the line",
+    "rheostat_mwh": "burnt in rheostats of trains",
     "own_use_mwh": "own use of trains that brake",
     "fed_back_mwh": "fed back by trains",
     "used_by_others_mwh": "of it used by other trains and the line",

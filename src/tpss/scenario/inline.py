@@ -28,6 +28,8 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("line",),
     ("lines", "*"),
     ("supply", "catenary"),
+    ("supply", "catenary", "contact_line"),
+    ("supply", "catenary", "rails"),
     ("supply", "contact_lines", "*", "catenary"),
     ("supply", "high_voltage_line", "type"),
     ("supply", "high_voltage_line", "line_transformer"),

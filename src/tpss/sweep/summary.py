@@ -15,6 +15,7 @@ SHOWN = {
     "braking.braked_mwh": "braked [MWh]",
     "braking.friction_mwh": "braked by friction [MWh]",
     "braking.refused_mwh": "refused by the line [MWh]",
+    "braking.rheostat_mwh": "burnt in rheostats of trains [MWh]",
     "braking.fed_back_mwh": "fed back by trains [MWh]",
     "braking.used_by_others_mwh": "of it used by others [MWh]",
     "braking.burnt_in_stations_mwh": "of it burnt in stations [MWh]",

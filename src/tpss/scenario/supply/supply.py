@@ -233,7 +233,17 @@ class Supply(Part):
             )
         if direct:
             self._demand_resistances_only()
+        elif any(each.contact_line is not None for each in self._catenaries):
+            raise fault(
+                f"contact_line and rails beside the system {self.system}, none of direct current",
+                "give r_ohm_per_km and x_ohm_per_km: tpss line-constants computes them from wires",
+            )
         return self
+
+    @property
+    def _catenaries(self) -> list[Catenary]:
+        """All contact lines that are given."""
+        return [self.catenary, *(each.catenary for each in self.contact_lines if each.catenary)]
 
     def _demand_resistances_only(self) -> None:
         """Raise a fault for what only an alternating current has."""
@@ -242,8 +252,7 @@ class Supply(Part):
                 f"a high-voltage line beside the system {self.system} of direct current",
                 "leave high_voltage_line out",
             )
-        lines = [self.catenary, *(each.catenary for each in self.contact_lines if each.catenary)]
-        if any(each.has_reactance for each in lines):
+        if any(each.has_reactance for each in self._catenaries):
             raise fault(
                 "the contact line has a reactance or a capacitance, of which the system "
                 f"{self.system} knows none",
