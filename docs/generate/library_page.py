@@ -24,6 +24,7 @@ KINDS = {
     "locomotives": ("Trains", "`model` of a train"),
     "systems": ("Electrification systems", "`supply.system`"),
     "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),
+    "rail_limits": ("Limits of rails", "`standards.rails`, by which the result is judged"),
     "wires": ("Wires", "`wire` of conductors in a [geometry](geometry.md)"),
 }
 """Title of each kind, and the keys that take its names."""

@@ -115,6 +115,15 @@ KINDS = {
         "type",
         OWN_TABLE,
     ),
+    "rail_limits": Kind(
+        "Limits of the voltage of rails to earth, and of stray current",
+        "tpss.scenario.rail_limits",
+        "RailLimits",
+        ("permanent_v", "short_v", "stray_ma_per_m"),
+        "[standards]",
+        "rails",
+        "that of the current is taken; a table with any of its values changes these",
+    ),
     "voltage_limits": Kind(
         "Limits of the voltage at the pantograph",
         "tpss.scenario.standards",

@@ -59,7 +59,7 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         A catenary of a scenario cannot have these values.
     """
     z = chosen(constants)
-    table = {
+    table: dict[str, Any] = {
         "r_ohm_per_km": _rounded(1e3 * z.own.real),
         "x_ohm_per_km": _rounded(1e3 * z.own.imag),
     }
@@ -70,6 +70,8 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         for axis, value in in_common(z).items()
         if value > 0.0
     }
+    if conductors := conductors_of(constants):
+        table["conductors"] = conductors
     try:
         Catenary.model_validate(table)
     except ValidationError as error:
@@ -80,6 +82,34 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         ]
         raise ScenarioError(findings) from error
     return table
+
+
+def conductors_of(constants: "LineConstants") -> dict[str, Any] | None:
+    """Table of the conductors of a catenary; None where a scenario knows none of these.
+
+    It knows one or two tracks with contact line and rails, and with feeders or without, of an
+    alternating current.  A positive feeder counts to the contact line, to which it is tied.
+    """
+    tracks, names = constants.geometry.tracks, list(constants.groups)
+    kinds = [name.partition(" ")[0] for name in names]
+    whole = all(kinds.count(kind) in (0, len(tracks)) for kind in ("contact", "rails", "feeder"))
+    if constants.frequency_hz == 0.0 or len(tracks) > 2 or not whole or "rails" not in kinds:
+        return None
+    merged = [name.replace("positive", "contact") for name in names]
+    kept = list(dict.fromkeys(merged))
+    sums = np.array([[float(each == name) for each in merged] for name in kept])
+    impedance = np.linalg.inv(sums @ np.linalg.inv(constants.impedance) @ sums.T)
+    susceptance = 2.0 * math.pi * constants.frequency_hz * sums @ constants.capacitance @ sums.T
+    return {
+        "names": kept,
+        "r_ohm_per_km": _rounded_rows(1e3 * impedance.real),
+        "x_ohm_per_km": _rounded_rows(1e3 * impedance.imag),
+        "b_us_per_km": _rounded_rows(1e9 * susceptance),
+    }
+
+
+def _rounded_rows(matrix: Any) -> list[list[float]]:
+    return [[_rounded(float(value)) for value in row] for row in matrix]
 
 
 def in_common(equivalent: Equivalent) -> dict[str, float]:

@@ -130,6 +130,11 @@ class BundleFlow(NamedTuple):
 NO_BUNDLES, NO_BUNDLE_FLOW = cast("Bundles", ()), cast("BundleFlow", ())
 
 
+def widest_of(bundles: Bundles) -> int:
+    """Most conductors of a bundle; 0: there are no bundles."""
+    return 0 if bundles == NO_BUNDLES else bundles.section.shape[1]
+
+
 def edges_of_bundles(
     parts: Sequence[BundlePart], sections: Sequence[tuple[int, int]]
 ) -> list[tuple[int, int]]:

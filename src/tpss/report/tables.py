@@ -104,6 +104,16 @@ def of_converter_losses(result: Result) -> list[Table]:
     return [of_frame("converter-losses", caption, found)] if len(found) else []
 
 
+def of_conductors(result: Result) -> list[Table]:
+    """Rails, stray current and autotransformers, where there are any."""
+    tables = {
+        "rails": ("Voltage of the rails to earth", result.rails),
+        "stray_current": ("Stray current", result.stray_current),
+        "autotransformers": ("Autotransformers", result.autotransformers),
+    }
+    return [of_frame(name, title, frame) for name, (title, frame) in tables.items() if len(frame)]
+
+
 def of_regeneration(result: Result) -> list[Table]:
     """What each train brakes, and where that goes, where any has electric brakes."""
     found = result.regeneration

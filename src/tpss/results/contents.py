@@ -31,6 +31,9 @@ TABLE_PLACES = {
     "stations": "stations",
     "regeneration": "regeneration",
     "converter_losses": "converter_losses",
+    "rails": "rails",
+    "stray_current": "stray_current",
+    "autotransformers": "autotransformers",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
     "thermal_windows": "thermal_windows",
@@ -45,7 +48,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "braking", "thermal", "energy",
+    "stations", "converters", "converter-losses", "braking", "thermal", "rails", "energy",
     "effort",
 )  # fmt: skip
 

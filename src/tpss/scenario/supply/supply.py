@@ -17,12 +17,14 @@ from tpss.scenario.fields import (
     unique,
 )
 from tpss.scenario.supply.catenary import Catenary, without_reactance
+from tpss.scenario.supply.conductor_faults import demand_conductors
+from tpss.scenario.supply.conductors import Autotransformers, Conductors
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
-from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, System, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
 
 Station = ConverterStation | TransformerStation | MixedStation | RectifierStation
@@ -84,6 +86,14 @@ class Supply(Part):
         description="Where the contact lines of several tracks are tied: `everywhere`, at `posts` "
         "(those below, feeding points, stations where lines meet), or `no` (there, but at no posts). "
         "Needed where a line has several tracks.",
+    )
+    conductors: Conductors | None = Field(
+        default=None,
+        description="Contact line, rails and feeder as conductors of their own; leave it out: they are "
+        "one, with the impedance of the catenary, and rails have no voltage.",
+    )
+    autotransformers: tuple[Autotransformers, ...] = Field(
+        default=(), description="Autotransformers, with `conductors`."
     )
     contact_lines: tuple[ContactLine, ...] = Field(
         default=(), description="Stretches of lines with another contact line, or other ties."
@@ -204,6 +214,11 @@ class Supply(Part):
         return system_named(self.system).is_direct
 
     @property
+    def system_values(self) -> System:
+        """Values of its system."""
+        return system_named(self.system)
+
+    @property
     def stations(self) -> tuple[Station, ...]:
         """All feeding stations, in the order of the results."""
         return tuple(station for key in STATIONS for station in getattr(self, key))
@@ -258,6 +273,19 @@ class Supply(Part):
                 f"{self.system} knows none",
                 "give resistances only",
             )
+
+    @model_validator(mode="after")
+    def _conductors_belong_together(self) -> Self:
+        stretches = [each.catenary for each in self.contact_lines if each.catenary is not None]
+        demand_conductors(
+            self.conductors,
+            [self.catenary, *stretches],
+            self.stations,
+            self.autotransformers,
+            self.is_direct,
+            self.high_voltage_line is not None,
+        )
+        return self
 
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:
