@@ -89,17 +89,14 @@ def test_a_train_between_autotransformers(leaks):
             assert found.flow.nodes[node].voltage_v == pytest.approx(volts, abs=V)
 
 
-@pytest.mark.parametrize("variant", case_of("rail_potential")["variants"])
-def test_rails_of_direct_current_that_leak_to_earth(variant):
-    expected = case_of("rail_potential")["variants"][variant]
-    inputs = expected["inputs"]
-    supply = Supply(
+def direct_supply(conductors, stations, contact_ohm_per_km, rails_ohm_per_km):
+    return Supply(
         system="DC-0.75kV",
         catenary={
-            "contact_line": {"r_ohm_per_km": inputs["r_contact_ohm_per_km"]},
-            "rails": {"r_ohm_per_km": inputs["r_rails_ohm_per_km"]},
+            "contact_line": {"r_ohm_per_km": contact_ohm_per_km},
+            "rails": {"r_ohm_per_km": rails_ohm_per_km},
         },
-        conductors={"leakage_s_per_km": inputs["leakage_s_per_km"], "nodes_every_km": 100.0},
+        conductors=conductors,
         rectifier_stations=[
             {
                 "name": each["name"],
@@ -111,9 +108,52 @@ def test_rails_of_direct_current_that_leak_to_earth(variant):
                     "rated_current_a": 2500.0,
                 },
             }
-            for each in inputs["stations"]
+            for each in stations
         ],
     )
+
+
+def test_rails_between_a_station_and_a_train_have_the_voltage_of_a_leaking_line():
+    """V(x) = (r I / γ) sinh(γ (x - L/2)) / cosh(γ L/2), γ = sqrt(r g): 3 km, 0.015 ohm/km, 0.1 S/km.
+
+    With 2000 A that is ±44.9494 V at the ends, and 3.3703 A leave.  Leakage that is lumped every 50 m
+    errs by (γ h)²/12, 3e-7.
+    """
+    station = {"name": "A", "km": 0.0, "law": {"u0_v": 800.0, "r_ohm": 0.016}}
+    conductors = {"leakage_s_per_km": 0.1, "nodes_every_km": 0.05}
+    supply = direct_supply(conductors, [station], 0.0082, 0.015)
+    found, plan = solved(supply, 3.0, loads_of([Drawing(3.0, 1.4e6)]))
+    current_a = 1.4e6 / found.train_voltage[0].real
+    gamma = np.sqrt(0.015 * 0.1)
+    end_v = 0.015 * current_a / gamma * np.tanh(gamma * 1.5)
+    assert end_v / current_a == pytest.approx(44.94944325 / 2000.0, rel=1e-8)
+    at_ends = [plan.nodes.index(f"rails at {km} km") for km in ("0", "3")]
+    volts = found.flow.nodes.voltage_v[at_ends].real
+    # The train stands a metre beside the end, which shifts both by half of that metre's drop.
+    assert (volts[1] - volts[0]) / 2.0 == pytest.approx(end_v, rel=5e-6)
+    assert volts == pytest.approx([-end_v, end_v], abs=0.015e-3 * current_a)
+    leaving_a = current_a * (1.0 - 1.0 / np.cosh(gamma * 1.5))
+    middle = plan.nodes.index("rails at 1.5 km")
+    (piece,) = (
+        s for s, part in enumerate(plan.sections)
+        if part.start_node == middle and plan.section_kinds[s] == "rails"
+    )  # fmt: skip
+    # Between the middle and the train all that leaves has left.
+    half_shunt_a = 0.1 * 0.025 * found.flow.nodes.voltage_v[middle].real
+    assert abs(found.flow.sections[piece].current_a.real - half_shunt_a) == pytest.approx(
+        current_a - leaving_a, rel=5e-6
+    )
+
+
+@pytest.mark.parametrize("variant", case_of("rail_potential")["variants"])
+def test_rails_of_direct_current_that_leak_to_earth(variant):
+    expected = case_of("rail_potential")["variants"][variant]
+    inputs = expected["inputs"]
+    conductors = {"leakage_s_per_km": inputs["leakage_s_per_km"], "nodes_every_km": 100.0}
+    supply = direct_supply(
+        conductors, inputs["stations"], inputs["r_contact_ohm_per_km"],
+        inputs["r_rails_ohm_per_km"],
+    )  # fmt: skip
     loads = loads_of(
         [
             Drawing(each["km"], each["p_w"])

@@ -1,5 +1,6 @@
 """The catenary of a scenario that stands for a line of many conductors."""
 
+import json
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -135,7 +136,19 @@ def catenary_text(constants: "LineConstants") -> str:
         f"line constants of {constants.geometry.source.name} at {constants.frequency_hz:g} Hz, "
         f"{constants.geometry.method}: {z.meaning}"
     )
-    return tomli_w.dumps({"source": source, **catenary_of(constants)})
+    table = catenary_of(constants)
+    conductors = table.pop("conductors", None)
+    text = tomli_w.dumps({"source": source, **table})
+    return text if conductors is None else f"{text}\n{_conductors_text(conductors)}"
+
+
+def _conductors_text(conductors: dict[str, Any]) -> str:
+    """Table of the conductors, a row of a matrix on a line."""
+    lines = ["[conductors]", f"names = {json.dumps(conductors['names'])}"]
+    for key in ("r_ohm_per_km", "x_ohm_per_km", "b_us_per_km"):
+        rows = ",\n".join(f"    {json.dumps(row)}" for row in conductors[key])
+        lines.append(f"{key} = [\n{rows},\n]")
+    return "\n".join(lines) + "\n"
 
 
 def _rounded(value: float) -> float:
