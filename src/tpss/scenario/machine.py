@@ -261,6 +261,11 @@ class CurrentLimitation(Part):
         description="Lowest non-permanent voltage, Umin2, at which there is no traction; in between "
         "the current falls linearly.",
     )
+    auxiliaries: Literal["current", "power"] = Field(
+        default="current",
+        description="Where the current falls to: to that of the auxiliaries at Umin2, along a straight "
+        "line, or at each voltage to what their `power` takes there.",
+    )
 
     @model_validator(mode="after")
     def _knee_lies_above_the_end(self) -> Self:

@@ -269,7 +269,12 @@ class Train(Part):
         limit = self.current_limitation
         if limit is None:
             return 0.0
-        return self.auxiliary_power_kw / self.auxiliary_power_factor / limit.umin2_kv
+        return self.auxiliary_kva / limit.umin2_kv
+
+    @property
+    def auxiliary_kva(self) -> float:
+        """Apparent power of the auxiliaries. [kVA]"""
+        return self.auxiliary_power_kw / self.auxiliary_power_factor
 
     @model_validator(mode="after")
     def _auxiliaries_draw_less_than_the_train_may(self) -> Self:
