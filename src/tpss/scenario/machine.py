@@ -251,7 +251,8 @@ class CurrentLimitation(Part):
         default=0.95,
         gt=0,
         le=1,
-        description="a, the share of Un from which the full current is allowed.",
+        description="a, the share of Un from which the full current is allowed; without `un_kv` this "
+        "and the next ones are those of the supply's system.",
     )
     un_kv: Real = Field(default=15.0, gt=0, le=100, description="Nominal voltage, Un.")
     umin2_kv: Real = Field(
