@@ -31,6 +31,7 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_mvar": ("Mvar", 1e6),
     "_mwh": ("MWh", 3.6e9),
     "_mva": ("MVA", 1e6),
+    "_kva": ("kVA", 1e3),
     "_ohm": ("Ω", 1.0),
     "_kmh": ("km/h", 1.0 / 3.6),
     "_min": ("min", 60.0),

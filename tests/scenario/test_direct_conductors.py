@@ -131,3 +131,51 @@ def test_a_file_may_hold_them(tmp_path) -> None:
     made = tpss.Scenario.from_document(document, tmp_path / "line.toml")
     assert made.supply.catenary.r_ohm_per_km == pytest.approx(0.0643)
     assert isinstance(made.supply.catenary, Catenary)
+
+
+def test_a_published_line_as_a_scenario() -> None:
+    """[Yoo2024], Table 5: fed from one end, a train of 1000 A at 6 km has 3013.89 V.
+
+    Contact line C120-2C, rails S60 with the earth of 0.46 ohm/km beside them, cables of 0.05138 ohm.
+    The train dwells there, with auxiliaries of that power.
+    """
+    document = direct_document("DC-3kV")
+    stations = [("A", 0.0), ("P", 6.0), ("B", 8.0)]
+    document["line"] |= {
+        "length_km": 8.0,
+        "tracks": 1,
+        "stations": [{"name": name, "position_km": km} for name, km in stations],
+    }
+    earthed = 0.011 * 0.46 / (0.011 + 0.46)
+    document["supply"] = {
+        "system": "DC-3kV",
+        "catenary": {
+            "contact_line": "C120-2C",
+            "rails": {"r_ohm_per_km": earthed},
+            "connection_r_ohm": 0.05138194444,
+        },
+        "rectifier_stations": [
+            {"name": "West", "position_km": 0.0, "type": {
+                "no_load_voltage_kv": 3.571254869, "resistance_ohm": 0.07372108531,
+                "rated_current_a": 3400.0}},
+        ],
+    }  # fmt: skip
+    del document["trains"]["unit"]["regeneration"]
+    document["trains"]["unit"]["auxiliary_power_kw"] = 3013.89
+    stop = {"station": "P", "dwell_min": 5.0}
+    document["traffic"] = [
+        {
+            "name": "up",
+            "train": "unit",
+            "from": "A",
+            "to": "B",
+            "stops": [stop],
+            "departures_min": [0.0],
+        }
+    ]
+    result = tpss.simulate(tpss.Scenario.from_document(document))
+    stands = result.dataset.speed.to_numpy()[:-1, 0] == 0.0
+    at_stop = stands & (abs(result.dataset.position.to_numpy()[:-1, 0] - 6000.0) < 1.0)
+    voltage_v = result.dataset.pantograph_voltage.to_numpy()[:-1, 0][at_stop]
+    assert len(voltage_v) > 10
+    assert voltage_v[1:-1] == pytest.approx(3013.89, abs=0.02)

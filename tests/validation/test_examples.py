@@ -101,11 +101,36 @@ def test_the_metro_s_middle_station_takes_what_the_line_refuses():
     assert energy[1] < 0.98 * energy[0]
 
 
+def test_freight_over_a_hill_at_3_kv_needs_the_station_at_its_summit():
+    """With it no train is below the knee of its limitation, 0.9 x 3 kV; without it trains lose minutes.
+
+    An inverter there takes a third of what trains burn otherwise.
+    """
+    scenario = tpss.load_scenario(EXAMPLES / "freight_3kv.toml")
+    base, inverted, without = (
+        tpss.simulate(each, lost_time=True)
+        for each in (scenario, *map(scenario.variant, ("reversible", "without-summit")))
+    )
+    for each in (base, inverted, without):
+        assert (each.status, each.audit["passed"]) == ("finished", True)
+        assert each.standards.violations.empty
+        assert set(each.thermal.verdict) == {"within"}
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (base, without)]
+    assert 2.7 < lowest[0] < 2.9
+    assert 2.0 < lowest[1] < 2.5
+    lost_min = [each.summary["lost_time"]["total_min"] for each in (base, without)]
+    assert lost_min[0] < 0.1
+    assert lost_min[1] > 5.0
+    burnt = [each.regeneration.rheostat_mwh.sum() for each in (base, inverted)]
+    assert burnt[0] > 0.1
+    assert burnt[1] < 0.7 * burnt[0]
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
-        "both_ways", "emu_25kv", "line_320km", "line_320km_losses", "metro_750v", "network",
-        "overloaded", "own_trains", "thesis_original",
+        "both_ways", "emu_25kv", "freight_3kv", "line_320km", "line_320km_losses", "metro_750v",
+        "network", "overloaded", "own_trains", "thesis_original",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}

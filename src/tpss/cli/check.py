@@ -1,7 +1,7 @@
 """The command ``tpss check``: what a scenario describes, without simulating it."""
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,10 @@ from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.clock import clock_at
+from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line, SpeedLimit
+from tpss.scenario.of_the_system import under_its_system
 from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
@@ -80,7 +82,7 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield from _line(line, f"{name}: " if several else "")
     yield from _supply(scenario.supply)
     for name, train in scenario.trains.items():
-        yield "train", f"{name}: {_train(train)}"
+        yield "train", f"{name}: {_train(train, scenario.supply.system)}"
     for text in _traffic(scenario.traffic, scenario.simulation.start_s):
         yield "traffic", text
     if scenario.signalling.separation != "none":
@@ -187,7 +189,7 @@ def _standards(standards: Standards) -> str:
     texts = [
         f"{limits.system}: {limits.umin1_kv:g} to {limits.umax1_kv:g} kV, for a limited time "
         f"{limits.umin2_kv:g} to {limits.umax2_kv:g} kV",
-        *_changed(limits, "voltage_limits", limits.system),
+        *_changed(limits, library.entries("voltage_limits").get(limits.system, {})),
     ]
     if standards.peak_from_min or standards.peak_to_min is not None:
         end = "the end" if standards.peak_to_min is None else f"{standards.peak_to_min:g} min"
@@ -197,9 +199,8 @@ def _standards(standards: Standards) -> str:
     return "; ".join(texts)
 
 
-def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
-    """What a part changes in the library entry that it starts from, if anything."""
-    usual = library.entries(kind).get(entry or "", {})
+def _changed(part: Part, usual: Mapping[str, Any]) -> list[str]:
+    """What a part changes in the values of the library entry that it starts from, if anything."""
     changed = [
         f"{key} {_plain(getattr(part, key))} ({_plain(usual[key])})"
         for key in type(part).model_fields
@@ -208,14 +209,25 @@ def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
     return [f"changed from the library: {', '.join(changed)}"] if changed else []
 
 
-def _train(train: Train) -> str:
+def _train(train: Train, system: str) -> str:
     key_data = [
         f"{units.words(key)} {getattr(train, key):g} {units.label(key)}"
         for key in KINDS["locomotives"].shown
         if getattr(train, key) is not None
     ]
     text = f"{train.model or 'own'}, {', '.join(key_data)}"
-    return "; ".join([text, *_changed(train, "locomotives", train.model)])
+    return "; ".join([text, *_changed(train, _of_model(train.model, system))])
+
+
+def _of_model(name: str | None, system: str) -> dict[str, Any]:
+    """Values of a model as it is under a system, by the keys that the library gives it."""
+    if name not in library.entries("locomotives"):
+        return {}
+    document = {"supply": {"system": system}, "trains": {"it": {"model": name}}}
+    under = without_reactive_power(under_its_system(document))["trains"]["it"]
+    model = Train.model_validate(under)
+    keys = {*library.entries("locomotives")[name], *under} & {*Train.model_fields}
+    return {key: getattr(model, key) for key in keys}
 
 
 def _plain(value: Any) -> str:

@@ -31,6 +31,8 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "catenary", "contact_line"),
     ("supply", "catenary", "rails"),
     ("supply", "contact_lines", "*", "catenary"),
+    ("supply", "contact_lines", "*", "catenary", "contact_line"),
+    ("supply", "contact_lines", "*", "catenary", "rails"),
     ("supply", "high_voltage_line", "type"),
     ("supply", "high_voltage_line", "line_transformer"),
     ("supply", "high_voltage_line", "station_transformer"),

@@ -22,6 +22,7 @@ SHOWN = {
     "thermal.contact_line_use_percent": "of what contact lines bear [%]",
     "thermal.transformer_use_percent": "of what transformers bear [%]",
     "thermal.converter_use_percent": "of what converters bear [%]",
+    "thermal.rectifier_use_percent": "of what rectifiers bear [%]",
     "thermal.motor_use_percent": "of what motors bear [%]",
     "thermal.hot_spot_c": "hottest transformer [°C]",
     "thermal.loss_of_life_min": "life lost by a transformer [min]",
