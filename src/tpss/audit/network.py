@@ -11,6 +11,7 @@ import math
 
 from tpss.audit.balances import Scratch, audit_demand, worst
 from tpss.audit.coupled import audit_groups, pass_trains
+from tpss.audit.sharing import drop_by_others
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.coupled import is_coupled
@@ -175,5 +176,6 @@ def audit_sources(
         power = complex(row.station_active_power, row.station_reactive_power)
         current = (power / voltage).conjugate()
         off, _, _ = residual(voltage, current, row.active_converters, source, False)
+        off += drop_by_others(network.shared, s, step, model, recording)
         per_unit = magnitude(off) / network.system.base_voltage_v
         figures.converter_residual = worst(figures.converter_residual, per_unit)

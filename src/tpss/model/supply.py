@@ -23,6 +23,7 @@ from tpss.model.parting import (
     renamed,
     representatives,
 )
+from tpss.model.shared_grids import mutual_impedances_ohm
 from tpss.model.sources import build_sources
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
@@ -146,7 +147,9 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    return mark_unfed(assemble(*parts, room=plan.room(), groups=plan.coupled)), plan
+    mutual_ohm = mutual_impedances_ohm(supply)
+    network = assemble(*parts, room=plan.room(), groups=plan.coupled, mutual_ohm=mutual_ohm)
+    return mark_unfed(network), plan
 
 
 def joined_network(
@@ -182,6 +185,7 @@ def joined_network(
         parted.system,
         room=plan.room(),
         groups=plan.coupled,
+        mutual_ohm=mutual_impedances_ohm(supply),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
 

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
 from tpss.powerflow.network import UNFED, Network
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
 from tpss.record import copy_of_records
 
 
@@ -42,7 +43,9 @@ def in_service(network: Network, units: Mapping[int, int], opened: Collection[in
         branches[number].admittance_s = 0.0
     source_of_node[source_of_node == UNFED] = -1
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
-    return mark_unfed(changed._replace(admittance_s=_admittance_of_branches(changed)))
+    if network.shared != NO_SHARED_GRIDS:
+        changed = changed._replace(shared=shared_grids(network.shared.mutual_ohm, sources))
+    return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
 
 
 def mark_unfed(network: Network) -> Network:
@@ -54,8 +57,8 @@ def mark_unfed(network: Network) -> Network:
     return network._replace(source_of_node=source_of_node)
 
 
-def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
-    """What the branches in service put into each block of the linear system. [S]
+def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
+    """What branches in service and common grids put into each block of the linear system. [S]
 
     Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
     """
@@ -66,6 +69,7 @@ def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
         a, b, admittance = branch.start_node, branch.end_node, branch.admittance_s
         total[[a, b]] += admittance
         total[[place[a, b], place[b, a]]] -= admittance
+    stamp_shared(total, network.shared, network.sources, place)
     return total
 
 

@@ -30,6 +30,12 @@ from tpss.numerics.curve import CurvePoint, Points
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail
 from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
+from tpss.powerflow.shared_grids import (
+    SharedGrids,
+    edges_of_shared,
+    shared_grids,
+    stamp_shared,
+)
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -240,11 +246,13 @@ class Network(NamedTuple):
     `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
-    """What the branches put into each block of the linear system. [S]"""
+    """What the branches, and grids of several sources, put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups
     """Of coupled sections."""
+    shared: SharedGrids
+    """Grids of several sources."""
 
 
 class Flow(NamedTuple):
@@ -337,6 +345,7 @@ def assemble(
     *,
     room: Sequence[tuple[int, int]] = (),
     groups: Sequence[Sequence[int]] = (),
+    mutual_ohm: Complexes | None = None,
 ) -> Network:
     """Network from its parts.
 
@@ -352,11 +361,13 @@ def assemble(
         Further pairs of nodes for which the linear system has room.
     groups : sequence of sequences of int
         Numbers of sections side by side that are coupled.
+    mutual_ohm : array of complex, shape (sources, sources), optional
+        What sources that share a grid do to each other, see `shared_grids`. [Ω]
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
-    edges += room
+    edges += [*room, *edges_of_shared(mutual_ohm, sources["node"].tolist())]
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]
@@ -371,6 +382,8 @@ def assemble(
     admittance_s = np.zeros(len(place), dtype=complex)
     for part in branches:
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
+    shared = shared_grids(mutual_ohm, sources)
+    stamp_shared(admittance_s, shared, sources, place)
 
     return Network(
         system=system,
@@ -384,6 +397,7 @@ def assemble(
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
+        shared=shared,
     )
 
 

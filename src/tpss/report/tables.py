@@ -91,6 +91,8 @@ def of_standards(result: Result) -> list[Table]:
         ),
         "station-power": ("Highest mean power of feeding stations", evidence.station_power),
         "losses-by-kind": ("Losses by kind of branch", evidence.losses),
+        "unbalance": ("Unbalance at the busbars of the grid", evidence.unbalance),
+        "neutral-sections": ("Voltages across neutral sections", evidence.neutral_sections),
     }
     return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
 
@@ -102,6 +104,13 @@ def of_converter_losses(result: Result) -> list[Table]:
     if found.origin.str.contains("estimate").any():
         caption += ", losses by estimate"
     return [of_frame("converter-losses", caption, found)] if len(found) else []
+
+
+def of_transformer_losses(result: Result) -> list[Table]:
+    """The grid's side of transformer stations, where any tells its losses without load."""
+    found = result.transformer_losses
+    caption = "Grid's side of the transformer stations"
+    return [of_frame("transformer-losses", caption, found)] if len(found) else []
 
 
 def of_regeneration(result: Result) -> list[Table]:
