@@ -20,9 +20,13 @@ from tpss.model.contact_line import LineLayout
 from tpss.model.supply import build_supply
 from tpss.physics.three_phase import angle_of, impedance_between, sequences, winding_of
 from tpss.powerflow.in_service import in_service
+from tpss.powerflow.links import LinkPart
+from tpss.powerflow.network import SectionPart, assemble
 from tpss.powerflow.solve import solve
 from tpss.results.three_phase import busbar_of
 from tpss.scenario.supply import Supply
+from tpss.sources.grid import GridLaw
+from tpss.sources.kinds import Source, SourceKind
 
 from networks import constant_loads, place
 
@@ -38,6 +42,7 @@ B = {**STATION, "name": "B", "position_km": 50.0, "phases": "ST"}
 NEUTRAL = [{"from_km": 24.0, "to_km": 24.3}]
 PLACES_KM = [9.0, 21.0, 33.0]
 POWERS = [5e6 + 1e6j, 6e6 + 1.2e6j, 7e6 + 1.4e6j]
+LINE_OHM_PER_M = (0.169 + 0.432j) / 1e3
 TURNS = np.exp(1j * np.radians([30.0, 30.0, -90.0]))
 APART = {
     "trains": [23705.62254 + 10588.99291j, 23445.11386 + 9263.192479j, -2510.300374 - 25873.80459j],
@@ -237,3 +242,47 @@ def test_sequences_of_balanced_currents_and_of_one_between_two_phases():
     positive, negative = sequences(np.array([1.0, -1.0, 0.0], dtype=complex))
     assert abs(positive) == pytest.approx(1.0 / math.sqrt(3.0))
     assert abs(negative) == pytest.approx(1.0 / math.sqrt(3.0))
+
+
+def test_stations_at_a_busbar_are_the_grid_s_phases_and_transformers_between_them():
+    """Ideal transformers, as links, and three sources of 27.5/√3 kV behind Z₁ give the same voltages.
+
+    All is on the railway's side, against phase R.  Each link has its short-circuit impedance, and the
+    weights 1 on the contact line, -1 and 1 on the two phases.
+    """
+    case, _ = solved(line_of([{**A, "busbar": "north"}, {**B, "busbar": "north"}]))
+    z1_ohm = 220e3**2 / 2500e6 * complex(0.1, math.sqrt(0.99)) / 64.0
+    r, s, t = (
+        Source.row(
+            node=4 + k,
+            kind=SourceKind.GRID,
+            installed=1,
+            controlled=False,
+            rating_va=1.0,
+            grid=GridLaw.row(
+                no_load_voltage_v=cmath.rect(27_500.0 / math.sqrt(3.0), -k * 2.0 * math.pi / 3.0),
+                grid_impedance_ohm=z1_ohm,
+                transformer_impedance_ohm=0j,
+            ),
+        )
+        for k in range(3)
+    )
+    unit_ohm = 0.08402777778 + 2.519432481j
+    network = assemble(
+        7,
+        [
+            SectionPart(0, 1, 0.0, 24.15e3, LINE_OHM_PER_M, 0.0),
+            SectionPart(2, 3, 24.15e3, 50e3, LINE_OHM_PER_M, 0.0),
+        ],
+        [],
+        Source.array([r, s, t]),
+        case.network.system,
+        links=[
+            LinkPart((0, 4, 5), (1.0, -1.0, 1.0), unit_ohm),
+            LinkPart((3, 5, 6), (1.0, -1.0, 1.0), unit_ohm),
+        ],
+    )
+    twin = place(network, constant_loads([1e3 * km for km in PLACES_KM], POWERS))
+    share, _ = solve(False, twin.network, twin.flow, twin.loads)
+    assert share == 1.0
+    assert twin.train_voltage == pytest.approx(case.train_voltage * TURNS, abs=1e-5)
