@@ -11,6 +11,7 @@ from tpss import units
 from tpss.results.places import LINE
 from tpss.results.regeneration import fed_back
 from tpss.results.result import Result
+from tpss.results.standards.unbalance import GRID
 from tpss.scenario.differences import differences
 from tpss.units import on_line
 
@@ -91,7 +92,7 @@ def of_standards(result: Result) -> list[Table]:
         ),
         "station-power": ("Highest mean power of feeding stations", evidence.station_power),
         "losses-by-kind": ("Losses by kind of branch", evidence.losses),
-        "unbalance": ("Unbalance at the busbars of the grid", evidence.unbalance),
+        "grid-busbars": ("Unbalance at the busbars of the grid", evidence.unbalance),
         "neutral-sections": ("Voltages across neutral sections", evidence.neutral_sections),
     }
     return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
@@ -148,7 +149,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
     return [
         ("status", "", result.status),
         ("audit", "", "passed" if result.audit["passed"] else "failed"),
-        ("violations of voltage limits", "", len(evidence.violations)),
+        ("violations of voltage limits", "", int((evidence.violations.standard != GRID).sum())),
         ("studied train", "", summary["studied_train"]),
         ("trip time", "min", summary["trip_time_min"]),
         ("simulated time", "min", summary["duration_min"]),
@@ -162,6 +163,12 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         _place("place of lowest voltage", lowest),
         ("time of lowest voltage", "min", lowest.get("time_min")),
         *_highest_loading(stations),
+        *(
+            (f"unbalance at {busbar}, highest mean of 10 min", "%", percent)
+            for busbar, percent in zip(
+                evidence.unbalance.busbar, evidence.unbalance.mean_10_min_percent, strict=True
+            )
+        ),
         *(
             (f"mean useful voltage, {zone}", "kV", float(mean_kv))
             for zone, mean_kv in zip(zones.zone, zones.mean_useful_kv, strict=True)

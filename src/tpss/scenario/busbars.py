@@ -19,6 +19,10 @@ REMEDIES = {
 """What a station at a busbar with others has to tell, and what to do if it does not."""
 
 
+IN_PLACE = {"phases": ("phases", "connection", "phases_before", "phases_behind")}
+"""Keys that tell the same, or have a fault of their own."""
+
+
 class _Standing(NamedTuple):
     """A station at a busbar as far as it is written."""
 
@@ -32,8 +36,7 @@ def check_busbars(document: Mapping[str, Any]) -> Iterator[Fault]:
     shared = list(_shared(table(document, "supply")))
     for each in shared:
         for key, remedy in REMEDIES.items():
-            told = key in each.part or (key == "phases" and each.part.get("connection"))
-            if not told:
+            if not any(other in each.part for other in IN_PLACE.get(key, (key,))):
                 yield f"{each.key}.{key}", "", f"missing at the busbar {each.busbar}", remedy
         yield from _ideal(each)
         first = next(other for other in shared if other.busbar == each.busbar)

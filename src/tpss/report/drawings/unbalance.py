@@ -49,9 +49,9 @@ def unbalance(runs: Mapping[str, Result]) -> Drawing:
         raise NothingToDrawError("no transformer station tells its phases")
     highest = max(limit, *(float(np.nanmax(curve.y, initial=0.0)) for curve in means))
     panels = [
-        Panel("unbalance [%]", shares, "$U_2/U_1$ [%]", from_zero=True),
+        Panel("u₂ [%]", shares, "$U_2/U_1$ [%]", from_zero=True),
         Panel(
-            f"unbalance, mean of {WINDOW_MIN:g} min [%]",
+            f"of {WINDOW_MIN:g} min [%]",
             [Mark(limit, "limit", "limit", colour=STRONG_GREY), *means],
             f"mean of\n{WINDOW_MIN:g} min [%]",
             span=(0.0, 1.15 * highest),

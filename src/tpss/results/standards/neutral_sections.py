@@ -34,7 +34,7 @@ class AcrossNeutral(NamedTuple):
     """Between the voltages of both sides without load. [°]"""
     highest_kv: float
     mean_kv: float
-    highest_min: float
+    at_min: float
     """When the voltage was highest. [min]"""
 
 
@@ -87,7 +87,7 @@ def _across(
         angle_deg=abs((apart + 180.0) % 360.0 - 180.0),
         highest_kv=float(across_kv[at]),
         mean_kv=float(np.nanmean(across_kv)) if known else math.nan,
-        highest_min=float(dataset.time[at]) / 60.0 if known else math.nan,
+        at_min=float(dataset.time[at]) / 60.0 if known else math.nan,
     )  # fmt: skip
 
 

@@ -16,6 +16,9 @@ from tpss.scenario.scenario import Scenario
 WINDOW_MIN = 10.0
 """Window of the means that are judged. [min]"""
 
+GRID = "grid"
+"""Names the limit among those of the standards."""
+
 KEPT, EXCEEDED = "kept", "exceeded"
 
 
@@ -67,7 +70,7 @@ def unbalance_violations(found: Iterable[Unbalance]) -> Iterator[Violation]:
     grave = [each for each in found if each.verdict == EXCEEDED]
     for each in sorted(grave, key=lambda own: -own.mean_10_min_percent):
         yield Violation(
-            "grid", "unbalance", f"busbar {each.busbar}", math.nan, math.nan, WINDOW_MIN,
+            GRID, "unbalance", f"busbar {each.busbar}", math.nan, math.nan, WINDOW_MIN,
             each.from_min, "", math.nan,
             f"busbar {each.busbar}: unbalance of {each.mean_10_min_percent:.2f} % as a mean over "
             f"{WINDOW_MIN:g} min from {each.from_min:.1f} min on, above {each.limit_percent:g} %",

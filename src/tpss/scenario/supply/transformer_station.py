@@ -1,10 +1,11 @@
 """Transformer stations that feed the railway from a grid of its own frequency."""
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tpss.scenario.fields import (
+    FromLibrary,
     Name,
     Part,
     Real,
@@ -78,7 +79,9 @@ class TransformerStation(FeedingStation):
     no_load_voltage_kv: Real = Field(
         ge=0.1, le=100, description="Voltage without load, on the railway's side."
     )
-    transformer: StationTransformer = Field(description="One of its transformers.")
+    transformer: Annotated[StationTransformer, FromLibrary("station_transformers")] = Field(
+        description="One of its transformers: library name, or a table of your own."
+    )
     transformers: Whole = Field(
         default=1, ge=1, le=100, description="Number of equal transformers in parallel."
     )
@@ -217,7 +220,7 @@ class TransformerStation(FeedingStation):
         """What stands there."""
         power, percent = self.grid_short_circuit_mva, self.transformer.short_circuit_percent
         grid = "an infinite grid" if power is None else f"a grid of {power:g} MVA"
-        at = f" {self.grid_kv:g} kV" if self.grid_kv is not None else ""
+        at = f" at {self.grid_kv:g} kV" if self.grid_kv is not None else ""
         phases = f", phases {self.phases}" if self.phases is not None else ""
         busbar = f", busbar {self.busbar}" if self.busbar is not None else ""
         return (
