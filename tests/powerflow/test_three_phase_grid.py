@@ -39,7 +39,6 @@ STATION = {
 }
 A = {**STATION, "name": "A", "position_km": 0.0, "phases": "RS"}
 B = {**STATION, "name": "B", "position_km": 50.0, "phases": "ST"}
-NEUTRAL = [{"from_km": 24.0, "to_km": 24.3}]
 PLACES_KM = [9.0, 21.0, 33.0]
 POWERS = [5e6 + 1e6j, 6e6 + 1.2e6j, 7e6 + 1.4e6j]
 LINE_OHM_PER_M = (0.169 + 0.432j) / 1e3
@@ -58,13 +57,12 @@ TOGETHER = {
 }
 
 
-def line_of(stations, **more):
+def line_of(stations, neutral_km=((24.0, 24.3),)):
     return Supply(
         system="25kV-50Hz",
         catenary={"r_ohm_per_km": 0.169, "x_ohm_per_km": 0.432},
         transformer_stations=stations,
-        neutral_sections=NEUTRAL,
-        **more,
+        neutral_sections=[{"from_km": begin, "to_km": end} for begin, end in neutral_km],
     )
 
 
@@ -244,6 +242,47 @@ def test_sequences_of_balanced_currents_and_of_one_between_two_phases():
     assert abs(negative) == pytest.approx(1.0 / math.sqrt(3.0))
 
 
+UNIT_OHM = 0.08402777778 + 2.519432481j
+GRID_OHM = 220e3**2 / 2500e6 * complex(0.1, math.sqrt(0.99)) / 64.0
+"""Of a phase, on the side of 27.5 kV."""
+
+
+def phase_source(node, k):
+    """A phase of the grid on the railway's side, behind its impedance."""
+    return Source.row(
+        node=node,
+        kind=SourceKind.GRID,
+        installed=1,
+        controlled=False,
+        rating_va=1.0,
+        grid=GridLaw.row(
+            no_load_voltage_v=cmath.rect(27_500.0 / math.sqrt(3.0), -k * 2.0 * math.pi / 3.0),
+            grid_impedance_ohm=GRID_OHM,
+            transformer_impedance_ohm=0j,
+        ),
+    )
+
+
+def by_links(sections, feeds, loads, system):
+    """A line of sections between nodes, fed at nodes by transformers of a ratio between two phases."""
+    parts = [SectionPart(*each, LINE_OHM_PER_M, 0.0) for each in sections]
+    first = 1 + max(part.end_node for part in parts)
+    phases = [phase_source(first + k, k) for k in range(3)]
+    links = [
+        LinkPart(
+            (node, first + "RST".index(pair[0]), first + "RST".index(pair[1])),
+            (1.0, -ratio, ratio),
+            UNIT_OHM * ratio**2,
+        )
+        for node, pair, ratio in feeds
+    ]
+    network = assemble(first + 3, parts, [], Source.array(phases), system, links=links)
+    twin = place(network, loads)
+    share, _ = solve(False, twin.network, twin.flow, twin.loads)
+    assert share == 1.0
+    return twin
+
+
 def test_stations_at_a_busbar_are_the_grid_s_phases_and_transformers_between_them():
     """Ideal transformers, as links, and three sources of 27.5/√3 kV behind Z₁ give the same voltages.
 
@@ -251,38 +290,42 @@ def test_stations_at_a_busbar_are_the_grid_s_phases_and_transformers_between_the
     weights 1 on the contact line, -1 and 1 on the two phases.
     """
     case, _ = solved(line_of([{**A, "busbar": "north"}, {**B, "busbar": "north"}]))
-    z1_ohm = 220e3**2 / 2500e6 * complex(0.1, math.sqrt(0.99)) / 64.0
-    r, s, t = (
-        Source.row(
-            node=4 + k,
-            kind=SourceKind.GRID,
-            installed=1,
-            controlled=False,
-            rating_va=1.0,
-            grid=GridLaw.row(
-                no_load_voltage_v=cmath.rect(27_500.0 / math.sqrt(3.0), -k * 2.0 * math.pi / 3.0),
-                grid_impedance_ohm=z1_ohm,
-                transformer_impedance_ohm=0j,
-            ),
-        )
-        for k in range(3)
-    )
-    unit_ohm = 0.08402777778 + 2.519432481j
-    network = assemble(
-        7,
-        [
-            SectionPart(0, 1, 0.0, 24.15e3, LINE_OHM_PER_M, 0.0),
-            SectionPart(2, 3, 24.15e3, 50e3, LINE_OHM_PER_M, 0.0),
-        ],
-        [],
-        Source.array([r, s, t]),
-        case.network.system,
-        links=[
-            LinkPart((0, 4, 5), (1.0, -1.0, 1.0), unit_ohm),
-            LinkPart((3, 5, 6), (1.0, -1.0, 1.0), unit_ohm),
-        ],
-    )
-    twin = place(network, constant_loads([1e3 * km for km in PLACES_KM], POWERS))
-    share, _ = solve(False, twin.network, twin.flow, twin.loads)
-    assert share == 1.0
+    sections = [(0, 1, 0.0, 24.15e3), (2, 3, 24.15e3, 50e3)]
+    loads = constant_loads([1e3 * km for km in PLACES_KM], POWERS)
+    twin = by_links(sections, [(0, "RS", 1.0), (3, "ST", 1.0)], loads, case.network.system)
     assert twin.train_voltage == pytest.approx(case.train_voltage * TURNS, abs=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_stations_at_a_busbar_agree_with_transformers_between_phases(seed):
+    """Three islands, the middle one fed at both ends; any phases, ratios, trains that draw or feed."""
+    random = np.random.default_rng(seed)
+    pairs = random.choice(["RS", "ST", "TR", "SR", "TS", "RT"], 3)
+    ratios = random.uniform(0.98, 1.02, 3)
+    fed = [(0.0, 0), (24.5, 1), (45.0, 1), (50.0, 2)]
+    stations = [
+        {
+            **STATION,
+            "name": f"station {k}",
+            "position_km": km,
+            "phases": pairs[island],
+            "busbar": "north",
+            "no_load_voltage_kv": 27.5 * ratios[island],
+        }
+        for k, (km, island) in enumerate(fed)
+    ]
+    supply = line_of(stations, [(24.0, 24.2), (45.3, 45.5)])
+    places_km = np.sort(random.uniform(1.0, 49.0, 5))
+    powers = random.uniform(-2e6, 7e6, 5) + 1j * random.uniform(0.0, 1e6, 5)
+    case, _ = solved(supply, list(powers), list(places_km))
+    nodes_m = [(0, 1, 0.0, 24.1e3), (2, 3, 24.1e3, 24.5e3), (3, 4, 24.5e3, 45e3)]
+    nodes_m += [(4, 5, 45e3, 45.4e3), (6, 7, 45.4e3, 50e3)]
+    feeds = [
+        (node, pairs[island], ratios[island])
+        for node, (_, island) in zip((0, 3, 4, 7), fed, strict=True)
+    ]
+    loads = constant_loads(list(1e3 * places_km), list(powers))
+    twin = by_links(nodes_m, feeds, loads, case.network.system)
+    islands = np.searchsorted([24.1, 45.4], places_km)
+    turns = np.exp(1j * np.array([angle_of(str(pairs[k])) for k in islands]))
+    assert twin.train_voltage == pytest.approx(case.train_voltage * turns, abs=1e-5)
