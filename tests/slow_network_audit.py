@@ -19,6 +19,7 @@ from tpss.powerflow.bundles import NO_BUNDLES
 from tpss.powerflow.groups import sections_of
 from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.run.run import Outcome
 from tpss.sources.kinds import SourceKind
 from tpss.sources.mixed import TYPES
@@ -235,6 +236,9 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     ):
         own = sources.kind == kind
         asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
+    if network.shared != NO_SHARED_GRIDS:
+        current_a = np.where(out, 0.0, (p + 1j * q) / np.where(out, 1.0, node_v)).conj()
+        asked_v -= current_a @ network.shared.mutual_ohm.T
     return largest(np.where(out, 0.0, node_v - asked_v) / network.system.base_voltage_v)
 
 

@@ -19,6 +19,10 @@ KINDS = {
         "Transformers",
         "`line_transformer` and `station_transformer` of `supply.high_voltage_line`",
     ),
+    "station_transformers": (
+        "Transformers of stations",
+        "`transformer` of `supply.transformer_stations`",
+    ),
     "converters": ("Converters", "`type` of `supply.converter_stations`"),
     "rectifiers": ("Rectifiers", "`type` of `supply.rectifier_stations`"),
     "locomotives": ("Trains", "`model` of a train"),

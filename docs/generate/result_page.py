@@ -157,6 +157,16 @@ OF_LOSSES = {
     "converter_losses": "only where types of converters describe what they lose: totals of the table of "
     "that name, the `origins` of the losses, losses by `stations`, and those `not_described`",
 }
+TRANSFORMER_LOSSES = {
+    "station": "transformer station",
+    "from_grid_mwh": "energy from the grid, at the terminals of the transformers",
+    "to_grid_mwh": "energy to it",
+    "burnt_mwh": 'energy that a station with `feedback = "resistor"` burns: what would go to the grid',
+    "load_mwh": "lost in the windings of its transformers, included in what is taken or given",
+    "no_load_mwh": "lost by its transformers without load, likewise",
+    "grid_mwh": "lost in the resistance of the grid before the terminals, not included; below 0 where "
+    "currents of another station at the busbar return by it",
+}
 CONVERTER_LOSSES = {
     "station": "converter station",
     "from_grid_mwh": "energy from the 50 Hz grid",
@@ -269,6 +279,8 @@ def page() -> str:
         described(STATIONS, result.stations, "column"),
         "### `converter_losses`, a row a converter station that describes losses",
         described(CONVERTER_LOSSES, result.converter_losses, "column"),
+        "### `transformer_losses`, a row a transformer station that tells its losses without load",
+        described(TRANSFORMER_LOSSES, result.transformer_losses, "column"),
         "### `thermal`, a row a piece of equipment with a [rating](../how-to/thermal.md)",
         described(THERMAL, result.thermal, "column"),
         "### `thermal_windows`, a row a piece of equipment with a rating and window",

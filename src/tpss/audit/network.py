@@ -13,6 +13,7 @@ from tpss.audit.balances import Scratch, audit_demand, worst
 from tpss.audit.bundles import audit_bundles, pass_bundled
 from tpss.audit.coupled import audit_groups, pass_trains
 from tpss.audit.links import audit_links
+from tpss.audit.sharing import drop_by_others
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.bundle_points import is_bundled
@@ -184,5 +185,6 @@ def audit_sources(
         current = (power / voltage).conjugate()
         voltage = terminal_voltage(network.bundles, s, voltage, current)
         off, _, _ = residual(voltage, current, row.active_converters, source, False)
+        off += drop_by_others(network.shared, s, step, model, recording)
         per_unit = magnitude(off) / network.system.base_voltage_v
         figures.converter_residual = worst(figures.converter_residual, per_unit)

@@ -27,6 +27,7 @@ from tpss.model.parting import (
     renamed,
     representatives,
 )
+from tpss.model.shared_grids import mutual_impedances_ohm
 from tpss.model.sources import build_sources
 from tpss.powerflow.bundles import BundlePart, edges_of_bundles
 from tpss.powerflow.groups import edges_within
@@ -200,7 +201,7 @@ def build_supply(
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
     network = assemble(
         *parts, room=plan.room(), groups=plan.coupled, links=plan.links, bundles=plan.bundles,
-        flat_pu=plan.flat_pu, inner_ohm=plan.inner_ohm,
+        flat_pu=plan.flat_pu, inner_ohm=plan.inner_ohm, mutual_ohm=mutual_impedances_ohm(supply),
     )  # fmt: skip
     return mark_unfed(network), plan
 
@@ -242,6 +243,7 @@ def joined_network(
         bundles=plan.bundles,
         flat_pu=plan.flat_pu,
         inner_ohm=plan.inner_ohm,
+        mutual_ohm=mutual_impedances_ohm(supply),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
 

@@ -39,6 +39,12 @@ from tpss.powerflow.bundles import (
 )
 from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
 from tpss.powerflow.links import LinkPart, Links, add_admittances, edges_of_links, links_of
+from tpss.powerflow.shared_grids import (
+    SharedGrids,
+    edges_of_shared,
+    shared_grids,
+    stamp_shared,
+)
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -249,7 +255,7 @@ class Network(NamedTuple):
     `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
-    """What the branches put into each block of the linear system. [S]"""
+    """What the branches, and grids of several sources, put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups
@@ -258,6 +264,8 @@ class Network(NamedTuple):
     """Lumped elements between several nodes."""
     bundles: Bundles
     """Of sections that are conductors side by side."""
+    shared: SharedGrids
+    """Grids of several sources."""
 
 
 class Flow(NamedTuple):
@@ -355,6 +363,7 @@ def assemble(
     bundles: Sequence[BundlePart] = (),
     flat_pu: Sequence[float] = (),
     inner_ohm: Sequence[float] = (),
+    mutual_ohm: Complexes | None = None,
 ) -> Network:
     """Network from its parts.
 
@@ -375,12 +384,14 @@ def assemble(
         None of their sections is one of a group.
     flat_pu, inner_ohm : sequences of float
         Of nodes and sources, where there are bundles: see `Bundles`.
+    mutual_ohm : array of complex, shape (sources, sources), optional
+        What sources that share a grid do to each other, see `shared_grids`. [Ω]
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
     edges += edges_of_links(links) + edges_of_bundles(bundles, ends)
-    edges += room
+    edges += [*room, *edges_of_shared(mutual_ohm, sources["node"].tolist())]
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]
@@ -399,6 +410,8 @@ def assemble(
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
     linked = links_of(links)
     add_admittances(linked, place, admittance_s)
+    shared = shared_grids(mutual_ohm, sources)
+    stamp_shared(admittance_s, shared, sources, place)
 
     return Network(
         system=system,
@@ -414,6 +427,7 @@ def assemble(
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
         links=linked,
         bundles=bundles_of(bundles, ends, place, np.array(flat_pu), np.array(inner_ohm)),
+        shared=shared,
     )
 
 

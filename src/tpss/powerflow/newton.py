@@ -6,6 +6,7 @@ kinds of equation, all complex:
     section s from a to b:  E_s(V_a, I_s) = V_b            (`chain` pushes V_a, I_s to the end E_s)
     node without source:    Σ leaving currents = 0
     node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
+    ... that shares a grid: J + Σ Y (V - E) = 0, see `shared_grids`
     node that is not fed:   V = 0
     node that follows:      V = V of another node, of which it is a second name
 
@@ -73,6 +74,7 @@ from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.links import leave_by_links
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
+from tpss.powerflow.sharing import balance_of_sharing, shares_its_grid
 from tpss.sources.kinds import residual
 
 CLOSE = 1e-4
@@ -191,6 +193,8 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
             return follow(n, FOLLOWS - s, network, flow)
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
+    if shares_its_grid(network.shared, s):
+        return balance_of_sharing(network.shared, n, s, network, flow)
     running = flow.sources[at(s)].running
     voltage_v = terminal_voltage(network.bundles, s, node.voltage_v, node.leaving_current_a)
     value, by_voltage, by_current = residual(

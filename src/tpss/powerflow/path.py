@@ -236,6 +236,7 @@ def solve_on_way(
         network.groups,
         network.links,
         network.bundles,
+        network.shared,
     )
     if steps == LINKED:
         return newton_linked(scale, between, flow, loads)

@@ -17,6 +17,7 @@ from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
 from tpss.results.thermal.judge import Thermal, thermal_of
+from tpss.results.transformer_losses import transformer_losses
 from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
 
@@ -111,6 +112,11 @@ class Result:
     def converter_losses(self) -> pd.DataFrame:
         """One row per converter station that describes losses: the 50 Hz side; otherwise empty."""
         return converter_losses(self.dataset, self.scenario)
+
+    @cached_property
+    def transformer_losses(self) -> pd.DataFrame:
+        """One row per transformer station that tells its losses without load; otherwise empty."""
+        return transformer_losses(self.dataset, self.scenario)
 
     @cached_property
     def equipment(self) -> Thermal:

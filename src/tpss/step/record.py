@@ -17,6 +17,7 @@ from tpss.powerflow.bundles import EARTH, Bundles
 from tpss.powerflow.coupled import is_coupled, losses_of_groups
 from tpss.powerflow.links import record_links
 from tpss.powerflow.network import Flow, Network, Standing
+from tpss.powerflow.sharing import losses_by_others
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
@@ -212,7 +213,9 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         row.station_reactive_power = power.imag
         row.active_converters = running
         row.converter_loading = loading(power, running, source.rating_va)
-        row.station_losses = losses(node.leaving_current_a, running, source)
+        current = node.leaving_current_a
+        row.station_losses = losses(current, running, source)
+        row.station_losses += losses_by_others(network.shared, s, network, flow)
     lost_w = 0.0
     for b in range(network.branches.size):
         branch = network.branches[at(b)]

@@ -18,6 +18,7 @@ from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
+from tpss.report.drawings.unbalance import unbalance
 from tpss.report.drawings.voltage import voltage_along_line, voltage_envelope
 from tpss.report.palette import COLOURS
 from tpss.report.render.static import as_text, render
@@ -38,6 +39,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
+    "unbalance": ("run", lambda run, *_: unbalance({"": run})),
     "braking": ("run", lambda run, *_: braking({"": run})),
     "thermal": ("run", lambda run, *_: thermal({"": run})),
     "rails": ("run", lambda run, *_: rail_voltage(run)),
@@ -113,6 +115,8 @@ def draw(
 
 def applies(name: str, result: Result) -> bool:
     """Whether a figure shows something that the scenario of a result describes."""
+    if name == "unbalance":
+        return len(result.standards.unbalance) > 0
     tables = {"converter-losses": "converter_losses", "braking": "regeneration", "rails": "rails"}
     return name not in tables or len(getattr(result, tables[name])) > 0
 

@@ -26,6 +26,7 @@ from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, System, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
+from tpss.units import kilometres
 
 Station = ConverterStation | TransformerStation | MixedStation | RectifierStation
 """A feeding station of any kind."""
@@ -220,14 +221,47 @@ class Supply(Part):
 
     @property
     def stations(self) -> tuple[Station, ...]:
-        """All feeding stations, in the order of the results."""
-        return tuple(station for key in STATIONS for station in getattr(self, key))
+        """All feeding stations, in the order of the results; one with a connection is two."""
+        return tuple(
+            part
+            for key in STATIONS
+            for station in getattr(self, key)
+            for part in self._parts_of(station)
+        )
+
+    def _parts_of(self, station: Station) -> tuple[Station, ...]:
+        """The stations that a station counts as."""
+        if not isinstance(station, TransformerStation) or station.connection is None:
+            return (station,)
+        here = self._neutral_section_of(station)
+        return (station,) if here is None else station.sides((here.from_km, here.to_km))
+
+    def _neutral_section_of(self, station: TransformerStation) -> NeutralSection | None:
+        """The neutral section at which a station stands."""
+        for each in self.neutral_sections:
+            on_its_line = None in (each.line, station.line) or each.line == station.line
+            if on_its_line and each.from_km <= station.position_km <= each.to_km:
+                return each
+        return None
 
     @property
     def converters_in_use(self) -> tuple[ConverterType, ...]:
         """Types of converters of all stations, each as often as a station has it."""
         mixed = (each.type for station in self.mixed_stations for each in station.units)
         return (*(station.type for station in self.converter_stations), *mixed)
+
+    @model_validator(mode="after")
+    def _connections_have_a_neutral_section(self) -> Self:
+        for station in self.transformer_stations:
+            if station.connection and self._neutral_section_of(station) is None:
+                raise fault(
+                    f"{station.name} feeds two sections by its {station.connection} connection, and "
+                    f"there is no neutral section at {kilometres(station.position_km)} km, where it "
+                    "stands",
+                    "add one to neutral_sections around that place, or place the station at one",
+                )
+        demand_unique(self.stations, "name")
+        return self
 
     @model_validator(mode="after")
     def _parts_fit_the_current(self) -> Self:
