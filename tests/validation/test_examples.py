@@ -163,3 +163,18 @@ def test_the_example_with_a_neutral_section_has_the_unbalance_of_its_connections
     assert 45.0 < base.standards.neutral_sections.mean_kv[0] < 47.6
     fed_back = base.transformer_losses.to_grid_mwh.sum()
     assert fed_back > 0.1
+
+
+def test_the_example_of_autotransformers_has_rails_below_their_limit_and_neutral_currents():
+    """A single conductor of the equivalent impedance has the same lowest voltage within 1 %."""
+    scenario = tpss.load_scenario(EXAMPLES / "hs_2x25kv.toml")
+    result = tpss.simulate(scenario)
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    assert 5.0 < result.rails.permanent_v.max() < 60.0
+    units = result.autotransformers
+    assert units.position_km.tolist() == [10.0, 20.0, 30.0, 40.0, 50.0]
+    assert (units.highest_neutral_a == 2.0 * units.highest_winding_a).all()
+    assert 0.1 < units.peak_loading.max() < 1.5
+    one = tpss.simulate(scenario.variant("one_conductor"))
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (result, one)]
+    assert lowest[0] == pytest.approx(lowest[1], rel=0.01)

@@ -159,7 +159,8 @@ def _add_station(k: int, station: Station, supply: Supply, places: _Places) -> N
     if isinstance(station, TransformerStation) and station.secondary == "2x":
         feeder = places.beside(contact, FEEDER)
         half = 2.0 * half_impedance_ohm(station)
-        named = STATION_WINDING, station.name
+        named, first = (STATION_WINDING, station.name), len(plan.links)
+        plan.station_links[k] = [first, first + 1]
         plan.add_link(*named, (contact, feeder, rails), (1.0, 1.0, -2.0), half)
         plan.add_link(*named, (contact, feeder, terminals), (1.0, -1.0, -2.0), half)
         plan.inner_ohm.append(0.0)

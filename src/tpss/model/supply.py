@@ -81,6 +81,8 @@ class SupplyPlan:
     links: list[LinkPart] = field(default_factory=list)
     link_names: list[str] = field(default_factory=list)
     link_kinds: list[str] = field(default_factory=list)
+    station_links: dict[int, list[int]] = field(default_factory=dict)
+    """Links that are windings of a station, by its number: they are out when it is."""
     bundles: list[BundlePart] = field(default_factory=list)
     """Sections that are conductors side by side."""
     rails_beside: dict[int, int] = field(default_factory=dict)
