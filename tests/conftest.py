@@ -29,13 +29,18 @@ EXAMPLE_SCENARIOS = sorted(
 @pytest.hookimpl(tryfirst=True)
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """A process for each core if all tests are run; a part is done before they would have started."""
-    return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+    return None if are_all(config) else 0
+
+
+def are_all(config: pytest.Config) -> bool:
+    """Whether all tests are run."""
+    return config.args_source is pytest.Config.ArgsSource.TESTPATHS
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile the kernels of every run before the processes start that would each do so.
 
-    What few runs need is compiled beside the first tests.
+    What only some of all tests need is compiled beside the first of them.
     """
     compile_once()
     if config.option.tx and not hasattr(config, "workerinput"):
@@ -47,8 +52,9 @@ def pytest_configure(config: pytest.Config) -> None:
         if not are_ready():
             print("Compiling the numerical kernels, once.", file=sys.stderr)
             tpss.simulate(short_line())
-        warm_up = subprocess.Popen([sys.executable, Path(__file__).with_name("warm_up.py")])
-        config.add_cleanup(warm_up.wait)
+        if are_all(config):
+            warm_up = subprocess.Popen([sys.executable, Path(__file__).with_name("warm_up.py")])
+            config.add_cleanup(warm_up.wait)
 
 
 @pytest.fixture(params=["compiled", "plain"])
