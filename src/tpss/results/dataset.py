@@ -16,7 +16,7 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import RECORDED, REGENERATED, Recorded
+from tpss.step.recorded import LINKED, RECORDED, REGENERATED, Recorded
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -47,6 +47,12 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         variables |= {
             each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
             for each in REGENERATED
+        }
+    if outcome.recording.links.size:
+        polar = _polar(np.asarray(outcome.recording.links), "link", ...)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, values, described(each))
+            for each, values in zip(LINKED, polar, strict=True)
         }
     if (off_s := outcome.recording.without_power_s).size:
         words = {"units": "s", "long_name": "time with the power off, because of neutral sections"}
@@ -201,8 +207,13 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "node_line": ("node", np.array(plan.node_line), of("1", "index of its line")),
         "station_line": ("station", np.array(layout.station_line), of("1", "index of its line")),
     }
+    links = {
+        "link": ("link", plan.link_names, of("", "transformer between several nodes")),
+        "link_kind": ("link", plan.link_kinds, of("", "what it is")),
+    }
     return {
         **(lines if len(layout.lines) > 1 else {}),
+        **(links if plan.links else {}),
         "time": ("time", outcome.instants_s, of("s", "time from the start")),
         "train": ("train", [train.name for train in trains], of("", "train")),
         "service": ("train", [train.service for train in trains], of("", "service of the train")),

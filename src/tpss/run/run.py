@@ -297,6 +297,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         waits_for=kept.waits_for[:rows, :count],
         regeneration=kept.regeneration[:rows, :count],
         without_power_s=kept.without_power_s[:rows, :count],
+        links=kept.links[:rows],
     )
     return Outcome(
         status=status,

@@ -140,6 +140,13 @@ REGENERATED = (
 )  # fmt: skip
 """What is recorded besides where trains have electric brakes."""
 
+LINKED = (
+    Recorded("link_current", "link", "A", "current of a transformer between several nodes",
+             remark="on the side of the contact line", phasor="link"),
+    Recorded("link_angle", "link", "rad", "angle of that current", phasor="link"),
+)  # fmt: skip
+"""What is recorded besides where transformers stand between several nodes."""
+
 
 def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
     own = (field for each in table if each.of == what for field in each.fields)
@@ -173,3 +180,7 @@ class NodeRow(Row, of="node"):
 
 class StationRow(Row, of="station"):
     """Row of a feeding station."""
+
+
+class LinkRow(Row, of="link", table=LINKED):
+    """Row of a link."""
