@@ -267,14 +267,15 @@ def with_one_retardation(trains: Document) -> None:
 
 @st.composite
 def sound_scenarios(
-    draw: Draw, feed_back: bool = False, direct: bool = False, apart: bool = False
-) -> Document:
+    draw: Draw, feed_back: bool = False, direct: bool = False, network: bool = False,
+    apart: bool = False,
+) -> Document:  # fmt: skip
     """A scenario without faults, but for trains that may be placed too fast to stop.
 
-    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.  All trains
-    have electric brakes if they are to feed back, and half of the equipment says more of itself.  A
-    railway of direct current has the lines, the traffic and the outages of any other; where conductors
-    are apart, it has rails of its own, as those of 25 kV have.
+    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network, or all if they
+    are to be.  All trains have electric brakes if they are to feed back, and half of the equipment says
+    more of itself.  A railway of direct current has the lines, the traffic and the outages of any other;
+    where conductors are apart, it has rails of its own, as those of 25 kV have.
     """
     begin_km = draw(BEGINNINGS_KM)
     line = draw(lines())
@@ -306,7 +307,7 @@ def sound_scenarios(
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
         document["signalling"] = draw(SIGNALLING)
     document = document if begin_km is None else moved(document, begin_km)
-    if draw(st.integers(0, 3)) == 3:
+    if draw(st.integers(0, 3)) == 3 or network:
         document = into_network(draw, document, lines())
         give_tracks(Random(repr(document)), document)  # no draw: all else is as it was without
     if "signalling" in document and draw(st.booleans()):
@@ -345,6 +346,11 @@ def scenarios_of_conductors() -> st.SearchStrategy[Document]:
 def scenarios_that_feed_back() -> st.SearchStrategy[Document]:
     """Sound scenarios all of whose trains have electric brakes."""
     return sound_scenarios(feed_back=True)
+
+
+def network_scenarios() -> st.SearchStrategy[Document]:
+    """Sound scenarios of several lines that meet."""
+    return sound_scenarios(network=True)
 
 
 def direct_scenarios() -> st.SearchStrategy[Document]:
