@@ -97,6 +97,15 @@ KINDS = {
         "type",
         OWN_TABLE,
     ),
+    "station_transformers": Kind(
+        "Transformers of stations at a grid of the railway's frequency",
+        "tpss.scenario.supply",
+        "StationTransformer",
+        ("rated_mva", "short_circuit_percent", "load_loss_kw", "no_load_loss_kw"),
+        "[[supply.transformer_stations]]",
+        "transformer",
+        OWN_TABLE,
+    ),
     "transformers": Kind(
         "Transformers between high-voltage line and contact line",
         "tpss.scenario.supply",

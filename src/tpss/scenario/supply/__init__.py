@@ -10,7 +10,7 @@ from tpss.scenario.supply.mixed_station import ConverterUnits, MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
-from tpss.scenario.supply.transformer_station import TransformerStation
+from tpss.scenario.supply.transformer_station import StationTransformer, TransformerStation
 
 __all__ = [
     "Autotransformers",
@@ -31,6 +31,7 @@ __all__ = [
     "RectifierType",
     "SectionBreak",
     "Station",
+    "StationTransformer",
     "Supply",
     "System",
     "Transformer",
