@@ -6,6 +6,7 @@ import pytest
 import tpss
 from tpss import library
 from tpss.results.grid_side import StationSide, powers_of, sides_of
+from tpss.results.notes import notes
 from tpss.scenario.supply import RectifierType
 
 from direct_scenarios import direct_scenario
@@ -185,3 +186,13 @@ def test_thyristors_before_a_transformer_hold_their_voltage_and_bend_behind_it()
     assert meets_kv == pytest.approx(np.interp(meets_a, *zip(*natural.points, strict=True)))
     assert kind.points[-1] == natural.points[-1]
     assert run(**{TYPE: held}).audit["passed"]
+
+
+def test_one_that_is_judged_by_its_overloads_is_not_noted_besides():
+    """Of 900 A it gives more for steps on end: without a rating a note says so, in MW."""
+    kind = {"no_load_voltage_kv": 0.825, "resistance_ohm": 0.02, "rated_current_a": 900.0}
+    without = [each for each in notes(run(**{TYPE: kind})) if "rating" in each]
+    assert without
+    assert all(" MW at " in each for each in without)
+    with_rating = notes(run(**{TYPE: {**kind, "rating": BEARS}}))
+    assert not [each for each in with_rating if "of its rating" in each]
