@@ -9,6 +9,11 @@ from tpss.units import label
 
 KINDS = {
     "catenaries": ("Contact-line systems", "`supply.catenary`"),
+    "contact_lines": (
+        "Contact lines and third rails of a direct current",
+        "`contact_line` of `supply.catenary`",
+    ),
+    "rails": ("Running rails", "`rails` of `supply.catenary`"),
     "high_voltage_lines": ("High-voltage lines", "`supply.high_voltage_line.type`"),
     "transformers": (
         "Transformers",
@@ -23,6 +28,7 @@ KINDS = {
     "locomotives": ("Trains", "`model` of a train"),
     "systems": ("Electrification systems", "`supply.system`"),
     "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),
+    "rail_limits": ("Limits of rails", "`standards.rails`, by which the result is judged"),
     "wires": ("Wires", "`wire` of conductors in a [geometry](geometry.md)"),
 }
 """Title of each kind, and the keys that take its names."""

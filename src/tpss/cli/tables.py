@@ -13,6 +13,7 @@ from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
+from tpss.results.rail_words import rails_in_words
 from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import THERMAL, Result
 from tpss.results.step_words import step_lines
@@ -42,6 +43,8 @@ def print_result(result: Result, console: Console) -> None:
     print_table("Feeding stations", "station", columns, rows, console)
     if len(result.converter_losses):
         _print_losses(result.converter_losses, console)
+    if len(result.autotransformers):
+        _print_autotransformers(result.autotransformers, console)
     _print_grid(result, console)
     for line in key_figures(result):
         say(console, line)
@@ -79,6 +82,15 @@ _STATION_COLUMNS = (
     Column("mean_loading", "mean load", "%", 1, 100.0),
     Column("peak_loading", "peak load", "%", 1, 100.0),
     Column("mean_converters", "converters", "mean", 1),
+)
+
+_AUTOTRANSFORMER_COLUMNS = (
+    Column("line", "on", "", 0),
+    Column("highest_winding_a", "winding", "A", 0),
+    Column("highest_neutral_a", "neutral", "A", 0),
+    Column("peak_loading", "peak load", "%", 1, 100.0),
+    Column("loading_15_min", "15 min", "%", 1, 100.0),
+    Column("loading_60_min", "60 min", "%", 1, 100.0),
 )
 
 _RARE = ("to_grid_mwh", "burnt_mwh", "auxiliaries_mwh")
@@ -146,6 +158,12 @@ def _print_losses(found: pd.DataFrame, console: Console) -> None:
     occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
     title = "50 Hz side of converter stations"
     print_table(title, "station", occurs, named_rows(found, "station"), console)
+
+
+def _print_autotransformers(found: pd.DataFrame, console: Console) -> None:
+    places = [f"{km:g} km" for km in found.position_km]
+    rows = named_rows(found.assign(place=places), "place")
+    print_table("Autotransformers", "at", _AUTOTRANSFORMER_COLUMNS, rows, console)
 
 
 def _print_grid(result: Result, console: Console) -> None:
@@ -223,6 +241,7 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
+    lines += rails_in_words(result)
     if result.standards.unbalance_in_words:
         lines.append(f"Unbalance: {result.standards.unbalance_in_words}")
     lines += thermal_in_words(summary.get(THERMAL))

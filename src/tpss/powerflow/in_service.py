@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
+from tpss.powerflow.bundles import without_dead_conductors
 from tpss.powerflow.links import add_admittances, ends_of, without_links
 from tpss.powerflow.network import UNFED, Network
 from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
@@ -64,7 +65,9 @@ def mark_unfed(network: Network) -> Network:
     if not unfed.any():
         return network
     source_of_node = np.where(unfed, UNFED, network.source_of_node)
-    return network._replace(source_of_node=source_of_node)
+    dead = unfed[network.sections["start_node"]]
+    bundles = without_dead_conductors(network.bundles, dead)
+    return network._replace(source_of_node=source_of_node, bundles=bundles)
 
 
 def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:

@@ -54,6 +54,14 @@ from tpss.numerics.pairs import (
     scaled,
     squared,
 )
+from tpss.powerflow.bundle import direct_bundles, evaluate_bundles
+from tpss.powerflow.bundle_points import is_bundled
+from tpss.powerflow.bundle_state import (
+    mark_bundles,
+    step_bundles,
+    terminal_voltage,
+    through_terminals,
+)
 from tpss.powerflow.chain import (
     CHECK,
     FLAT,
@@ -188,10 +196,12 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
     if shares_its_grid(network.shared, s):
         return balance_of_sharing(network.shared, n, s, network, flow)
     running = flow.sources[at(s)].running
+    voltage_v = terminal_voltage(network.bundles, s, node.voltage_v, node.leaving_current_a)
     value, by_voltage, by_current = residual(
-        node.voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
+        voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
     )
     if derivatives:
+        by_current = through_terminals(network.bundles, s, by_voltage, by_current)
         _turn_source_row(n, value, by_voltage, by_current, network, flow)
     return squared(value) * network.system.per_square_volt
 
@@ -249,7 +259,7 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, s):
+        if is_coupled(network.groups, s) or is_bundled(network.bundles, s):
             continue
         end_v = run_chain(s, scale, start, network, flow, loads)
         square, side = join_section(s, end_v, derivatives, network, flow)
@@ -258,6 +268,9 @@ def evaluate(
         merit += square
     largest, merit, sign = evaluate_groups(
         network.groups, largest, merit, sign, scale, start, network, flow, loads
+    )
+    largest, merit, sign = evaluate_bundles(
+        network.bundles, largest, merit, sign, scale, start, network, flow, loads
     )
     # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
@@ -282,6 +295,7 @@ def find_direction(network: Network, flow: Flow) -> float:
         change = end_v - apply(solution.transfer_p, solution.transfer_q, start_v) - solution.gap_v
         solution.direction_a = apply(solution.inverse_p, solution.inverse_q, change)
     direct_groups(network.groups, network, flow)
+    direct_bundles(network.bundles, network, flow)
     return sign
 
 
@@ -292,6 +306,7 @@ def mark_base(flow: Flow) -> None:
         flow.nodes[at(node)].base_v = flow.nodes[at(node)].voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].base_a = flow.sections[at(s)].current_a
+    mark_bundles(flow.bundles)
 
 
 @inlined
@@ -303,6 +318,7 @@ def take_step(size: float, flow: Flow) -> None:
     for s in range(flow.sections.size):
         section = flow.sections[at(s)]
         section.current_a = section.base_a + size * section.direction_a
+    step_bundles(flow.bundles, size)
 
 
 @inlined

@@ -22,6 +22,7 @@ from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
+from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
@@ -140,6 +141,7 @@ def report(
         *tables.of_converter_losses(result),
         *tables.of_transformer_losses(result),
         *tables.of_regeneration(result),
+        *tables.of_conductors(result),
         *(
             [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
             if len(result.thermal)
@@ -217,7 +219,15 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
         for key, (describe, height) in OVER_TIME.items()
         if (own := shown.get(key, runs))
     }
-    return {**drawn, **_braked(runs)}
+    return {**drawn, **_braked(runs), **_rails(runs)}
+
+
+def _rails(runs: Mapping[str, Result]) -> dict[str, Figure]:
+    """Voltage of the rails of a single run; nothing unless they are conductors of their own."""
+    if len(runs) > 1 or not all(len(run.rails) for run in runs.values()):
+        return {}
+    drawing = rail_voltage(next(iter(runs.values())))
+    return {"rails": render(drawing, 60 + 320 * len(drawing.panels))}
 
 
 def _braked(runs: Mapping[str, Result]) -> dict[str, Figure]:

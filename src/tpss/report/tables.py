@@ -107,6 +107,16 @@ def of_converter_losses(result: Result) -> list[Table]:
     return [of_frame("converter-losses", caption, found)] if len(found) else []
 
 
+def of_conductors(result: Result) -> list[Table]:
+    """Rails, stray current and autotransformers, where there are any."""
+    tables = {
+        "rails": ("Voltage of the rails to earth", result.rails),
+        "stray_current": ("Stray current", result.stray_current),
+        "autotransformers": ("Autotransformers", result.autotransformers),
+    }
+    return [of_frame(name, title, frame) for name, (title, frame) in tables.items() if len(frame)]
+
+
 def of_transformer_losses(result: Result) -> list[Table]:
     """The grid's side of transformer stations, where any tells its losses without load."""
     found = result.transformer_losses
@@ -206,6 +216,7 @@ BRAKED = {
     "friction_mwh": "braked by friction",
     "machine_losses_mwh": "lost in machines that brake",
     "refused_mwh": "refused by the line",
+    "rheostat_mwh": "burnt in rheostats of trains",
     "own_use_mwh": "own use of trains that brake",
     "fed_back_mwh": "fed back by trains",
     "used_by_others_mwh": "of it used by other trains and the line",

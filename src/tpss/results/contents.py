@@ -31,6 +31,9 @@ TABLE_PLACES = {
     "stations": "stations",
     "regeneration": "regeneration",
     "converter_losses": "converter_losses",
+    "rails": "rails",
+    "stray_current": "stray_current",
+    "autotransformers": "autotransformers",
     "transformer_losses": "transformer_losses",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
@@ -46,7 +49,7 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "unbalance", "braking", "thermal", "energy",
+    "stations", "converters", "converter-losses", "unbalance", "braking", "thermal", "rails", "energy",
     "effort",
 )  # fmt: skip
 

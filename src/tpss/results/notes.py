@@ -131,21 +131,28 @@ def _stations_that_trip(result: Result) -> set[str]:
     return {relay.protected.name for relay in station_relays(result.scenario)}
 
 
+def _rated_rectifiers(result: Result) -> set[str]:
+    """Names of rectifier stations whose ratings say how long they bear how much: they are judged."""
+    stations = result.scenario.supply.rectifier_stations
+    return {each.name for each in stations if each.type.rating and each.type.rating.overloads}
+
+
 def _overloads(result: Result) -> Iterator[str]:
     """Stations whose running converters or transformers were above their rating for several steps."""
+    unit = "MW" if result.scenario.supply.is_direct else "MVA"
     data, h = result.dataset, step_s(result.dataset) / 60.0
     loading = step_values(data, "converter_loading")
     apparent_mva = np.hypot(*_station_powers_mw(result))
-    tripping = _stations_that_trip(result)
+    tripping, judged = _stations_that_trip(result), _rated_rectifiers(result)
     for i, name in enumerate(data.station.to_numpy()):
         above = loading[:, i] > 1.0
-        if above.sum() < 2:
+        if above.sum() < 2 or (name in judged and name not in tripping):
             continue
         worst = int(np.nanargmax(loading[:, i]))
         times = np.flatnonzero(above)
         yield (
             f"{name} was loaded to {100.0 * loading[worst, i]:.0f} % of its rating "
-            f"({apparent_mva[worst, i]:.1f} MVA at {worst * h:.2f} min), and above 100 % for "
+            f"({apparent_mva[worst, i]:.1f} {unit} at {worst * h:.2f} min), and above 100 % for "
             f"{above.sum() * h:.2f} min between {times[0] * h:.2f} and {(times[-1] + 1) * h:.2f} min; "
             f"{'it trips by its overloads' if name in tripping else BEYOND}"
         )

@@ -10,7 +10,9 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results import store, tables
+from tpss.results.autotransformers import autotransformers
 from tpss.results.converter_losses import converter_losses
+from tpss.results.rails import rails, stray_current
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
@@ -90,6 +92,21 @@ class Result:
     def regeneration(self) -> pd.DataFrame:
         """One row per train: what it brakes and where that goes; empty without electric brakes."""
         return regeneration(self.dataset, self.scenario)
+
+    @cached_property
+    def rails(self) -> pd.DataFrame:
+        """One row per place: voltage of the rails to earth; empty unless they are conductors."""
+        return rails(self.dataset, self.scenario)
+
+    @cached_property
+    def stray_current(self) -> pd.DataFrame:
+        """One row per line: current that leaves the rails of a direct current; otherwise empty."""
+        return stray_current(self.dataset, self.scenario)
+
+    @cached_property
+    def autotransformers(self) -> pd.DataFrame:
+        """One row per autotransformer: its currents and its loading; empty if there are none."""
+        return autotransformers(self.dataset, self.scenario)
 
     @cached_property
     def converter_losses(self) -> pd.DataFrame:

@@ -85,6 +85,18 @@ class TransformerStation(FeedingStation):
     transformers: Whole = Field(
         default=1, ge=1, le=100, description="Number of equal transformers in parallel."
     )
+    secondary: Literal["1x", "2x"] = Field(
+        default="1x",
+        description="`2x`: two windings in series, between contact line, rails and feeder, each of "
+        "`no_load_voltage_kv`; with `supply.conductors`.",
+    )
+    share_in_halves: Real = Field(
+        default=0.3,
+        ge=0.001,
+        le=1,
+        description="Share of a transformer's impedance that lies in the halves of such a secondary; "
+        "rarely published, an estimate.",
+    )
     grid_short_circuit_mva: Real | None = Field(
         default=None,
         gt=0,
