@@ -49,8 +49,8 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "unbalance", "braking", "thermal", "rails",
-    "energy", "effort",
+    "stations", "converters", "converter-losses", "unbalance", "braking", "thermal", "rails", "energy",
+    "effort",
 )  # fmt: skip
 
 
