@@ -24,6 +24,7 @@ from tpss.powerflow.groups import sections_of
 from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.outside import find_demands, find_residuals
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.powerflow.system import System
 
 Floats = npt.NDArray[np.float64]
@@ -136,6 +137,8 @@ class Equations:
     """Trains along the line, as in `Flow`."""
     running: Any
     """Converters, as in `Flow.sources`."""
+    mutual: Complexes
+    """Voltage that each source loses over the currents of others that share its grid."""
 
     @classmethod
     def of(cls, network: Network, flow: Flow, loads: Loads) -> "Equations":
@@ -143,12 +146,16 @@ class Equations:
         system = network.system
         base_admittance_s = system.base_power_va / system.base_voltage_v**2
         serves = network.sources["installed"] > 0
+        mutual_ohm = np.zeros((serves.size,) * 2, dtype=complex)
+        if network.shared != NO_SHARED_GRIDS:
+            mutual_ohm = network.shared.mutual_ohm
         return cls(
             admittance=admittance_matrix(network, flow) / base_admittance_s,
             network=network._replace(sources=network.sources[serves]),
             loads=loads,
             standing=flow.standing.copy(),
             running=flow.sources[serves],
+            mutual=mutual_ohm[np.ix_(serves, serves)] * base_admittance_s,
         )
 
     @property
@@ -198,7 +205,7 @@ class Equations:
         drawn, _ = self.demand(voltage)
         left[self.nodes :] += share * np.conj(drawn / voltage[self.nodes :])
         at = self.network.sources.node
-        left[at] = voltage[at] - self.law(voltage[at], current[at])
+        left[at] = voltage[at] - self.law(voltage[at], current[at]) + self.mutual @ current[at]
         return left
 
     def jacobian(self, voltage: Complexes, share: float) -> Floats:
@@ -220,6 +227,7 @@ class Equations:
         for s, node in enumerate(at):
             row = self.admittance[node]
             by_v[node], by_conjugate[node] = -f_i[s] * row, -f_i_conjugate[s] * row.conj()
+            by_v[node] += self.mutual[s] @ self.admittance[at]
             by_v[node, node] += 1.0 - f_v[s]
             by_conjugate[node, node] -= f_v_conjugate[s]
         plus, minus, n = by_v + by_conjugate, by_v - by_conjugate, self.buses

@@ -26,6 +26,7 @@ from .judge import judge, warm_up
 from .strategies import (
     direct_scenarios,
     network_scenarios,
+    scenarios_of_conductors,
     scenarios_that_feed_back,
     sound_scenarios,
     spoilt_scenarios,
@@ -42,6 +43,7 @@ KINDS = {
     "crowded": crowded_scenarios,
     "feeding back": scenarios_that_feed_back,
     "direct current": direct_scenarios,
+    "conductors": scenarios_of_conductors,
     "networks": network_scenarios,
 }
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
@@ -15,7 +16,14 @@ from tpss.scenario.scenario import Scenario
 REGENERATED = "regenerated_power"
 """Variable that a dataset has where trains have electric brakes."""
 
-PARTS = ("friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "fed_back_mwh")
+PARTS = (
+    "friction_mwh",
+    "machine_losses_mwh",
+    "refused_mwh",
+    "rheostat_mwh",
+    "own_use_mwh",
+    "fed_back_mwh",
+)
 """Columns into which `braked_mwh` is divided."""
 
 USES = ("used_by_others_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
@@ -38,9 +46,10 @@ def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     """One row per train: the work of all its brakes, its parts, and where what it feeds back goes.
 
     Friction brakes give what electric ones do not.  Of the work of these the machine loses a part; of
-    what it offers the line may refuse some, which friction brakes or a resistor take; the rest feeds the
-    train itself first, its auxiliaries, and its motors in the same step; then the line.  Empty unless
-    trains have electric brakes.
+    what it offers the line may not take some: `rheostat_mwh` of trains with a rheostat, which burn it,
+    and `refused_mwh` of others, whose friction brakes take over.  The rest feeds the train itself first,
+    its auxiliaries, and its motors in the same step; then the line.  Empty unless trains have electric
+    brakes.
 
     Of what all trains feed back in a step, stations take some, into the grid or resistors, and the rest
     is used by other trains or lost on the line.  Trains share these uses in proportion to what each one
@@ -80,21 +89,31 @@ def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
     """Energies by the names `TOTALS`, shape (trains,)."""
     stations = step_values(dataset, "station_active_power")
-    powers = powers_of(_recorded(dataset), stations, sides_of(scenario))
+    rheostats = have_rheostats(dataset.service.to_numpy().tolist(), scenario)
+    powers = powers_of(_recorded(dataset), stations, sides_of(scenario), rheostats)
     return {name: over_time(each, dataset) / J_PER_MWH for name, each in powers.items()}
+
+
+def have_rheostats(services: Sequence[str], scenario: Scenario) -> npt.NDArray[np.bool_]:
+    """Whether trains of services burn what the line does not take in a rheostat."""
+    brakes = {name: train.regeneration for name, train in scenario.trains_by_service().items()}
+    burn = {name for name, own in brakes.items() if own is not None and own.rest == "rheostat"}
+    return np.array([service in burn for service in services], dtype=bool)
 
 
 def _recorded(dataset: xr.Dataset) -> dict[str, Floats]:
     return {name: step_values(dataset, name) for name in RECORDED_POWERS}
 
 
-def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
+def parts_of(recorded: Mapping[str, Floats], rheostats: npt.NDArray[np.bool_]) -> dict[str, Floats]:
     """Power of the brakes and its parts, by the columns of their energies. [W], shape (steps, trains)
 
     Parameters
     ----------
     recorded : mapping of str to array, shape (steps, trains)
         What is recorded, by the names `RECORDED_POWERS`; NaN of trains that are not on the line. [W]
+    rheostats : array of bool, shape (trains,)
+        Whether they burn what the line does not take.
     """
     braked, electric, regenerated, refused, active = (
         np.nan_to_num(recorded[name]) for name in RECORDED_POWERS
@@ -104,14 +123,18 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
         "braked_mwh": braked,
         "friction_mwh": braked - electric,
         "machine_losses_mwh": electric - regenerated - refused,
-        "refused_mwh": refused,
+        "refused_mwh": np.where(rheostats, 0.0, refused),
+        "rheostat_mwh": np.where(rheostats, refused, 0.0),
         "own_use_mwh": regenerated - fed_back,
         "fed_back_mwh": fed_back,
     }
 
 
 def powers_of(
-    recorded: Mapping[str, Floats], station_w: Floats, sides: Sequence[StationSide]
+    recorded: Mapping[str, Floats],
+    station_w: Floats,
+    sides: Sequence[StationSide],
+    rheostats: npt.NDArray[np.bool_],
 ) -> dict[str, Floats]:
     """Those, and where what is fed back goes, by the names `TOTALS`. [W], shape (steps, trains)
 
@@ -123,8 +146,10 @@ def powers_of(
         Power that stations feed into the railway. [W]
     sides : sequence of StationSide
         What stations do with what is fed back.
+    rheostats : array of bool, shape (trains,)
+        As of `parts_of`.
     """
-    parts = parts_of(recorded)
+    parts = parts_of(recorded, rheostats)
     given = parts["fed_back_mwh"]
     total = given.sum(axis=1)
     taken = np.maximum(-np.nan_to_num(station_w), 0.0)
@@ -155,6 +180,7 @@ def in_words(totals: dict[str, Any]) -> str:
         "resistors of stations": totals["burnt_in_stations_mwh"],
         "own use": totals["own_use_mwh"],
         "losses of the machines": totals["machine_losses_mwh"],
+        "rheostats": totals["rheostat_mwh"],
         "refused by the line": totals["refused_mwh"],
         "friction": totals["friction_mwh"],
     }
