@@ -16,6 +16,8 @@ SUFFIXES: dict[str, tuple[str, float]] = {
     "_min_per_100km": ("min/100 km", 6e-4),
     "_percent": ("%", 1e-2),
     "_ohm_per_km": ("Ω/km", 1e-3),
+    "_ma_per_m": ("mA/m", 1e-3),
+    "_s_per_km": ("S/km", 1e-3),
     "_us_per_km": ("µS/km", 1e-9),
     "_nf_per_km": ("nF/km", 1e-12),
     "_n_s_per_m": ("N s/m", 1.0),

@@ -100,6 +100,9 @@ def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     else:
         document = copy.deepcopy(SHORT_LINE)
         document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
+    if kind == "station_transformers":
+        station = {"name": "Grid", "position_km": 15.0, "no_load_voltage_kv": 16.0}
+        document["supply"]["transformer_stations"] = [station]
     used = tomllib.loads(usage(kind, name))
     for table, part in used.items():
         document.setdefault(table, {})

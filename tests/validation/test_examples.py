@@ -1,5 +1,6 @@
 """The examples against an independent, slow implementation of the same model."""
 
+import numpy as np
 import pytest
 
 import tpss
@@ -134,3 +135,46 @@ def test_every_example_is_one_of_the_above():
         "network", "overloaded", "own_trains", "thesis_original",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}
+
+
+def test_the_example_with_a_neutral_section_has_the_unbalance_of_its_connections():
+    """Of one pair of phases u₂ ≈ S/S_k; on two pairs of a busbar it is half as much as on one.
+
+    Between RS and ST stand √3 · 27.5 kV = 47.6 kV without load, a little more where trains feed back.
+    """
+    scenario = tpss.load_scenario(EXAMPLES / "neutral_section_25kv.toml")
+    base = tpss.simulate(scenario)
+    one, pair, scott = (
+        tpss.simulate(scenario.variant(name)) for name in ("one-busbar", "one-pair", "scott")
+    )
+    assert all(each.audit["passed"] for each in (base, one, pair, scott))
+    assert base.standards.violations.empty
+    peaks_mva = np.hypot(
+        base.dataset.station_active_power, base.dataset.station_reactive_power
+    ).max(dim="time")
+    shares = base.standards.unbalance.peak_percent.to_numpy()
+    assert shares == pytest.approx(peaks_mva.to_numpy() / 1500e4, rel=0.05)
+    alone, both, same, right = (
+        each.standards.unbalance.mean_10_min_percent.max() for each in (base, one, pair, scott)
+    )
+    assert both == pytest.approx(alone, rel=0.1)
+    assert same == pytest.approx(2.0 * both, rel=0.1)
+    assert right < 0.3 * both
+    assert 45.0 < base.standards.neutral_sections.mean_kv[0] < 47.6
+    fed_back = base.transformer_losses.to_grid_mwh.sum()
+    assert fed_back > 0.1
+
+
+def test_the_example_of_autotransformers_has_rails_below_their_limit_and_neutral_currents():
+    """A single conductor of the equivalent impedance has the same lowest voltage within 1 %."""
+    scenario = tpss.load_scenario(EXAMPLES / "hs_2x25kv.toml")
+    result = tpss.simulate(scenario)
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    assert 5.0 < result.rails.permanent_v.max() < 60.0
+    units = result.autotransformers
+    assert units.position_km.tolist() == [10.0, 20.0, 30.0, 40.0, 50.0]
+    assert (units.highest_neutral_a == 2.0 * units.highest_winding_a).all()
+    assert 0.1 < units.peak_loading.max() < 1.5
+    one = tpss.simulate(scenario.variant("one_conductor"))
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (result, one)]
+    assert lowest[0] == pytest.approx(lowest[1], rel=0.01)

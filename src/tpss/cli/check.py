@@ -135,6 +135,13 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
         yield "feeding", f"{station.name} {place}: {station.in_words}"
+    if (conductors := supply.conductors) is not None:
+        leakage = f"{conductors.leakage_s_per_km:g} S/km from the rails of a track to earth"
+        yield "conductors", f"{leakage}, nodes every {conductors.nodes_every_km:g} km at most"
+    for each in supply.autotransformers:
+        places = ", ".join(kilometres(km) for km in each.positions_km)
+        where = on_line(each.line or "", f"{places} km")
+        yield "autotransf.", f"{where}: {each.rated_mva:g} MVA, {each.short_circuit_percent:g} %"
     if supply.tracks_tied is not None:
         yield "tracks tied", supply.tracks_tied
     for kind, switches in (("posts", supply.posts), ("breaks", supply.section_breaks)):

@@ -97,6 +97,15 @@ KINDS = {
         "type",
         OWN_TABLE,
     ),
+    "station_transformers": Kind(
+        "Transformers of stations at a grid of the railway's frequency",
+        "tpss.scenario.supply",
+        "StationTransformer",
+        ("rated_mva", "short_circuit_percent", "load_loss_kw", "no_load_loss_kw"),
+        "[[supply.transformer_stations]]",
+        "transformer",
+        OWN_TABLE,
+    ),
     "transformers": Kind(
         "Transformers between high-voltage line and contact line",
         "tpss.scenario.supply",
@@ -114,6 +123,15 @@ KINDS = {
         "[supply.high_voltage_line]",
         "type",
         OWN_TABLE,
+    ),
+    "rail_limits": Kind(
+        "Limits of the voltage of rails to earth, and of stray current",
+        "tpss.scenario.rail_limits",
+        "RailLimits",
+        ("permanent_v", "short_v", "stray_ma_per_m"),
+        "[standards]",
+        "rails",
+        "that of the current is taken; a table with any of its values changes these",
     ),
     "voltage_limits": Kind(
         "Limits of the voltage at the pantograph",

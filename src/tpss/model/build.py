@@ -15,6 +15,7 @@ from tpss.model.held_limits import without_coasting
 from tpss.model.legs import build_legs
 from tpss.model.neutral import build_neutral
 from tpss.model.outages import layout_of, service_of
+from tpss.model.phases import demand_one_angle
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
 from tpss.model.supply import SupplyPlan
@@ -55,6 +56,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     demand_room_to_feed_back(scenario)
     lines = scenario.lines_by_name
     plan = layout_of(scenario, scenario.outage).plan
+    demand_one_angle(scenario, plan)
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
     types, points = build_train_types(running, limits_of_system(scenario.supply.system))

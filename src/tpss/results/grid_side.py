@@ -135,6 +135,8 @@ class StationSide:
     burns : bool
         Whether a resistor takes what the railway feeds back beyond the losses, so that nothing reaches
         the grid; of one that takes nothing back too, whose law takes a trace for its angle.
+    no_load_w : float
+        Losses of one of its transformers without load. [W]
     """
 
     name: str
@@ -143,6 +145,7 @@ class StationSide:
     auxiliaries_w: float | None = None
     burns: bool = False
     blocks: bool = False
+    no_load_w: float = 0.0
 
     @property
     def is_described(self) -> bool:
@@ -206,6 +209,8 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
         by_load = by_load + count * units.law.by_load_w(loading, own.real < 0.0)
     auxiliaries = np.where(runs, side.auxiliaries_w or 0.0, 0.0)
     balance = active_w + idle + by_load + auxiliaries
+    if side.no_load_w:
+        balance = balance + np.where(runs, running, 0.0) * side.no_load_w
     surplus = np.maximum(-balance, 0.0)
     to_grid, burnt = (zero, surplus) if side.burns else (surplus, zero)
     from_grid = np.maximum(balance, 0.0)
@@ -238,7 +243,8 @@ def sides_of(scenario: Scenario) -> tuple[StationSide, ...]:
 
 def _side_of(station: Station) -> StationSide:
     if isinstance(station, TransformerStation):
-        return StationSide(station.name, burns=station.feedback != "grid")
+        no_load_w = si(station.transformer, "no_load_loss_kw")
+        return StationSide(station.name, burns=station.feedback != "grid", no_load_w=no_load_w)
     if isinstance(station, RectifierStation):
         group = _group_of(station.type)
         if group.law is None:

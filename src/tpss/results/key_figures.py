@@ -194,7 +194,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         zones=_zones(scenario, layout),
         lines=layout.lines,
         stations=layout.stations,
-        at_line_level=np.array(layout.supply.node_level) == 1.0,
+        at_line_level=layout.supply.at_line_level,
         limits=limits_of(model),
         system=model.network.system,
         sides=sides_of(scenario),

@@ -17,7 +17,7 @@ from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
 from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
-from tpss.units import on_line
+from tpss.units import kilometres, on_line
 
 MOST_CIRCULATING = 0.1
 """Energy that stations may receive from others without a note, as a share of what trains and losses
@@ -34,6 +34,9 @@ APART_M = 1e8
 
 MOST_STRANDED = 5
 """Trains without power that are listed."""
+
+WIDEST_DEG = 121.0
+"""Angle across a neutral section above that of two pairs of phases in their order, 120°. [°]"""
 
 FEW = 3
 """Train-steps that closeness may take without a note, as of a train that passes."""
@@ -53,6 +56,7 @@ def notes(result: Result) -> list[str]:
         *_trips(result),
         *step_warnings(result.summary),
         *_unfed(result),
+        *_wide_angles(result),
         *_stranded(result),
         *_current_limits(result),
         *_overloads(result),
@@ -96,6 +100,19 @@ def _unfed(result: Result) -> Iterator[str]:
     words = unfed_in_words(result.scenario)
     if words:
         yield words
+
+
+def _wide_angles(result: Result) -> Iterator[str]:
+    """Neutral sections between voltages further apart than those of two phases in their order."""
+    for each in result.standards.across:
+        if each.angle_deg > WIDEST_DEG:
+            place = on_line(each.line, f"{kilometres(each.from_km)}-{kilometres(each.to_km)} km")
+            phases = f"{each.phases_before} and {each.phases_behind}"
+            yield (
+                f"the voltages on both sides of the neutral section at {place} ({phases}) are "
+                f"{each.angle_deg:.0f}° apart: up to {each.highest_kv:.1f} kV stand across it; another "
+                "order of the phases of one side makes it less"
+            )
 
 
 def _stranded(result: Result) -> Iterator[str]:

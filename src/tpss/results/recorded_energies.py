@@ -26,12 +26,15 @@ def grid_side_mwh(run: Run, sides: Sequence[StationSide], feeds_back: bool) -> d
     """
     lost = drawn = fed_back = math.nan
     described = any(side.is_described for side in sides)
-    if described or feeds_back:
+    told = described or any(side.no_load_w for side in sides)
+    if told or feeds_back:
         found, duration_s = grid_side_w(run, sides), _duration_s(run)
         energies = [math.fsum(each.sum(axis=1) * duration_s) / J_PER_MWH for each in found]
         fed_back = energies[2]
+        if told:
+            drawn = energies[1]
         if described:
-            lost, drawn = energies[:2]
+            lost = energies[0]
     return {
         "converter_losses_mwh": lost,
         "drawn_from_grid_mwh": drawn,

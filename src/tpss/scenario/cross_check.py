@@ -9,6 +9,7 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding
+from tpss.scenario.busbars import check_busbars
 from tpss.scenario.direct_current import check_direct_current
 from tpss.scenario.events import check_events
 from tpss.scenario.feeding_points import check_feeding_points
@@ -31,7 +32,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings = [*check_systems(document), *check_positions(document)]
     document = under_its_system(dict(document))
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
-    findings += [*check_feeds(document), *check_wiring(document)]
+    findings += [*check_feeds(document), *check_wiring(document), *check_busbars(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *check_stepped_motion(document)]
     findings += _planned_order(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))

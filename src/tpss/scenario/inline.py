@@ -37,6 +37,7 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "high_voltage_line", "line_transformer"),
     ("supply", "high_voltage_line", "station_transformer"),
     ("supply", "converter_stations", "*", "type"),
+    ("supply", "transformer_stations", "*", "transformer"),
     ("supply", "converter_types", "*"),
     ("supply", "mixed_stations", "*", "units", "*", "type"),
     ("supply", "rectifier_stations", "*", "type"),

@@ -148,6 +148,14 @@ LINKED = (
 """What is recorded besides where transformers stand between several nodes."""
 
 
+RETURNED = (
+    Recorded("rail_voltage", "train", "V", "voltage of the rails to earth, at the train",
+             phasor="rail"),
+    Recorded("rail_angle", "train", "rad", "angle of that voltage", phasor="rail"),
+)  # fmt: skip
+"""What is recorded besides where rails are conductors of their own."""
+
+
 def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
     own = (field for each in table if each.of == what for field in each.fields)
     return list(dict.fromkeys(own))
@@ -184,3 +192,7 @@ class StationRow(Row, of="station"):
 
 class LinkRow(Row, of="link", table=LINKED):
     """Row of a link."""
+
+
+class RailRow(Row, of="train", table=RETURNED):
+    """What the rails do at a train."""

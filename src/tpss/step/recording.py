@@ -7,10 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import at, inlined
+from tpss.powerflow.bundles import Complexes, widest_of
 from tpss.powerflow.links import count_links
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import LinkRow, NodeRow, RegenerationRow, StationRow, TrainRow
+from tpss.step.recorded import LinkRow, NodeRow, RailRow, RegenerationRow, StationRow, TrainRow
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -58,6 +59,11 @@ class Recording(NamedTuple):
     sections. [s]"""
     links: Records[LinkRow]
     """Shape (instants, links)."""
+    conductors: Complexes
+    """Shape (instants, trains, most conductors): voltages of all conductors at each train.  Without any
+    instants unless there are bundles of them. [V]"""
+    rails: Records[RailRow]
+    """Shape (instants, trains).  Empty unless there are such bundles."""
 
 
 def is_kept_apart(model: Model) -> bool:
@@ -81,6 +87,7 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
     row += count_links(network.links) * LinkRow.dtype.itemsize
+    row += 16 * trains * (widest_of(network.bundles) + (widest_of(network.bundles) > 0))
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
     return (steps + 1) * row
 
@@ -123,6 +130,11 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         return unknown(size).view(kind.dtype).reshape(rows, columns).view(np.recarray)
 
     ends = network.branches.size + 2 * network.sections.size
+    widest = widest_of(network.bundles)
+
+    def conductors_of_trains() -> Complexes:
+        size = rows * trains * widest
+        return unknown(2 * size).view(complex).reshape(rows if widest else 0, trains, widest)
 
     return Recording(
         trains=blank(trains, TrainRow),
@@ -138,4 +150,6 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
         links=blank(count_links(network.links), LinkRow),
+        conductors=conductors_of_trains(),
+        rails=blank(trains, RailRow, rows if widest_of(network.bundles) else 0),
     )

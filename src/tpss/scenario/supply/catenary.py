@@ -8,6 +8,7 @@ from pydantic_core import PydanticKnownError
 
 from tpss.scenario.fields import FromLibrary, Part, Real, fault
 from tpss.scenario.rating import CatenaryRating
+from tpss.scenario.supply.conductors import LineMatrices
 from tpss.scenario.supply.direct_conductors import (
     REFERENCE_C,
     DirectContactLine,
@@ -34,14 +35,14 @@ STATES = {
 """Keys of the state of these conductors, and what it is unless they say otherwise."""
 
 
-def _of_parts(known: dict[str, Any]) -> float:
-    """Resistance of a contact line and rails in their state. [Ω/km]"""
+def _resistances(
+    own: DirectContactLine, rails: RunningRails, states: dict[str, Any]
+) -> tuple[float, float]:
+    """Resistance of a contact line, and of rails, in their state. [Ω/km]"""
     wear_percent, conductor_c, rails_c = (
-        usual if known[key] is None else float(known[key]) for key, usual in STATES.items()
+        usual if states[key] is None else float(states[key]) for key, usual in STATES.items()
     )
-    own: DirectContactLine = known["contact_line"]
-    rails: RunningRails = known["rails"]
-    return own.worn_ohm_per_km(wear_percent, conductor_c) + rails.warm_ohm_per_km(rails_c)
+    return own.worn_ohm_per_km(wear_percent, conductor_c), rails.warm_ohm_per_km(rails_c)
 
 
 class Catenary(Part):
@@ -108,6 +109,10 @@ class Catenary(Part):
         default=None,
         description="What it bears without getting too hot; leave it out: it is not judged.",
     )
+    conductors: LineMatrices | None = Field(
+        default=None,
+        description="Its conductors, for `supply.conductors`; without that the impedance above counts.",
+    )
 
     @field_validator("r_ohm_per_km", mode="before")
     @classmethod
@@ -118,7 +123,7 @@ class Catenary(Part):
             return 1.0 if given is None else given
         parts = [key for key in OF_PARTS if known[key] is not None]
         if len(parts) == len(OF_PARTS):
-            found = _of_parts(known)
+            found = sum(_resistances(known["contact_line"], known["rails"], known))
             if isinstance(given, int | float) and not math.isclose(given, found, rel_tol=1e-9):
                 raise fault(
                     f"beside contact_line and rails, which have {found:.4g} ohm/km",
@@ -139,6 +144,14 @@ class Catenary(Part):
         if given is None:
             raise PydanticKnownError("missing")
         return given
+
+    @property
+    def direct_conductors_ohm_per_km(self) -> tuple[float, float] | None:
+        """Resistance of the contact line and of the rails, in their state; None: not given apart."""
+        if self.contact_line is None or self.rails is None:
+            return None
+        states = {key: getattr(self, key) for key in STATES}
+        return _resistances(self.contact_line, self.rails, states)
 
     @property
     def has_reactance(self) -> bool:

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from tpss.scenario.fields import Name, Part, Position, name_of_line, station_at
+from tpss.scenario.fields import Name, Part, Position, Real, name_of_line, station_at
 from tpss.scenario.supply.feeds import Feeds, feeds
 
 
@@ -14,3 +14,10 @@ class FeedingStation(Part):
     at: Name | None = station_at()
     position_km: Position = Field(description="Position on its line.")
     feeds: Feeds | None = feeds()
+    rail_earthing_ohm: Real | None = Field(
+        default=None,
+        ge=0.001,
+        le=1_000,
+        description="Resistance between its return conductor, to which the rails lead, and the earth, "
+        "with `supply.conductors`; leave it out: it is not earthed.",
+    )
