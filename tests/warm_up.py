@@ -22,6 +22,7 @@ import tpss
 from lines import double_track, scenario_of, with_posts
 from tpss.kernel import cache_folder
 
+from direct_scenarios import direct_scenario
 from one_compile import compile_once
 from scenarios import short_line
 
@@ -48,8 +49,16 @@ def spared() -> tpss.Scenario:
     return short_line({**motion, **MINUTE, "trains.freight.motor_rating": SPARED})
 
 
+def with_rails() -> tpss.Scenario:
+    """A line of direct current whose rails are conductors of their own."""
+    parts = {"contact_line": {"r_ohm_per_km": 0.008}, "rails": {"r_ohm_per_km": 0.012}}
+    leaking = {"supply.catenary": parts, "supply.conductors.leakage_s_per_km": 0.1}
+    return direct_scenario(**leaking, **MINUTE)
+
+
 OCCASIONS: dict[str, Callable[[], tpss.Scenario]] = {
     "coupled tracks": lambda: coupled(0.1),
+    "conductors": with_rails,
     "searches": lambda: tpss.load_scenario(OVERLOADED),
     "searches, coupled tracks": lambda: coupled(10.0),
     "least squares": lambda: short_line({**MINUTE, **BY_SQUARES}),
