@@ -136,6 +136,7 @@ MEANINGS = {
     "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
     "braking.fed_back_mwh": "part of it: what trains feed back into the line",
     "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",
+    "braking.to_stores_mwh": "of that, what stores at the line take",
     "braking.to_grid_mwh": "of that, what stations take back, on the railway's side",
     "braking.burnt_in_stations_mwh": "of that, what resistors of stations burn",
     "thermal.contact_line_use_percent": "highest use of what contact lines bear: thermal state, or "

@@ -98,6 +98,7 @@ COMPUTE_NO_EQUATION = {
         # Of several types of converters each is asked.
         "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",
     },
+    "storage": set(),
     "vehicle": {
         # Which law holds, and what is evaluated when.
         "update_effort", "highest_force", "_described_force", "effort_extrapolates", "motors_force",

@@ -83,6 +83,60 @@ def trains(draw: Draw, nominal_kv: float, feeds_back: bool) -> Document:
     return train
 
 
+@st.composite
+def stores(draw: Draw, place: Document, nominal_kv: float, lowest_kv: float) -> Document:
+    """A store of energy at a place, small ones too, which a step makes full or empty."""
+    kind = draw(st.sampled_from(["supercapacitor", "battery", "flywheel"]))
+    found: Document = {**place, "kind": kind, "power_kw": draw(numbers(1.0, 4_000.0))}
+    if kind == "supercapacitor":
+        full_v = draw(numbers(100.0, 1_000.0))
+        found |= {
+            "capacitance_f": draw(numbers(1.0, 300.0)),
+            "max_voltage_v": full_v,
+            "min_voltage_v": full_v * draw(numbers(0.2, 0.8)),
+            "max_current_a": draw(numbers(100.0, 4_000.0)),
+        }
+    else:
+        found["capacity_kwh"] = draw(numbers(0.05, 50.0))
+        found["standby_kw"] = draw(st.sampled_from([0.0, 2.0, 200.0]))
+    if draw(st.booleans()):
+        found["efficiency"] = draw(numbers(0.5, 1.0))
+    else:
+        found["charge_efficiency"] = draw(numbers(0.5, 1.0))
+        found["discharge_efficiency"] = draw(numbers(0.5, 1.0))
+    return found | {
+        "soc_start": draw(numbers(0.0, 1.0)),
+        "charges_above_kv": nominal_kv * draw(numbers(1.205, 1.245)),
+        "discharges_below_kv": lowest_kv * draw(numbers(0.85, 0.999)),
+        "charge_kw_per_v": draw(numbers(0.0, 200.0)),
+        "discharge_kw_per_v": draw(numbers(0.0, 200.0)),
+    }
+
+
+def _unloaded_kv(kind: Document) -> float:
+    """Voltage of a type of rectifiers without load, or a little less. [kV]"""
+    if "controlled" in kind:
+        return float(kind["controlled"]["voltage_kv"])
+    if "curve" in kind:
+        return float(kind["curve"][0]["voltage_kv"])
+    transformer_kv = 1.35 * kind.get("transformer", {}).get("secondary_v", 0.0) / 1e3
+    return float(kind.get("no_load_voltage_kv", transformer_kv))
+
+
+def _add_stores(draw: Draw, supply: Document, nominal_kv: float) -> None:
+    """Give a supply stores of energy, at its stations or beside them, or none."""
+    stations = supply["rectifier_stations"]
+    lowest_kv = min(_unloaded_kv(station["type"]) for station in stations)
+    chosen = draw(st.lists(st.sampled_from(range(len(stations))), max_size=2, unique=True))
+    placed = []
+    for k in chosen:
+        place = {key: stations[k][key] for key in ("line", "position_km") if key in stations[k]}
+        place["name"] = f"store {k}"
+        placed.append(draw(stores(place, nominal_kv, lowest_kv)))
+    if placed:
+        supply["storage"] = placed
+
+
 def into_direct_current(draw: Draw, document: Document) -> None:
     """Give a scenario the supply and the trains of a railway of direct current."""
     supply = document["supply"]
@@ -104,6 +158,7 @@ def into_direct_current(draw: Draw, document: Document) -> None:
         }
         for station in former
     ]
+    _add_stores(draw, supply, nominal_kv)
     for stretch in supply.get("contact_lines", ()):
         if "catenary" in stretch:
             stretch["catenary"] = dict(catenary)

@@ -15,6 +15,7 @@ from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Network
 from tpss.record import Record, Records
 from tpss.step.recording import Recording
+from tpss.storage.store import Stored
 
 ALLOWED_BALANCE = 1e-9
 """Energy that may be missing from the network's balance, relative to what the stations feed. [1]"""
@@ -28,7 +29,7 @@ class Balances(Record):
     converter_residual: float
     """Largest residual of a source's law. [p.u.]"""
     network_balance: float
-    """Energy of the stations less that of trains and losses, relative to the first. [1]"""
+    """Energy of the stations less that of trains, stores and losses, relative to the first. [1]"""
     traction_balance: float
     """Work of the motors less where it went, relative. [1]"""
     force_balance: float
@@ -51,6 +52,8 @@ class Balances(Record):
     """Work of gravity downhill. [J]"""
     slowed_j: float
     """Loss of kinetic energy where there is one. [J]"""
+    stored_j: float
+    """Energy that stores at the line take. [J]"""
 
 
 class Conductor(Record):
@@ -116,6 +119,8 @@ class Scratch(NamedTuple):
     place_m: npt.NDArray[np.float64]
     """Its place on the line. [m]"""
     groups: GroupScratch
+    stored: Records[Stored]
+    """One record."""
 
 
 def new_scratch(network: Network, trains: int) -> Scratch:
@@ -129,6 +134,7 @@ def new_scratch(network: Network, trains: int) -> Scratch:
         section=np.zeros(trains, dtype=np.int64),
         place_m=np.zeros(trains),
         groups=_group_scratch(network, trains),
+        stored=Stored.blank(1),
     )
 
 

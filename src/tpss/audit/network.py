@@ -11,6 +11,7 @@ import math
 
 from tpss.audit.balances import Scratch, audit_demand, worst
 from tpss.audit.coupled import audit_groups, pass_trains
+from tpss.audit.stores import join_stores
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.coupled import is_coupled
@@ -63,6 +64,8 @@ def audit_network(
         else:
             k = _audit_section(step, s, k, count, model, recording, scratch)
     audit_groups(network.groups, step, count, model, recording, scratch)
+    if network.stores.size > 0:
+        join_stores(step, network, recording.stores, scratch, figures)
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]

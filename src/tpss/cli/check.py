@@ -133,6 +133,9 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
         yield "feeding", f"{station.name} {place}: {station.in_words}"
+    for store in supply.storage:
+        place = on_line(store.line or "", f"{kilometres(store.position_km)} km")
+        yield "storage", f"{store.name} {place}: {store.in_words}"
     if supply.tracks_tied is not None:
         yield "tracks tied", supply.tracks_tied
     for kind, switches in (("posts", supply.posts), ("breaks", supply.section_breaks)):

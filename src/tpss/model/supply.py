@@ -24,6 +24,7 @@ from tpss.model.parting import (
     representatives,
 )
 from tpss.model.sources import build_sources
+from tpss.model.stores import build_stores
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
@@ -60,6 +61,8 @@ class SupplyPlan:
     """Sections side by side that have an impedance in common."""
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
+    stores: list[int] = field(default_factory=list)
+    """Nodes of the stores of energy."""
     runs: list[list[Run]] = field(default_factory=list)
     """Of each line."""
     node_line: list[int] = field(default_factory=list)
@@ -146,7 +149,9 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    return mark_unfed(assemble(*parts, room=plan.room(), groups=plan.coupled)), plan
+    stores = build_stores(plan.stores, supply.storage)
+    network = assemble(*parts, room=plan.room(), groups=plan.coupled, stores=stores)
+    return mark_unfed(network), plan
 
 
 def joined_network(
@@ -182,6 +187,7 @@ def joined_network(
         parted.system,
         room=plan.room(),
         groups=plan.coupled,
+        stores=build_stores([node[n] for n in plan.stores], supply.storage),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
 
@@ -239,6 +245,7 @@ def plan_supply(
     ]
     _join_busbars(plan, lines, feedings, feeding)
     node_of: dict[str, int] = {}
+    store_node: dict[str, int] = {}
     for line, here, node in zip(lines, fed, feeding, strict=True):
         for km, station in sorted(here.stations.items()):
             connection = _connection_impedance(catenary_at(km, line, supply))
@@ -248,7 +255,10 @@ def plan_supply(
         if here.has_high_voltage:
             _lay_high_voltage_line(plan, line, here, node, supply)
         node_of |= {station.name: node[km] for km, station in here.stations.items()}
+        own = (each for each in supply.storage if line.holds(each.line))
+        store_node |= {each.name: node[each.position_km] for each in own}
     plan.sources = [node_of[station.name] for station in supply.stations]
+    plan.stores = [store_node[each.name] for each in supply.storage]
     return plan
 
 
@@ -278,7 +288,7 @@ class _OnLine(NamedTuple):
     junctions: dict[float, str]
     """Places where it is tied to other lines, and the names of the stations there."""
     feeding_km: set[float]
-    """Places where it is fed or tied to others. [km]"""
+    """Places where it is fed, joined to a store, or tied to others. [km]"""
 
     @classmethod
     def of(cls, supply: Supply, line: LineLayout, feedings: Sequence[Feeding]) -> "_OnLine":
@@ -292,13 +302,14 @@ class _OnLine(NamedTuple):
             for km, name in line.junctions
             if (line.name in busbars[name] if name in busbars else supply.junctions_tied)
         }
+        stores_km = {each.position_km for each in supply.storage if line.holds(each.line)}
         fed_km = {each.places_km[line.name] for each in feedings if line.name in each.places_km}
         return cls(
             stations={s.position_km: s for s in supply.stations if line.holds(s.line)},
             transformers_km=transformers,
             has_high_voltage=beside,
             junctions=junctions,
-            feeding_km={*fed_km, *transformers, *junctions},
+            feeding_km={*fed_km, *transformers, *junctions, *stores_km},
         )
 
 

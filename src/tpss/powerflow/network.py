@@ -33,6 +33,8 @@ from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, ne
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
+from tpss.storage.store import Stored
+from tpss.storage.wayside import StoreLaw
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -245,6 +247,8 @@ class Network(NamedTuple):
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups
     """Of coupled sections."""
+    stores: Records[StoreLaw]
+    """Stores of energy at its nodes."""
 
 
 class Flow(NamedTuple):
@@ -263,6 +267,7 @@ class Flow(NamedTuple):
     search: Records[Search]
     """One record."""
     groups: GroupFlow
+    stores: Records[Stored]
 
 
 class Loads(NamedTuple):
@@ -337,6 +342,7 @@ def assemble(
     *,
     room: Sequence[tuple[int, int]] = (),
     groups: Sequence[Sequence[int]] = (),
+    stores: Records[StoreLaw] | None = None,
 ) -> Network:
     """Network from its parts.
 
@@ -352,6 +358,7 @@ def assemble(
         Further pairs of nodes for which the linear system has room.
     groups : sequence of sequences of int
         Numbers of sections side by side that are coupled.
+    stores : records of StoreLaw, optional
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
@@ -384,6 +391,7 @@ def assemble(
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
+        stores=StoreLaw.blank(0) if stores is None else stores,
     )
 
 
@@ -399,7 +407,9 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         laws=copy_of_records(network.sources),
         search=Search.blank(1),
         groups=new_group_flow(network.groups),
+        stores=Stored.blank(network.stores.size),
     )
+    flow.stores.energy_j[:] = network.stores["start_j"]
     flow.sources.running[:] = network.sources["installed"]
     flow.standing.train[:] = np.arange(n_trains)
     return flow

@@ -23,6 +23,7 @@ from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import envelopes
@@ -51,6 +52,7 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "converters": (station_loading, 440),
     "losses": (losses, 260),
     "converter-losses": (converter_losses, 440),
+    "storage": (storage, 440),
     "thermal": (thermal, 440),
 }
 """Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
@@ -137,6 +139,7 @@ def report(
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_converter_losses(result),
         *tables.of_regeneration(result),
+        *tables.of_storage(result),
         *(
             [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
             if len(result.thermal)
@@ -207,7 +210,8 @@ def _figures(
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     rated = {label: run for label, run in runs.items() if run.equipment.elements}
     lossy = {label: run for label, run in runs.items() if len(run.converter_losses)}
-    shown = {"thermal": rated, "converter-losses": lossy}
+    storing = {label: run for label, run in runs.items() if len(run.storage)}
+    shown = {"thermal": rated, "converter-losses": lossy, "storage": storing}
     drawn = {
         key: render(describe(own), height)
         for key, (describe, height) in OVER_TIME.items()

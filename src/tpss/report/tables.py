@@ -110,6 +110,12 @@ def of_regeneration(result: Result) -> list[Table]:
     return [of_frame("regeneration", "Braked", found)] if len(found) else []
 
 
+def of_storage(result: Result) -> list[Table]:
+    """What stores of energy took and gave, where there are any."""
+    found = result.storage
+    return [of_frame("storage", "Stores of energy", found)] if len(found) else []
+
+
 def of_figures(results: Mapping[str, Result]) -> Table:
     """Key figures of runs, one row per figure and one column per run, with differences to the first."""
     columns = [
@@ -193,6 +199,7 @@ BRAKED = {
     "own_use_mwh": "own use of trains that brake",
     "fed_back_mwh": "fed back by trains",
     "used_by_others_mwh": "of it used by other trains and the line",
+    "to_stores_mwh": "of it taken by stores at the line",
     "to_grid_mwh": "of it taken back by stations",
     "burnt_in_stations_mwh": "of it burnt in resistors of stations",
 }

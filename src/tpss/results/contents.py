@@ -31,6 +31,7 @@ TABLE_PLACES = {
     "stations": "stations",
     "regeneration": "regeneration",
     "converter_losses": "converter_losses",
+    "storage": "storage",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
     "thermal_windows": "thermal_windows",
@@ -45,8 +46,8 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "braking", "thermal", "energy",
-    "effort",
+    "stations", "converters", "converter-losses", "braking", "storage", "thermal",
+    "energy", "effort",
 )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
+from tpss.results.storage import storage_notes
 from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
 from tpss.units import on_line
@@ -55,6 +56,7 @@ def notes(result: Result) -> list[str]:
         *_unfed(result),
         *_stranded(result),
         *_current_limits(result),
+        *storage_notes(result.dataset, result.scenario),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),

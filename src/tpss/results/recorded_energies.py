@@ -54,7 +54,8 @@ def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     own = set(rows.dtype.names or ())
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}
     stations = np.asarray(run.recording.stations)[: run.step]
-    powers = braking_powers(recorded, stations["station_active_power"], sides)
+    stored_w = np.asarray(run.recording.stores)[: run.step]["store_power"]
+    powers = braking_powers(recorded, stations["station_active_power"], sides, stored_w)
     duration_s = _duration_s(run)
     return {name: float((duration_s @ w).sum()) / J_PER_MWH for name, w in powers.items()}
 

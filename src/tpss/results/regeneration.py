@@ -15,10 +15,13 @@ from tpss.scenario.scenario import Scenario
 REGENERATED = "regenerated_power"
 """Variable that a dataset has where trains have electric brakes."""
 
+STORED = "store_power"
+"""Variable that it has where there are stores at the line."""
+
 PARTS = ("friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "fed_back_mwh")
 """Columns into which `braked_mwh` is divided."""
 
-USES = ("used_by_others_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
+USES = ("used_by_others_mwh", "to_stores_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
 """Energies into which `fed_back_mwh` is divided: others are other trains, and the losses on the line."""
 
 TOTALS = ("braked_mwh", *PARTS, *USES)
@@ -42,9 +45,9 @@ def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     train itself first, its auxiliaries, and its motors in the same step; then the line.  Empty unless
     trains have electric brakes.
 
-    Of what all trains feed back in a step, stations take some, into the grid or resistors, and the rest
-    is used by other trains or lost on the line.  Trains share these uses in proportion to what each one
-    feeds back, wherever they are: power has no sender.
+    Of what all trains feed back in a step, stores at the line take some, stations some, into the grid or
+    resistors, and the rest is used by other trains or lost on the line.  Trains share these uses in
+    proportion to what each one feeds back, wherever they are: power has no sender.
     """
     if REGENERATED not in dataset:
         return pd.DataFrame(columns=["train", "service", *TOTALS])
@@ -55,8 +58,8 @@ def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 def fed_back(dataset: xr.Dataset, scenario: Scenario) -> dict[str, float] | None:
     """Totals of all trains, and where what they feed back goes; None without electric brakes.
 
-    In each step stations take back no more than trains feed back; what they take beyond comes from
-    other stations.
+    In each step stations and stores take no more than trains feed back; what they take beyond comes
+    from other stations.
     """
     if REGENERATED not in dataset:
         return None
@@ -80,7 +83,8 @@ def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
     """Energies by the names `TOTALS`, shape (trains,)."""
     stations = step_values(dataset, "station_active_power")
-    powers = powers_of(_recorded(dataset), stations, sides_of(scenario))
+    stored = step_values(dataset, STORED) if STORED in dataset else None
+    powers = powers_of(_recorded(dataset), stations, sides_of(scenario), stored)
     return {name: over_time(each, dataset) / J_PER_MWH for name, each in powers.items()}
 
 
@@ -111,7 +115,10 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
 
 
 def powers_of(
-    recorded: Mapping[str, Floats], station_w: Floats, sides: Sequence[StationSide]
+    recorded: Mapping[str, Floats],
+    station_w: Floats,
+    sides: Sequence[StationSide],
+    stored_w: Floats | None = None,
 ) -> dict[str, Floats]:
     """Those, and where what is fed back goes, by the names `TOTALS`. [W], shape (steps, trains)
 
@@ -123,6 +130,8 @@ def powers_of(
         Power that stations feed into the railway. [W]
     sides : sequence of StationSide
         What stations do with what is fed back.
+    stored_w : array, shape (steps, stores), optional
+        Power that stores at the line take. [W]
     """
     parts = parts_of(recorded)
     given = parts["fed_back_mwh"]
@@ -130,15 +139,21 @@ def powers_of(
     taken = np.maximum(-np.nan_to_num(station_w), 0.0)
     # A station that takes nothing back takes a thousandth of its rating at most, for its angle.
     taken[:, [side.blocks for side in sides]] = 0.0
-    # What stations take beyond what trains give comes from other stations.
-    of_each = np.maximum(np.maximum(total, taken.sum(axis=1)), np.finfo(float).tiny)
+    stored = np.zeros_like(total)
+    if stored_w is not None:
+        stored = np.maximum(np.nan_to_num(stored_w), 0.0).sum(axis=1)
+    # What stations and stores take beyond what trains give comes from other stations.
+    whole = np.maximum(total, taken.sum(axis=1) + stored)
+    of_each = np.maximum(whole, np.finfo(float).tiny)
+    to_stores = given * (stored / of_each)[:, None]
     burns = np.array([side.burns for side in sides], dtype=bool)
     to_grid, burnt = (
         given * (taken[:, which].sum(axis=1) / of_each)[:, None] for which in (~burns, burns)
     )
     return {
         **parts,
-        "used_by_others_mwh": given - to_grid - burnt,
+        "used_by_others_mwh": given - to_stores - to_grid - burnt,
+        "to_stores_mwh": to_stores,
         "to_grid_mwh": to_grid,
         "burnt_in_stations_mwh": burnt,
     }
@@ -151,6 +166,7 @@ def in_words(totals: dict[str, Any]) -> str:
         return "Braked: nothing"
     shares = {
         "other trains and the line": totals["used_by_others_mwh"],
+        "stores at the line": totals["to_stores_mwh"],
         "the grid": totals["to_grid_mwh"],
         "resistors of stations": totals["burnt_in_stations_mwh"],
         "own use": totals["own_use_mwh"],

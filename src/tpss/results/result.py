@@ -14,6 +14,7 @@ from tpss.results.converter_losses import converter_losses
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
+from tpss.results.storage import storage
 from tpss.results.thermal.judge import Thermal, thermal_of
 from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
@@ -94,6 +95,11 @@ class Result:
     def converter_losses(self) -> pd.DataFrame:
         """One row per converter station that describes losses: the 50 Hz side; otherwise empty."""
         return converter_losses(self.dataset, self.scenario)
+
+    @cached_property
+    def storage(self) -> pd.DataFrame:
+        """One row per store of energy: what it took, gave and lost; empty without any."""
+        return storage(self.dataset, self.scenario)
 
     @cached_property
     def equipment(self) -> Thermal:

@@ -174,6 +174,7 @@ class Run:
             (state.flow.nodes, flow.nodes),
             (state.flow.sections, flow.sections),
             (state.flow.sources, flow.sources),
+            (state.flow.stores, flow.stores),
             (state.clock, self.state.clock),
             (state.turns.holdings, turns.holdings[: state.trains.size]),
             (state.turns.uses, turns.uses),
@@ -297,6 +298,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         waits_for=kept.waits_for[:rows, :count],
         regeneration=kept.regeneration[:rows, :count],
         without_power_s=kept.without_power_s[:rows, :count],
+        stores=kept.stores[:rows],
     )
     return Outcome(
         status=status,

@@ -19,7 +19,7 @@ from tpss.scenario.raw import (
     table,
     tracks_by_stretch,
 )
-from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.supply.supply import STATIONS, STORAGE
 from tpss.units import kilometres
 
 
@@ -189,7 +189,7 @@ def _nodes(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
         return []
     fed = [
         number(each, "position_km")
-        for kind in (*STATIONS, "posts")
+        for kind in (*STATIONS, "posts", STORAGE)
         for _, each in items(supply, kind)
         if len(lines) == 1 or each.get("line") == line
     ]

@@ -8,13 +8,14 @@ from tpss.numerics.curve import Points
 from tpss.powerflow.network import Request, Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces, set_unfed_aside
 from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
+from tpss.powerflow.stores import begin_stores
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.deadlock import find_deadlock
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.precedence import let_pass
-from tpss.step.record import record_instant, record_network, record_trains
+from tpss.step.record import record_instant, record_network, record_trains, settle_stores
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
 from tpss.step.sparing import allow_currents, heat_motors
@@ -124,6 +125,8 @@ def prepare_step(count: int, model: Model, state: State) -> None:
     """`prepare_trains` of this step."""
     data = driving_data(model)
     prepare_trains(count, state.flow.standing, state.trains, data, model.points, state.scratch)
+    if model.network.stores.size > 0:
+        begin_stores(model.options.step_s, model.network, state.flow)
 
 
 @inlined
@@ -168,6 +171,8 @@ def end_step(
     if model.control.fixed_voltage_v <= 0.0:
         record_network(step, model.network, state.flow, recording)
         note_loading(model, state)
+        if model.network.stores.size > 0:
+            settle_stores(step, model.options.step_s, model.network, state.flow, recording.stores)
     data = loads_of(model, state).driving
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]

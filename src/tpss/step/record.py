@@ -15,9 +15,10 @@ from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
-from tpss.step.recorded import RegenerationRow, TrainRow
+from tpss.step.recorded import RegenerationRow, StoreRow, TrainRow
 from tpss.step.recording import Call, Indices, Recording
 from tpss.step.state import Floats, TrainState
+from tpss.storage.store import energy_after, lost_power
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
 from tpss.vehicle.terms import Demand
@@ -227,6 +228,20 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
             lost_w += section_losses(s, network, flow)
     lost_w += losses_of_groups(network.groups, flow)
     recording.network_losses[at(step)] = lost_w
+
+
+@kernel
+def settle_stores(
+    step: int, step_s: float, network: Network, flow: Flow, rows: Records[StoreRow]
+) -> None:
+    """Record what the stores at the line do in a step of this length, and take them to its end. [s]"""
+    for m in range(network.stores.size):
+        store, state, row = network.stores[at(m)].store, flow.stores[at(m)], rows[at(step), at(m)]
+        row.stored_energy = state.energy_j
+        row.store_power = state.power_w
+        row.store_losses = lost_power(state.power_w, step_s, store, state)
+        state.energy_j = energy_after(state.power_w, step_s, store, state)
+        rows[at(step + 1), at(m)].stored_energy = state.energy_j
 
 
 @inlined

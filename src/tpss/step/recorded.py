@@ -140,6 +140,14 @@ REGENERATED = (
 )  # fmt: skip
 """What is recorded besides where trains have electric brakes."""
 
+STORED = (
+    Recorded("stored_energy", "store", "J", "energy in a store at the line", "E", at_instant=True),
+    Recorded("store_power", "store", "W", "power that a store takes from the line", "P",
+             "negative where it gives"),
+    Recorded("store_losses", "store", "W", "losses of a store"),
+)  # fmt: skip
+"""What is recorded of stores of energy at the line."""
+
 
 def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
     own = (field for each in table if each.of == what for field in each.fields)
@@ -173,3 +181,7 @@ class NodeRow(Row, of="node"):
 
 class StationRow(Row, of="station"):
     """Row of a feeding station."""
+
+
+class StoreRow(Row, of="store", table=STORED):
+    """Row of a store of energy at the line."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tpss.kernel import at, inlined
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import NodeRow, RegenerationRow, StationRow, TrainRow
+from tpss.step.recorded import NodeRow, RegenerationRow, StationRow, StoreRow, TrainRow
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -55,6 +55,8 @@ class Recording(NamedTuple):
     without_power_s: Floats
     """Shape (instants, trains): time that each one has its power off.  Empty without neutral
     sections. [s]"""
+    stores: Records[StoreRow]
+    """Shape (instants, stores at the line)."""
 
 
 def is_kept_apart(model: Model) -> bool:
@@ -78,6 +80,7 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
+    row += network.stores.size * StoreRow.dtype.itemsize
     return (steps + 1) * row
 
 
@@ -133,4 +136,5 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
         regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
+        stores=blank(network.stores.size, StoreRow),
     )

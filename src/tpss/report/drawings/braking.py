@@ -12,6 +12,7 @@ from tpss.results.result import Result
 
 PARTS = {
     "used_by_others_mwh": ("other trains and the line", COLOURS[2]),
+    "to_stores_mwh": ("stores at the line", "#F0E442"),
     "to_grid_mwh": ("to the grid", COLOURS[0]),
     "own_use_mwh": ("own use", "#56B4E9"),
     "burnt_in_stations_mwh": ("burnt in stations", COLOURS[3]),

@@ -15,6 +15,7 @@ from tpss.report.drawings.journey import journey
 from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.voltage import voltage_along_line, voltage_envelope
@@ -38,6 +39,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
     "braking": ("run", lambda run, *_: braking({"": run})),
+    "storage": ("run", lambda run, *_: storage({"": run})),
     "thermal": ("run", lambda run, *_: thermal({"": run})),
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
@@ -111,7 +113,9 @@ def draw(
 
 def applies(name: str, result: Result) -> bool:
     """Whether a figure shows something that the scenario of a result describes."""
-    tables = {"converter-losses": "converter_losses", "braking": "regeneration"}
+    tables = {
+        "converter-losses": "converter_losses", "braking": "regeneration", "storage": "storage",
+    }  # fmt: skip
     return name not in tables or len(getattr(result, tables[name])) > 0
 
 

@@ -7,6 +7,7 @@ from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transfo
 from tpss.scenario.supply.losses import ConverterLosses
 from tpss.scenario.supply.mixed_station import ConverterUnits, MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
+from tpss.scenario.supply.storage import Storage
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import TransformerStation
@@ -27,6 +28,7 @@ __all__ = [
     "RectifierType",
     "SectionBreak",
     "Station",
+    "Storage",
     "Supply",
     "System",
     "Transformer",

@@ -22,6 +22,7 @@ from tpss.scenario.supply.converter_station import ConverterStation, ConverterTy
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
+from tpss.scenario.supply.storage import Storage
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
 
@@ -30,6 +31,9 @@ Station = ConverterStation | TransformerStation | MixedStation | RectifierStatio
 
 STATIONS = ("converter_stations", "transformer_stations", "mixed_stations", "rectifier_stations")
 """Keys of the supply that list feeding stations, in the order of the results."""
+
+STORAGE = "storage"
+"""Key of the supply that lists stores of energy."""
 
 LOWEST_HZ = 10.0
 """Lowest frequency of an alternating current. [Hz]"""
@@ -126,6 +130,9 @@ class Supply(Part):
         default=(),
         validate_default=True,
         description="Converter stations; there is at least one feeding station.",
+    )
+    storage: Annotated[tuple[Storage, ...], unique("name")] = Field(
+        default=(), description="Stores of energy at a direct-current line."
     )
 
     @field_validator("frequency_hz", mode="before")

@@ -1,0 +1,45 @@
+"""Checks of stores of energy at the line: their current, and what stands beside them.
+
+They read the document as it was written, see `scenario.raw`.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from tpss.scenario.direct_current import is_direct
+from tpss.scenario.line import CLOSEST_KM
+from tpss.scenario.raw import Fault, items, number, table
+from tpss.scenario.supply.supply import STATIONS, STORAGE
+
+
+def check_storage(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Stores at a line of alternating current, or a hair's breadth beside a feeding point."""
+    supply = table(document, "supply")
+    stores = list(items(supply, STORAGE))
+    if not stores:
+        return
+    simulation = table(document, "simulation")
+    if simulation.get("load_flow") == "least-squares":
+        problem = "the load flow of the original program knows no stores of energy"
+        yield "simulation.load_flow", "'least-squares'", problem, "leave it out"
+    if not is_direct(document):
+        for i, store in stores:
+            problem = "a store of energy, which follows the voltage of a direct current"
+            remedy = "choose a system of direct current, such as DC-0.75kV, or leave it out"
+            yield f"supply.{STORAGE}.{i}", repr(store.get("name", "")), problem, remedy
+        return
+    before = [_place(each) for kind in STATIONS for _, each in items(supply, kind)]
+    for i, store in stores:
+        line, km = place = _place(store)
+        if km is not None and any(
+            line == other and at is not None and 0.0 < abs(km - at) < CLOSEST_KM
+            for other, at in before
+        ):
+            problem = "closer than a metre to another feeding point, and not at it"
+            key = f"supply.{STORAGE}.{i}.position_km"
+            yield key, f"{km:.17g}", problem, "place it there, or elsewhere"
+        before.append(place)
+
+
+def _place(part: Mapping[str, Any]) -> tuple[object, float | None]:
+    return part.get("line"), number(part, "position_km")
