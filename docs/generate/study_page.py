@@ -134,6 +134,7 @@ MEANINGS = {
     "braking.machine_losses_mwh": "part of it: lost in the machines",
     "braking.refused_mwh": "part of it: offered to the line, which does not take it",
     "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
+    "braking.own_storage_mwh": "of that, what trains put into their own stores",
     "braking.fed_back_mwh": "part of it: what trains feed back into the line",
     "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",
     "braking.to_stores_mwh": "of that, what stores at the line take",

@@ -86,8 +86,21 @@ def trains(draw: Draw, nominal_kv: float, feeds_back: bool) -> Document:
 @st.composite
 def stores(draw: Draw, place: Document, nominal_kv: float, lowest_kv: float) -> Document:
     """A store of energy at a place, small ones too, which a step makes full or empty."""
+    found: Document = {**place, **draw(energy_stores())}
+    return found | {
+        "charges_above_kv": nominal_kv * draw(numbers(1.205, 1.245)),
+        "discharges_below_kv": lowest_kv * draw(numbers(0.85, 0.999)),
+        "charge_kw_per_v": draw(numbers(0.0, 200.0)),
+        "discharge_kw_per_v": draw(numbers(0.0, 200.0)),
+    }
+
+
+@st.composite
+def energy_stores(draw: Draw) -> Document:
+    """What every store says of itself."""
     kind = draw(st.sampled_from(["supercapacitor", "battery", "flywheel"]))
-    found: Document = {**place, "kind": kind, "power_kw": draw(numbers(1.0, 4_000.0))}
+    found: Document = {"kind": kind, "power_kw": draw(numbers(1.0, 4_000.0))}
+    found["soc_start"] = draw(numbers(0.0, 1.0))
     if kind == "supercapacitor":
         full_v = draw(numbers(100.0, 1_000.0))
         found |= {
@@ -104,13 +117,30 @@ def stores(draw: Draw, place: Document, nominal_kv: float, lowest_kv: float) -> 
     else:
         found["charge_efficiency"] = draw(numbers(0.5, 1.0))
         found["discharge_efficiency"] = draw(numbers(0.5, 1.0))
-    return found | {
-        "soc_start": draw(numbers(0.0, 1.0)),
-        "charges_above_kv": nominal_kv * draw(numbers(1.205, 1.245)),
-        "discharges_below_kv": lowest_kv * draw(numbers(0.85, 0.999)),
-        "charge_kw_per_v": draw(numbers(0.0, 200.0)),
-        "discharge_kw_per_v": draw(numbers(0.0, 200.0)),
-    }
+    return found
+
+
+@st.composite
+def on_board(draw: Draw) -> Document:
+    """A store of a train, which may help beyond a cap, and charge at stops."""
+    found: Document = draw(energy_stores())
+    if draw(st.booleans()):
+        found["line_power_cap_kw"] = draw(numbers(50.0, 3_000.0))
+    if draw(st.booleans()):
+        found["standing_current_a"] = draw(numbers(10.0, 1_000.0))
+    return found
+
+
+def _without_contact_line(draw: Draw, document: Document) -> None:
+    """Take the contact line away along a part of a line, perhaps where it is fed: then it is a fault."""
+    lines = {"": document["line"]} if "line" in document else document["lines"]
+    name = draw(st.sampled_from(list(lines)))
+    line = lines[name]
+    length_km = min(line["length_km"] / 4.0, draw(st.sampled_from([0.2, 0.8, 3.0])))
+    begin_km = line.get("begins_at_km", 0.0)
+    from_km = draw(numbers(begin_km, begin_km + line["length_km"] - length_km))
+    stretch = {"from_km": from_km, "to_km": from_km + length_km}
+    document["supply"]["without_contact_line"] = [stretch | ({"line": name} if name else {})]
 
 
 def _unloaded_kv(kind: Document) -> float:
@@ -168,5 +198,9 @@ def into_direct_current(draw: Draw, document: Document) -> None:
     for name in document["trains"]:
         feeds_back = continuous and draw(st.booleans())
         document["trains"][name] = draw(trains(nominal_kv, feeds_back))
+        if continuous and draw(st.integers(0, 2)) == 2:
+            document["trains"][name]["storage"] = draw(on_board())
         if not continuous and isinstance(document["trains"][name]["max_retardation_m_s2"], dict):
             document["trains"][name]["max_retardation_m_s2"] = 0.7
+    if continuous and "neutral_sections" not in supply and draw(st.integers(0, 4)) == 4:
+        _without_contact_line(draw, document)

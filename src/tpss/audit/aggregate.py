@@ -12,6 +12,7 @@ import numpy.typing as npt
 from tpss.audit.balances import ALLOWED_BALANCE, Scratch, new_scratch
 from tpss.audit.motion import audit_train
 from tpss.audit.network import audit_network, audit_sources, draws_power
+from tpss.audit.on_board import audit_own_store
 from tpss.audit.stores import audit_stores
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import magnitude
@@ -322,6 +323,9 @@ def _audit(
         for i in range(scratch.order.size):
             if draws_power(recording.train_state[step, i]):
                 audit_train(step, i, duration, trains[i], model, recording, figures)
+                if recording.on_board.shape[0] > 0:
+                    kind = model.types[trains[i].train_type]
+                    audit_own_store(step, i, duration, kind, recording, scratch.stored[0], figures)
 
 
 @inlined

@@ -136,6 +136,8 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     for store in supply.storage:
         place = on_line(store.line or "", f"{kilometres(store.position_km)} km")
         yield "storage", f"{store.name} {place}: {store.in_words}"
+    for stretch in supply.without_contact_line:
+        yield "no line", stretch.in_words
     if supply.tracks_tied is not None:
         yield "tracks tied", supply.tracks_tied
     for kind, switches in (("posts", supply.posts), ("breaks", supply.section_breaks)):

@@ -197,6 +197,7 @@ BRAKED = {
     "machine_losses_mwh": "lost in machines that brake",
     "refused_mwh": "refused by the line",
     "own_use_mwh": "own use of trains that brake",
+    "own_storage_mwh": "taken by stores of their own",
     "fed_back_mwh": "fed back by trains",
     "used_by_others_mwh": "of it used by other trains and the line",
     "to_stores_mwh": "of it taken by stores at the line",
@@ -205,10 +206,16 @@ BRAKED = {
 }
 """Words for where braked energy goes."""
 
+OF_STORES = ("own_storage_mwh", "to_stores_mwh")
+"""Those that are left out where nothing goes there."""
+
 
 def _braking(found: Mapping[str, float] | None) -> list[tuple[str, str, Any]]:
     """Where braked energy goes; empty without electric brakes."""
-    return [] if found is None else [(words, "MWh", found[key]) for key, words in BRAKED.items()]
+    if found is None:
+        return []
+    shown = [key for key in BRAKED if found[key] or key not in OF_STORES]
+    return [(BRAKED[key], "MWh", found[key]) for key in shown]
 
 
 def _place(name: str, found: Mapping[str, Any]) -> tuple[str, str, Any]:

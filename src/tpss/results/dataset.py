@@ -16,7 +16,7 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import RECORDED, REGENERATED, STORED, Recorded
+from tpss.step.recorded import ON_BOARD, RECORDED, REGENERATED, STORED, Recorded
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -53,6 +53,12 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         variables |= {
             each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
             for each in STORED
+        }
+    if outcome.recording.on_board.size:
+        rows = np.asarray(outcome.recording.on_board)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
+            for each in ON_BOARD
         }
     if (off_s := outcome.recording.without_power_s).size:
         words = {"units": "s", "long_name": "time with the power off, because of neutral sections"}

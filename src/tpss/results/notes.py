@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tpss.model.relays import station_relays
-from tpss.model.unfed import unfed_in_words
+from tpss.model.unfed import bare_in_words, unfed_in_words
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
@@ -95,9 +95,9 @@ def _outage(result: Result) -> Iterator[str]:
 
 def _unfed(result: Result) -> Iterator[str]:
     """Stretches of contact line without a source."""
-    words = unfed_in_words(result.scenario)
-    if words:
-        yield words
+    for words in (unfed_in_words(result.scenario), bare_in_words(result.scenario)):
+        if words:
+            yield words
 
 
 def _stranded(result: Result) -> Iterator[str]:

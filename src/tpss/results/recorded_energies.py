@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tpss.results.grid_side import StationSide, powers_of
-from tpss.results.regeneration import RECORDED_POWERS
+from tpss.results.regeneration import OWN_STORAGE, RECORDED_POWERS
 from tpss.results.regeneration import powers_of as braking_powers
 from tpss.results.standards.windows import Floats
 from tpss.results.tables import J_PER_MWH
@@ -54,6 +54,8 @@ def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     own = set(rows.dtype.names or ())
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}
     stations = np.asarray(run.recording.stations)[: run.step]
+    if run.recording.on_board.size:
+        recorded[OWN_STORAGE] = np.asarray(run.recording.on_board)[OWN_STORAGE][: run.step]
     stored_w = np.asarray(run.recording.stores)[: run.step]["store_power"]
     powers = braking_powers(recorded, stations["station_active_power"], sides, stored_w)
     duration_s = _duration_s(run)

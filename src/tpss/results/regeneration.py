@@ -18,7 +18,10 @@ REGENERATED = "regenerated_power"
 STORED = "store_power"
 """Variable that it has where there are stores at the line."""
 
-PARTS = ("friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "fed_back_mwh")
+PARTS = (
+    "friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "own_storage_mwh",
+    "fed_back_mwh",
+)  # fmt: skip
 """Columns into which `braked_mwh` is divided."""
 
 USES = ("used_by_others_mwh", "to_stores_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
@@ -26,6 +29,9 @@ USES = ("used_by_others_mwh", "to_stores_mwh", "to_grid_mwh", "burnt_in_stations
 
 TOTALS = ("braked_mwh", *PARTS, *USES)
 """Totals of a run."""
+
+OWN_STORAGE = "train_storage_power"
+"""Variable that a dataset has where trains have stores on board."""
 
 RECORDED_POWERS = (
     "braking_power",
@@ -42,8 +48,8 @@ def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 
     Friction brakes give what electric ones do not.  Of the work of these the machine loses a part; of
     what it offers the line may refuse some, which friction brakes or a resistor take; the rest feeds the
-    train itself first, its auxiliaries, and its motors in the same step; then the line.  Empty unless
-    trains have electric brakes.
+    train itself first, its auxiliaries, its motors in the same step, and its store; then the line.
+    Empty unless trains have electric brakes.
 
     Of what all trains feed back in a step, stores at the line take some, stations some, into the grid or
     resistors, and the rest is used by other trains or lost on the line.  Trains share these uses in
@@ -89,7 +95,8 @@ def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
 
 
 def _recorded(dataset: xr.Dataset) -> dict[str, Floats]:
-    return {name: step_values(dataset, name) for name in RECORDED_POWERS}
+    known = [*RECORDED_POWERS, *([OWN_STORAGE] if OWN_STORAGE in dataset else [])]
+    return {name: step_values(dataset, name) for name in known}
 
 
 def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -98,18 +105,24 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
     Parameters
     ----------
     recorded : mapping of str to array, shape (steps, trains)
-        What is recorded, by the names `RECORDED_POWERS`; NaN of trains that are not on the line. [W]
+        What is recorded, by the names `RECORDED_POWERS`, and `OWN_STORAGE` where there is any; NaN of
+        trains that are not on the line. [W]
     """
     braked, electric, regenerated, refused, active = (
         np.nan_to_num(recorded[name]) for name in RECORDED_POWERS
     )
     fed_back = np.maximum(-active, 0.0)
+    stored = np.zeros_like(active)
+    if OWN_STORAGE in recorded:  # what it takes from the line is no part of what is braked
+        taken = np.maximum(np.nan_to_num(recorded[OWN_STORAGE]), 0.0)
+        stored = np.where(regenerated > 0.0, taken, 0.0)
     return {
         "braked_mwh": braked,
         "friction_mwh": braked - electric,
         "machine_losses_mwh": electric - regenerated - refused,
         "refused_mwh": refused,
-        "own_use_mwh": regenerated - fed_back,
+        "own_use_mwh": regenerated - stored - fed_back,
+        "own_storage_mwh": stored,
         "fed_back_mwh": fed_back,
     }
 
@@ -170,6 +183,7 @@ def in_words(totals: dict[str, Any]) -> str:
         "the grid": totals["to_grid_mwh"],
         "resistors of stations": totals["burnt_in_stations_mwh"],
         "own use": totals["own_use_mwh"],
+        "own stores": totals["own_storage_mwh"],
         "losses of the machines": totals["machine_losses_mwh"],
         "refused by the line": totals["refused_mwh"],
         "friction": totals["friction_mwh"],

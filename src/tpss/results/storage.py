@@ -8,6 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results.places import line_names, lines_of, where_told
+from tpss.results.regeneration import OWN_STORAGE
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.tables import over_time
 from tpss.scenario.scenario import Scenario
@@ -19,7 +20,7 @@ LARGEST_MOVE = 0.2
 """Share of its capacity that a store may take or give in a step without a note. [1]"""
 
 EMPTIER = 0.01
-"""Share of its capacity by which a store may end emptier than it began without a note. [1]"""
+"""Share of their capacity by which all stores may end emptier than they began without a note. [1]"""
 
 AT_LINE, ON_BOARD = "at the line", "on board"
 
@@ -71,8 +72,24 @@ def stores_of(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Store]:
         power_w, lost_w = (step_values(dataset, name) for name in ("store_power", "store_losses"))
         for m, given in enumerate(scenario.supply.storage):
             line = names[owners[m]] if several else ""
-            place = given.name, AT_LINE, given, given.position_km, line
-            yield Store(*place, energy_j[:, m], power_w[:, m], lost_w[:, m])
+            yield Store(
+                given.name, AT_LINE, given, given.position_km, line,
+                energy_j[:, m], power_w[:, m], lost_w[:, m],
+            )  # fmt: skip
+    if OWN_STORAGE in dataset:
+        energy_j = dataset.train_stored_energy.to_numpy()
+        power_w, lost_w = (
+            step_values(dataset, name) for name in (OWN_STORAGE, "train_storage_losses")
+        )
+        trains = scenario.trains_by_service()
+        named = zip(dataset.train.to_numpy(), dataset.service.to_numpy(), strict=True)
+        for i, (name, service) in enumerate(named):
+            own = trains[str(service)].storage
+            if own is not None:
+                yield Store(
+                    str(name), ON_BOARD, own, np.nan, "",
+                    energy_j[:, i], power_w[:, i], lost_w[:, i],
+                )  # fmt: skip
 
 
 def storage(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
@@ -129,15 +146,12 @@ def in_words(table: pd.DataFrame) -> list[str]:
 def storage_notes(dataset: xr.Dataset, scenario: Scenario) -> Iterator[str]:
     """Stores that end emptier than they began, and those of which a step moves a large part."""
     found = list(stores_of(dataset, scenario))
-    emptier = [each for each in found if _fallen_j(each) > EMPTIER * each.given.capacity_j]
-    if emptier:
-        fallen_kwh = sum(_fallen_j(each) for each in emptier) / J_PER_KWH
-        listed = ", ".join(each.name for each in emptier[:3])
-        more = f" and {len(emptier) - 3} more" if len(emptier) > 3 else ""
+    fallen_j = sum(start_j - end_j for start_j, end_j in (each.ends_j for each in found))
+    if fallen_j > EMPTIER * sum(each.given.capacity_j for each in found):
         yield (
-            f"{listed}{more} ended with {fallen_kwh:.2f} kWh less in store than at the beginning, and "
-            "the stations fed so much less: compare runs at the same energy, or with soc_start at that "
-            "of the end"
+            f"the stores hold {fallen_j / J_PER_KWH:.2f} kWh less at the end than at the beginning, "
+            "which the stations did not feed: compare runs at the same energy, or with soc_start at "
+            "that of the end"
         )
     fast = max(found, key=lambda each: each.largest_move, default=None)
     if fast is not None and fast.largest_move > LARGEST_MOVE:
@@ -146,8 +160,3 @@ def storage_notes(dataset: xr.Dataset, scenario: Scenario) -> Iterator[str]:
             "limits bite early, as they are those of the energy at the step's beginning; a shorter "
             "time_step_min shows by how much"
         )
-
-
-def _fallen_j(store: Store) -> float:
-    start_j, end_j = store.ends_j
-    return start_j - end_j

@@ -117,7 +117,13 @@ def _parts_on_lines(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[
     supply = table(document, "supply")
     for kind in (*STATIONS, STORAGE):
         yield from ((f"supply.{kind}.{i}", each) for i, each in items(supply, kind))
-    for kind in ("contact_lines", "posts", "section_breaks", "neutral_sections"):
+    for kind in (
+        "contact_lines",
+        "posts",
+        "section_breaks",
+        "neutral_sections",
+        "without_contact_line",
+    ):
         yield from ((f"supply.{kind}.{i}", each) for i, each in items(supply, kind))
     if "high_voltage_line" in supply:
         yield "supply.high_voltage_line", table(supply, "high_voltage_line")

@@ -14,11 +14,12 @@ from tpss.scenario.supply.supply import STATIONS, STORAGE
 
 def check_storage(document: Mapping[str, Any]) -> Iterator[Fault]:
     """Stores at a line of alternating current, or a hair's breadth beside a feeding point."""
-    supply = table(document, "supply")
+    supply, simulation = table(document, "supply"), table(document, "simulation")
     stores = list(items(supply, STORAGE))
-    if not stores:
+    trains = table(document, "trains").values()
+    on_board = any(isinstance(train, Mapping) and "storage" in train for train in trains)
+    if not stores and not on_board:
         return
-    simulation = table(document, "simulation")
     if simulation.get("load_flow") == "least-squares":
         problem = "the load flow of the original program knows no stores of energy"
         yield "simulation.load_flow", "'least-squares'", problem, "leave it out"

@@ -148,6 +148,15 @@ STORED = (
 )  # fmt: skip
 """What is recorded of stores of energy at the line."""
 
+ON_BOARD = (
+    Recorded("train_stored_energy", "train", "J", "energy in the store on board", "E",
+             "0 of a train without one", at_instant=True),
+    Recorded("train_storage_power", "train", "W", "power that the store on board takes", "S",
+             "negative where it gives"),
+    Recorded("train_storage_losses", "train", "W", "losses of the store on board"),
+)  # fmt: skip
+"""What is recorded besides where trains have stores of energy on board."""
+
 
 def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
     own = (field for each in table if each.of == what for field in each.fields)
@@ -185,3 +194,7 @@ class StationRow(Row, of="station"):
 
 class StoreRow(Row, of="store", table=STORED):
     """Row of a store of energy at the line."""
+
+
+class OnBoardRow(Row, of="train", table=ON_BOARD):
+    """What the store of a train does."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tpss.kernel import at, inlined
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import NodeRow, RegenerationRow, StationRow, StoreRow, TrainRow
+from tpss.step.recorded import NodeRow, OnBoardRow, RegenerationRow, StationRow, StoreRow, TrainRow
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -57,6 +57,8 @@ class Recording(NamedTuple):
     sections. [s]"""
     stores: Records[StoreRow]
     """Shape (instants, stores at the line)."""
+    on_board: Records[OnBoardRow]
+    """Shape (instants, trains).  Empty unless trains have stores of energy."""
 
 
 def is_kept_apart(model: Model) -> bool:
@@ -81,11 +83,16 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
     row += network.stores.size * StoreRow.dtype.itemsize
+    row += trains * OnBoardRow.dtype.itemsize * _stores_on_board(model)
     return (steps + 1) * row
 
 
 def _regenerates(model: Model) -> bool:
     return bool((model.types["regeneration"]["highest_force_n"] > 0.0).any())
+
+
+def _stores_on_board(model: Model) -> bool:
+    return bool((model.types["on_board"]["store"]["capacity_j"] > 0.0).any())
 
 
 def _has_neutral(model: Model) -> bool:
@@ -137,4 +144,5 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
         stores=blank(network.stores.size, StoreRow),
+        on_board=blank(trains, OnBoardRow, rows if _stores_on_board(model) else 0),
     )

@@ -15,6 +15,7 @@ PARTS = {
     "to_stores_mwh": ("stores at the line", "#F0E442"),
     "to_grid_mwh": ("to the grid", COLOURS[0]),
     "own_use_mwh": ("own use", "#56B4E9"),
+    "own_storage_mwh": ("own stores", "#DDCC77"),
     "burnt_in_stations_mwh": ("burnt in stations", COLOURS[3]),
     "machine_losses_mwh": ("lost in machines", COLOURS[1]),
     "refused_mwh": ("refused by the line", COLOURS[4]),

@@ -17,7 +17,14 @@ from tpss.scenario.fields import (
     unique,
 )
 from tpss.scenario.supply.catenary import Catenary, without_reactance
-from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
+from tpss.scenario.supply.contact_line import (
+    ContactLine,
+    NeutralSection,
+    Post,
+    SectionBreak,
+    Tied,
+    WithoutContactLine,
+)
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
@@ -100,6 +107,9 @@ class Supply(Part):
     )
     neutral_sections: tuple[NeutralSection, ...] = Field(
         default=(), description="Neutral sections, which part the contact line between phases."
+    )
+    without_contact_line: tuple[WithoutContactLine, ...] = Field(
+        default=(), description="Stretches without contact line: trains run from their own stores."
     )
     junctions_tied: Flag = Field(
         default=True,
