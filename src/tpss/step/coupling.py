@@ -71,13 +71,13 @@ def pass_unfed(count: int, model: Model, state: State) -> None:
 
     What is kept as their voltage for the next step, where they may be fed again, is the nominal one.
     """
-    nominal_v = model.network.system.nominal_voltage_v
+    nominal_v, loads = model.network.system.nominal_voltage_v, loads_of(model, state)
     for k in range(count):
         place = state.flow.standing[at(k)]
         if is_unfed(place.section, model.network):
             train = state.trains[at(place.train)]
-            if not runs_on_store(nominal_v, train, loads_of(model, state)):
-                find_demand(0.0, WITHOUT_SLOPES, train, loads_of(model, state))
+            if not runs_on_store(nominal_v, train, loads):
+                find_demand(0.0, WITHOUT_SLOPES, train, loads)
             train.line_voltage_v = nominal_v
             train.demand.voltage_v = nominal_v
 

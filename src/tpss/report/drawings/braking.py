@@ -26,6 +26,9 @@ PARTS = {
 NARROWEST = 0.06
 """Share of the whole width from which a part of a bar is wide enough for its figure."""
 
+OF_A_LETTER = 0.014
+"""Share of the whole width that a letter of such a figure takes."""
+
 SMALLEST = 0.0005
 """Share of the whole width below which a part is not visible, and left out."""
 
@@ -68,7 +71,9 @@ def braking(runs: Mapping[str, Result]) -> Drawing:
             mwh = float(each[column])
             if mwh < SMALLEST * width:
                 continue
-            words = f"{mwh:.3g}" if mwh > NARROWEST * width else ""
+            words = f"{mwh:.3g}"
+            if mwh <= max(NARROWEST, OF_A_LETTER * len(words)) * width:
+                words = ""
             bars.append(Bar(row, start, mwh, "" if name in named else name, words, colour))
             named.add(name)
             start += mwh

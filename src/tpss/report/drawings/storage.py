@@ -44,7 +44,7 @@ def storage(runs: Mapping[str, Result]) -> Drawing:
         raise NothingToDrawError("there is no store of energy")
     zero = Mark(0.0, colour=STRONG_GREY)
     panels = [
-        Panel("state of charge [%]", charge, "state of\ncharge [%]", span=(0.0, 100.0)),
+        Panel("state of charge [%]", charge, "state of\ncharge [%]", span=(-2.0, 102.0)),
         Panel("power taken [MW]", [zero, *power], "power taken\n[MW]"),
     ]
     return Drawing(TIME, panels, panel_inch=2.0, names_one=True)
