@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.powerflow.groups import sections_of
+from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.outside import find_demands, find_residuals
 from tpss.powerflow.system import System
@@ -53,6 +54,8 @@ def admittance_matrix(network: Network, flow: Flow) -> Complexes:
 
     for branch in network.branches:
         stamp(branch.start_node, branch.end_node, branch.admittance_s, 0)  # 0 of one that is out
+    for k, (nodes, weights) in enumerate(ends_of(network.links)):
+        y[np.ix_(nodes, nodes)] += network.links.admittance_s[k] * np.outer(weights, weights)
     coupled = {s for group in sections_of(network.groups) for s in group}
     for s, (section, found) in enumerate(zip(network.sections, flow.sections, strict=True)):
         before = section.start_node

@@ -15,6 +15,7 @@ from scipy.optimize import fsolve
 from slow_figures import intervals_s, largest, nan_is_largest
 from tpss.audit.balances import ALLOWED_BALANCE
 from tpss.powerflow.groups import sections_of
+from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
 from tpss.run.run import Outcome
 from tpss.sources.kinds import SourceKind
@@ -73,6 +74,9 @@ def power_mismatch_va(outcome: Outcome, model: Model) -> float:
         current = current / branch.impedance_ohm
         leaving_a[:, branch.start_node] += current
         leaving_a[:, branch.end_node] -= current
+    for k, (ends, weights) in enumerate(ends_of(network.links)):
+        current = network.links.admittance_s[k] * (node_v[:, ends] @ weights)
+        leaving_a[:, ends] += current[:, None] * weights
     fed = np.zeros_like(node_v)
     fed[:, network.sources.node] = (
         stations["station_active_power"] + 1j * stations["station_reactive_power"]

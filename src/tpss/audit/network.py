@@ -11,6 +11,7 @@ import math
 
 from tpss.audit.balances import Scratch, audit_demand, worst
 from tpss.audit.coupled import audit_groups, pass_trains
+from tpss.audit.links import audit_links
 from tpss.audit.stores import join_stores
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
@@ -56,6 +57,7 @@ def audit_network(
         current = drop / branch.impedance_ohm
         scratch.leaving_a[branch.start_node] += current
         scratch.leaving_a[branch.end_node] -= current
+    audit_links(network.links, scratch.node_v, scratch.leaving_a)
     count = _sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):

@@ -27,6 +27,7 @@ from tpss.model.sources import build_sources
 from tpss.model.stores import build_stores
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
+from tpss.powerflow.links import LinkPart, edges_of_links
 from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
 from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
@@ -71,13 +72,17 @@ class SupplyPlan:
     """Pairs of nodes that are one in the whole state, see `model.parting`."""
     guards: list[Joint] = field(default_factory=list)
     """Pairs of nodes, the second one at the end of a section, that are one until that trips."""
+    links: list[LinkPart] = field(default_factory=list)
+    link_names: list[str] = field(default_factory=list)
+    link_kinds: list[str] = field(default_factory=list)
 
     @property
     def edges(self) -> list[tuple[int, int]]:
         """Nodes that branches and sections couple."""
         ends = [(section.start_node, section.end_node) for section in self.sections]
         within = edges_within(self.coupled, ends)
-        return ends + within + [(branch.start_node, branch.end_node) for branch in self.branches]
+        lumped = [(branch.start_node, branch.end_node) for branch in self.branches]
+        return ends + within + lumped + edges_of_links(self.links)
 
     def one_with(self, joints: Sequence[Joint]) -> list[int]:
         """The node that each node is one with where some pairs are joined."""
@@ -109,6 +114,19 @@ class SupplyPlan:
         self.branch_names.append(f"{kind} {name}")
         self.branch_kinds.append(kind)
         self.branch_level.append(level)
+
+    def add_link(
+        self,
+        kind: str,
+        name: str,
+        nodes: tuple[int, ...],
+        weights: tuple[float, ...],
+        impedance_ohm: complex,
+    ) -> None:
+        """Add a lumped element between several nodes; its label begins with its kind."""
+        self.links.append(LinkPart(nodes, weights, impedance_ohm))
+        self.link_names.append(f"{kind} {name}")
+        self.link_kinds.append(kind)
 
     def branch_labels(self) -> list[str]:
         """Names of what `Recording.branch_current` holds."""
@@ -149,8 +167,13 @@ def build_supply(
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
-    stores = build_stores(plan.stores, supply.storage)
-    network = assemble(*parts, room=plan.room(), groups=plan.coupled, stores=stores)
+    network = assemble(
+        *parts,
+        room=plan.room(),
+        groups=plan.coupled,
+        links=plan.links,
+        stores=build_stores(plan.stores, supply.storage),
+    )
     return mark_unfed(network), plan
 
 
@@ -187,6 +210,7 @@ def joined_network(
         parted.system,
         room=plan.room(),
         groups=plan.coupled,
+        links=[link._replace(nodes=tuple(node[n] for n in link.nodes)) for link in plan.links],
         stores=build_stores([node[n] for n in plan.stores], supply.storage),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}

@@ -6,6 +6,7 @@ network to the other.  Out of service are
     a source      it has no units, and no node is its own: that is one without a source
     some units    the source has fewer
     a branch      its admittance is 0
+    a link        likewise
 
 Nodes that no source reaches by what is left are marked as `UNFED`.
 """
@@ -16,12 +17,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
+from tpss.powerflow.links import add_admittances, ends_of, without_links
 from tpss.powerflow.network import UNFED, Network
 from tpss.record import copy_of_records
 
 
-def in_service(network: Network, units: Mapping[int, int], opened: Collection[int]) -> Network:
-    """The network, none of whose nodes follows, with fewer units of some sources and branches.
+def in_service(
+    network: Network,
+    units: Mapping[int, int],
+    opened: Collection[int],
+    opened_links: Collection[int] = (),
+) -> Network:
+    """The network, none of whose nodes follows, with fewer units of some sources, branches and links.
 
     Parameters
     ----------
@@ -31,6 +38,8 @@ def in_service(network: Network, units: Mapping[int, int], opened: Collection[in
         Units that are in service, by the number of their source; of others all are.
     opened : collection of int
         Numbers of the branches that are out.
+    opened_links : collection of int
+        Numbers of the links that are out.
     """
     sources, branches = copy_of_records(network.sources), copy_of_records(network.branches)
     source_of_node = network.source_of_node.copy()
@@ -42,7 +51,8 @@ def in_service(network: Network, units: Mapping[int, int], opened: Collection[in
         branches[number].admittance_s = 0.0
     source_of_node[source_of_node == UNFED] = -1
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
-    return mark_unfed(changed._replace(admittance_s=_admittance_of_branches(changed)))
+    changed = changed._replace(links=without_links(network.links, opened_links))
+    return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
 
 
 def mark_unfed(network: Network) -> Network:
@@ -54,8 +64,8 @@ def mark_unfed(network: Network) -> Network:
     return network._replace(source_of_node=source_of_node)
 
 
-def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
-    """What the branches in service put into each block of the linear system. [S]
+def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
+    """What the branches and links in service put into each block of the linear system. [S]
 
     Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
     """
@@ -66,6 +76,7 @@ def _admittance_of_branches(network: Network) -> npt.NDArray[np.complex128]:
         a, b, admittance = branch.start_node, branch.end_node, branch.admittance_s
         total[[a, b]] += admittance
         total[[place[a, b], place[b, a]]] -= admittance
+    add_admittances(network.links, place, total)
     return total
 
 
@@ -82,7 +93,7 @@ def places_of_blocks(pattern: Pattern) -> dict[tuple[int, int], int]:
 
 
 def unfed_nodes(network: Network) -> npt.NDArray[np.bool_]:
-    """Nodes that no source in service reaches by branches in service and sections, shape (nodes,)."""
+    """Nodes that no source in service reaches by what is in service, and sections, shape (nodes,)."""
     neighbours: list[list[int]] = [[] for _ in range(network.source_of_node.size)]
     carrying = network.branches["admittance_s"] != 0.0
     starts = [*network.branches["start_node"][carrying], *network.sections["start_node"]]
@@ -90,6 +101,10 @@ def unfed_nodes(network: Network) -> npt.NDArray[np.bool_]:
     for start, end in zip(starts, ends, strict=True):
         neighbours[start].append(end)
         neighbours[end].append(start)
+    for k, (nodes, _) in enumerate(ends_of(network.links)):
+        if network.links.admittance_s[k] != 0.0:
+            for node in nodes:
+                neighbours[node] += [other for other in nodes if other != node]
     unfed = network.source_of_node < 0
     waiting = np.flatnonzero(~unfed).tolist()
     while waiting:

@@ -30,6 +30,7 @@ from tpss.numerics.curve import CurvePoint, Points
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail
 from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
+from tpss.powerflow.links import LinkPart, Links, add_admittances, edges_of_links, links_of
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -247,6 +248,8 @@ class Network(NamedTuple):
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups
     """Of coupled sections."""
+    links: Links
+    """Lumped elements between several nodes."""
     stores: Records[StoreLaw]
     """Stores of energy at its nodes."""
 
@@ -342,6 +345,7 @@ def assemble(
     *,
     room: Sequence[tuple[int, int]] = (),
     groups: Sequence[Sequence[int]] = (),
+    links: Sequence[LinkPart] = (),
     stores: Records[StoreLaw] | None = None,
 ) -> Network:
     """Network from its parts.
@@ -358,15 +362,18 @@ def assemble(
         Further pairs of nodes for which the linear system has room.
     groups : sequence of sequences of int
         Numbers of sections side by side that are coupled.
+    links : sequence of LinkPart
     stores : records of StoreLaw, optional
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
+    edges += edges_of_links(links)
     edges += room
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]
+    impedances += [abs(part.impedance_ohm) for part in links]
     rounding = max(resolution_va(z, system) for z in impedances) / system.base_power_va
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
     source_of_node[sources["node"]] = np.arange(sources.size)
@@ -378,6 +385,8 @@ def assemble(
     admittance_s = np.zeros(len(place), dtype=complex)
     for part in branches:
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
+    linked = links_of(links)
+    add_admittances(linked, place, admittance_s)
 
     return Network(
         system=system,
@@ -391,6 +400,7 @@ def assemble(
         admittance_s=admittance_s,
         tolerance=max(TOLERANCE, rounding),
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
+        links=linked,
         stores=StoreLaw.blank(0) if stores is None else stores,
     )
 

@@ -62,6 +62,7 @@ from tpss.powerflow.chain import (
 )
 from tpss.powerflow.coupled import direct_groups, evaluate_groups, is_coupled
 from tpss.powerflow.following import FOLLOWS, follow
+from tpss.powerflow.links import leave_by_links
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
 from tpss.powerflow.stores import add_stores
@@ -127,6 +128,7 @@ def _leave_by_branches(network: Network, flow: Flow) -> None:
         current = (start.voltage_v - end.voltage_v) * branch.admittance_s
         start.leaving_current_a += current
         end.leaving_current_a -= current
+    leave_by_links(network.links, flow.nodes)
 
 
 @inlined

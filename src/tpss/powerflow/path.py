@@ -220,6 +220,7 @@ def solve_on_way(
         network.admittance_s,
         network.tolerance,
         network.groups,
+        network.links,
         network.stores,
     )
     if steps == LINKED:

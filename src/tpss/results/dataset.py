@@ -16,7 +16,7 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import ON_BOARD, RECORDED, REGENERATED, STORED, Recorded
+from tpss.step.recorded import LINKED, ON_BOARD, RECORDED, REGENERATED, STORED, Recorded
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -47,6 +47,12 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         variables |= {
             each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
             for each in REGENERATED
+        }
+    if outcome.recording.links.size:
+        polar = _polar(np.asarray(outcome.recording.links), "link", ...)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, values, described(each))
+            for each, values in zip(LINKED, polar, strict=True)
         }
     if outcome.recording.stores.size:
         rows = np.asarray(outcome.recording.stores)
@@ -213,6 +219,10 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "node_line": ("node", np.array(plan.node_line), of("1", "index of its line")),
         "station_line": ("station", np.array(layout.station_line), of("1", "index of its line")),
     }
+    links = {
+        "link": ("link", plan.link_names, of("", "transformer between several nodes")),
+        "link_kind": ("link", plan.link_kinds, of("", "what it is")),
+    }
     stores = {
         "store": ("store", list(layout.stores), of("", "store of energy at the line")),
         "store_position": ("store", np.array(layout.store_m), of("m", "position")),
@@ -222,6 +232,7 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         stores["store_line"] = ("store", np.array(layout.store_line), words)
     return {
         **(lines if len(layout.lines) > 1 else {}),
+        **(links if plan.links else {}),
         **(stores if layout.stores else {}),
         "time": ("time", outcome.instants_s, of("s", "time from the start")),
         "train": ("train", [train.name for train in trains], of("", "train")),

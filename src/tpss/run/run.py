@@ -310,6 +310,7 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         waits_for=kept.waits_for[:rows, :count],
         regeneration=kept.regeneration[:rows, :count],
         without_power_s=kept.without_power_s[:rows, :count],
+        links=kept.links[:rows],
         stores=kept.stores[:rows],
         on_board=kept.on_board[:rows, :count],
     )

@@ -11,6 +11,7 @@ from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
 from tpss.powerflow.coupled import is_coupled, losses_of_groups
+from tpss.powerflow.links import record_links
 from tpss.powerflow.network import Flow, Network, Standing
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
@@ -231,6 +232,7 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         if not is_coupled(network.groups, s):
             lost_w += section_losses(s, network, flow)
     lost_w += losses_of_groups(network.groups, flow)
+    lost_w += record_links(network.links, step, flow.nodes, recording.links)
     recording.network_losses[at(step)] = lost_w
 
 

@@ -140,6 +140,12 @@ REGENERATED = (
 )  # fmt: skip
 """What is recorded besides where trains have electric brakes."""
 
+LINKED = (
+    Recorded("link_current", "link", "A", "current of a transformer between several nodes",
+             remark="on the side of the contact line", phasor="link"),
+    Recorded("link_angle", "link", "rad", "angle of that current", phasor="link"),
+)  # fmt: skip
+"""What is recorded besides where transformers stand between several nodes."""
 STORED = (
     Recorded("stored_energy", "store", "J", "energy in a store at the line", "E", at_instant=True),
     Recorded("store_power", "store", "W", "power that a store takes from the line", "P",
@@ -190,6 +196,10 @@ class NodeRow(Row, of="node"):
 
 class StationRow(Row, of="station"):
     """Row of a feeding station."""
+
+
+class LinkRow(Row, of="link", table=LINKED):
+    """Row of a link."""
 
 
 class StoreRow(Row, of="store", table=STORED):

@@ -7,9 +7,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import at, inlined
+from tpss.powerflow.links import count_links
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import NodeRow, OnBoardRow, RegenerationRow, StationRow, StoreRow, TrainRow
+from tpss.step.recorded import (
+    LinkRow,
+    NodeRow,
+    OnBoardRow,
+    RegenerationRow,
+    StationRow,
+    StoreRow,
+    TrainRow,
+)
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -55,6 +64,8 @@ class Recording(NamedTuple):
     without_power_s: Floats
     """Shape (instants, trains): time that each one has its power off.  Empty without neutral
     sections. [s]"""
+    links: Records[LinkRow]
+    """Shape (instants, links)."""
     stores: Records[StoreRow]
     """Shape (instants, stores at the line)."""
     on_board: Records[OnBoardRow]
@@ -81,6 +92,7 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += network.sources.size * StationRow.dtype.itemsize
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
+    row += count_links(network.links) * LinkRow.dtype.itemsize
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
     row += network.stores.size * StoreRow.dtype.itemsize
     row += trains * OnBoardRow.dtype.itemsize * _stores_on_board(model)
@@ -143,6 +155,7 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         waits_for=np.full((rows if is_kept_apart(model) else 0, trains), -1, dtype=np.int32),
         regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
+        links=blank(count_links(network.links), LinkRow),
         stores=blank(network.stores.size, StoreRow),
         on_board=blank(trains, OnBoardRow, rows if _stores_on_board(model) else 0),
     )
