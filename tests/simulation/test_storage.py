@@ -61,6 +61,9 @@ def test_all_balances_close(both):
     """Energy of the stations = trains + stores + losses; a store keeps what it took, less losses."""
     assert both.audit["passed"]
     assert both.audit["network_balance"] < 1e-9
+    held = both.summary["storage"]["at the line"]
+    assert held["start_kwh"] == both.storage.start_kwh.sum()
+    assert held["end_kwh"] == both.storage.end_kwh.sum()
     for _, row in both.storage.iterrows():
         kept_kwh = row.charged_kwh - row.discharged_kwh - row.losses_kwh
         assert row.end_kwh - row.start_kwh == pytest.approx(kept_kwh, abs=1e-9)

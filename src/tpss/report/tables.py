@@ -11,6 +11,7 @@ from tpss import units
 from tpss.results.places import LINE
 from tpss.results.regeneration import fed_back
 from tpss.results.result import Result
+from tpss.results.storage import totals
 from tpss.scenario.differences import differences
 from tpss.units import on_line
 
@@ -154,6 +155,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ("share of losses", "%", 100.0 * lost / total if total else None),
         *_grid_side(summary.get("converter_losses")),
         *_braking(fed_back(result.dataset, result.scenario)),
+        *_stored(totals(result.storage)),
         ("lowest voltage", "kV", lowest.get("voltage_kv")),
         ("train with lowest voltage", "", lowest.get("train")),
         _place("place of lowest voltage", lowest),
@@ -216,6 +218,25 @@ def _braking(found: Mapping[str, float] | None) -> list[tuple[str, str, Any]]:
         return []
     shown = [key for key in BRAKED if found[key] or key not in OF_STORES]
     return [(BRAKED[key], "MWh", found[key]) for key in shown]
+
+
+def _stored(found: Mapping[str, Mapping[str, float]]) -> list[tuple[str, str, Any]]:
+    """What stores of energy took, gave, lost and held; empty without any."""
+    return [
+        (f"{words} stores {place}", "kWh", sums[key])
+        for place, sums in found.items()
+        for key, words in STORED.items()
+    ]
+
+
+STORED = {
+    "charged_kwh": "taken by",
+    "discharged_kwh": "given by",
+    "losses_kwh": "lost in",
+    "start_kwh": "at the beginning in",
+    "end_kwh": "at the end in",
+}
+"""Words for what stores of energy do, before their place."""
 
 
 def _place(name: str, found: Mapping[str, Any]) -> tuple[str, str, Any]:

@@ -128,19 +128,24 @@ def _row(store: Store, dataset: xr.Dataset) -> tuple[object, ...]:
     )  # fmt: skip
 
 
+TOTALS = ("charged_kwh", "discharged_kwh", "losses_kwh", "start_kwh", "end_kwh")
+"""Columns that are summed over stores."""
+
+
+def totals(table: pd.DataFrame) -> dict[str, dict[str, float]]:
+    """Sums over all stores by their places, of `TOTALS`; empty without any."""
+    sums = table.groupby("place", sort=False)[list(TOTALS)].sum()
+    return {str(place): dict(zip(TOTALS, row, strict=True)) for place, *row in sums.itertuples()}
+
+
 def in_words(table: pd.DataFrame) -> list[str]:
     """What the stores did together, in a line for each place where there are any."""
-    lines = []
-    for place, of_place in table.groupby("place", sort=False):
-        sums = of_place[
-            ["charged_kwh", "discharged_kwh", "losses_kwh", "start_kwh", "end_kwh"]
-        ].sum()
-        lines.append(
-            f"Stores {place}: took {sums.charged_kwh:.2f} kWh, gave {sums.discharged_kwh:.2f} kWh, lost "
-            f"{sums.losses_kwh:.2f} kWh; they hold {sums.end_kwh:.2f} kWh at the end, "
-            f"{sums.start_kwh:.2f} kWh at the beginning"
-        )
-    return lines
+    return [
+        f"Stores {place}: took {sums['charged_kwh']:.2f} kWh, gave {sums['discharged_kwh']:.2f} kWh, "
+        f"lost {sums['losses_kwh']:.2f} kWh; they hold {sums['end_kwh']:.2f} kWh at the end, "
+        f"{sums['start_kwh']:.2f} kWh at the beginning"
+        for place, sums in totals(table).items()
+    ]
 
 
 def storage_notes(dataset: xr.Dataset, scenario: Scenario) -> Iterator[str]:
