@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tpss
+from tpss.report.drawings.energy import energy_flow
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back
 
@@ -186,3 +187,10 @@ def test_a_fault_is_told_with_its_place_and_what_to_do(name):
     assert [each.key for each in own] == [key]
     assert said in own[0].problem
     assert own[0].remedy
+
+
+def test_the_bars_of_the_energy_have_one_length_with_stores_at_the_line(both):
+    ends = {}
+    for bar in energy_flow(both).panels[0].items:
+        ends[bar.row] = bar.start + bar.length
+    assert list(ends.values()) == pytest.approx([ends[0]] * 3, rel=5e-3)

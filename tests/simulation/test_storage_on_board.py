@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tpss
+from tpss.report.drawings.energy import used_by_trains
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back
 from tpss.results.stranded import stranded_trains
@@ -191,3 +192,10 @@ def test_a_fault_is_told_with_its_place_and_what_to_do(name):
     assert [each.key for each in caught.value.findings] == [key]
     assert said in caught.value.findings[0].problem
     assert caught.value.findings[0].remedy
+
+
+def test_the_bars_of_the_energy_have_one_length_with_stores_on_board(capped):
+    used = used_by_trains(capped)
+    assert sum(used.values()) == pytest.approx(capped.trips.energy_mwh.sum(), rel=1e-9)
+    taken = capped.storage.charged_kwh.sum() - capped.storage.discharged_kwh.sum()
+    assert used["stores on board"] == pytest.approx(taken / 1e3, rel=1e-9)

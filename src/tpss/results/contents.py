@@ -46,8 +46,8 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "braking", "storage", "thermal",
-    "energy", "effort",
+    "stations", "converters", "converter-losses", "braking", "storage", "thermal", "energy",
+    "effort",
 )  # fmt: skip
 
 
