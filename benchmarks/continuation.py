@@ -13,7 +13,6 @@ back, the branch has turned.  So the path cannot jump to another branch, and its
 which the line can carry.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -25,6 +24,7 @@ from tpss.powerflow.groups import sections_of
 from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.outside import find_demands, find_residuals
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.powerflow.system import System
 
 Floats = npt.NDArray[np.float64]
@@ -39,6 +39,9 @@ SAME_PLACE_M = 1e-9
 
 SLIGHTLY = 1e-6
 """Of base voltage and base current: differences of the sources' laws. [p.u.]"""
+
+CHANGES = SLIGHTLY * np.array([1.0, -1.0, 2.0, -2.0, 1.0j, -1.0j, 2.0j, -2.0j])
+"""Forth, back and twice as far, of the real part, then of the imaginary part. [p.u.]"""
 
 
 def admittance_matrix(network: Network, flow: Flow) -> Complexes:
@@ -134,6 +137,8 @@ class Equations:
     """Trains along the line, as in `Flow`."""
     running: Any
     """Converters, as in `Flow.sources`."""
+    mutual: Complexes
+    """Voltage that each source loses over the currents of others that share its grid."""
 
     @classmethod
     def of(cls, network: Network, flow: Flow, loads: Loads) -> "Equations":
@@ -141,12 +146,16 @@ class Equations:
         system = network.system
         base_admittance_s = system.base_power_va / system.base_voltage_v**2
         serves = network.sources["installed"] > 0
+        mutual_ohm = np.zeros((serves.size,) * 2, dtype=complex)
+        if network.shared != NO_SHARED_GRIDS:
+            mutual_ohm = network.shared.mutual_ohm
         return cls(
             admittance=admittance_matrix(network, flow) / base_admittance_s,
             network=network._replace(sources=network.sources[serves]),
             loads=loads,
             standing=flow.standing.copy(),
             running=flow.sources[serves],
+            mutual=mutual_ohm[np.ix_(serves, serves)] * base_admittance_s,
         )
 
     @property
@@ -176,11 +185,17 @@ class Equations:
         return power / base_va, slope * base_v / base_va
 
     def law(self, voltage: Complexes, current: Complexes) -> Complexes:
-        """Voltages that the sources ask for at their voltages and the currents that they feed."""
+        """Voltages that the sources ask for at their voltages and the currents that they feed.
+
+        Of all sources once, or several times one after another.
+        """
         found = np.zeros((voltage.size, 5), dtype=complex)
         base_v, base_va = self.system.base_voltage_v, self.system.base_power_va
-        sources = self.network.sources
-        find_residuals(base_v * voltage, base_va / base_v * current, sources, self.running, found)
+        sources, running = self.network.sources, self.running
+        if voltage.size != sources.size:
+            each = np.arange(voltage.size) % sources.size
+            sources, running = sources[each], running[each]
+        find_residuals(base_v * voltage, base_va / base_v * current, sources, running, found)
         return voltage - found[:, 0] / base_v
 
     def residual(self, voltage: Complexes, share: float) -> Complexes:
@@ -190,7 +205,7 @@ class Equations:
         drawn, _ = self.demand(voltage)
         left[self.nodes :] += share * np.conj(drawn / voltage[self.nodes :])
         at = self.network.sources.node
-        left[at] = voltage[at] - self.law(voltage[at], current[at])
+        left[at] = voltage[at] - self.law(voltage[at], current[at]) + self.mutual @ current[at]
         return left
 
     def jacobian(self, voltage: Complexes, share: float) -> Floats:
@@ -212,28 +227,35 @@ class Equations:
         for s, node in enumerate(at):
             row = self.admittance[node]
             by_v[node], by_conjugate[node] = -f_i[s] * row, -f_i_conjugate[s] * row.conj()
+            by_v[node] += self.mutual[s] @ self.admittance[at]
             by_v[node, node] += 1.0 - f_v[s]
             by_conjugate[node, node] -= f_v_conjugate[s]
-        plus, minus = by_v + by_conjugate, by_v - by_conjugate
-        return np.block([[plus.real, -minus.imag], [plus.imag, minus.real]])
+        plus, minus, n = by_v + by_conjugate, by_v - by_conjugate, self.buses
+        jacobian = np.empty((2 * n, 2 * n))
+        jacobian[:n, :n], jacobian[:n, n:] = plus.real, -minus.imag
+        jacobian[n:, :n], jacobian[n:, n:] = plus.imag, minus.real
+        return jacobian
 
     def _law_slopes(
         self, voltage: Complexes, current: Complexes
     ) -> tuple[tuple[Complexes, Complexes], tuple[Complexes, Complexes]]:
         """Slopes of the sources' laws over voltages and over currents, and over their conjugates."""
+        # All in one call of the laws: they are asked for at every iteration of every point of a path.
+        n, changes = voltage.size, np.repeat(CHANGES, voltage.size)
+        voltages, currents = np.tile(voltage, 2 * len(CHANGES)), np.tile(current, 2 * len(CHANGES))
+        voltages[: changes.size] += changes
+        currents[changes.size :] += changes
+        found = self.law(voltages, currents).reshape(2, 2, 4, n)
 
-        def slopes(law: Callable[[complex], Complexes]) -> tuple[Complexes, Complexes]:
+        def slopes(laws: Complexes) -> tuple[Complexes, Complexes]:
             # Through five points: where a load angle has hardly a triangle left, its slope changes fast.
             by_real, by_imaginary = (
-                (8 * (law(step) - law(-step)) - law(2 * step) + law(-2 * step)) / (12 * SLIGHTLY)
-                for step in (SLIGHTLY, SLIGHTLY * 1j)
+                (8 * (forth - back) - farther + farther_back) / (12 * SLIGHTLY)
+                for forth, back, farther, farther_back in laws
             )
             return (by_real - 1j * by_imaginary) / 2.0, (by_real + 1j * by_imaginary) / 2.0
 
-        return (
-            slopes(lambda change: self.law(voltage + change, current)),
-            slopes(lambda change: self.law(voltage, current + change)),
-        )
+        return slopes(found[0]), slopes(found[1])
 
     def correct(self, voltage: Complexes, share: float) -> Complexes | None:
         """Newton's method without damping; None if it does not converge."""

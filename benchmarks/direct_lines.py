@@ -7,6 +7,7 @@ import numpy as np
 
 from tpss.powerflow.network import (
     BranchPart,
+    Loads,
     SectionPart,
     assemble,
     loads_alone,
@@ -95,6 +96,11 @@ def direct_line(
         len(nodes), sections, no_branches, rectifiers([law for _, law in stations]), own,
         stores=StoreLaw.array(StoreLaw.row(node=nodes[km], **law) for km, law in stores),
     )  # fmt: skip
+    return place(network, loads_of(trains))
+
+
+def loads_of(trains: Sequence[Braking | Drawing]) -> Loads:
+    """Trains of all kinds along one line."""
     types, records = TrainType.blank(len(trains)), Train.blank(len(trains))
     types.inertia_kg, types.slip_factor = 1.0, 1.0
     records.train_type = np.arange(len(trains))
@@ -113,4 +119,4 @@ def direct_line(
             )]
         )[0]  # fmt: skip
         records[k].demand.offered_power_w = train.offered_w
-    return place(network, loads_alone(records, types))
+    return loads_alone(records, types)

@@ -95,7 +95,7 @@ class Homotopy:
 
     def correct(self, point: "Floats", tangent: "Floats") -> "Floats | None":
         """Newton's method in the plane across the tangent; None if it does not converge."""
-        begun = point
+        begun, whole = point, np.empty((point.size, point.size))
         for _ in range(MOST_ITERATIONS):
             voltage, t = split(point)
             with np.errstate(all="ignore"):
@@ -106,7 +106,7 @@ class Homotopy:
             if np.abs(left).max() < self.equations.converged:
                 return point
             jacobian, by_t = self.slopes(voltage, t)
-            whole = np.block([[jacobian, by_t[:, None]], [tangent[None, :]]])
+            whole[:-1, :-1], whole[:-1, -1], whole[-1] = jacobian, by_t, tangent
             if not np.isfinite(whole).all():
                 return None
             right = np.concatenate([left.real, left.imag, [across]])

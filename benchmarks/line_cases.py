@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tpss.powerflow.bundle_points import order_points
 from tpss.powerflow.network import Flow, Loads, Network, new_flow
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.record import Records
@@ -37,4 +38,5 @@ def place(network: Network, loads: Loads, legs: Records[Leg] | None = None) -> C
     legs = along_one_line(network.sections.size) if legs is None else legs
     locate_trains(count, loads.trains, legs, network, flow)
     measure_pieces(count, network, flow)
+    order_points(network.bundles, network, flow)
     return Case(network, flow, loads)

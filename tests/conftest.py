@@ -4,6 +4,7 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only cost
 
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,8 @@ from typing import Any
 import pytest
 
 from tpss.kernel import plain
+
+from one_compile import compile_once
 
 SHARED = Path(__file__).parents[2] / "shared"
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -26,11 +29,20 @@ EXAMPLE_SCENARIOS = sorted(
 @pytest.hookimpl(tryfirst=True)
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """A process for each core if all tests are run; a part is done before they would have started."""
-    return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+    return None if are_all(config) else 0
+
+
+def are_all(config: pytest.Config) -> bool:
+    """Whether all tests are run."""
+    return config.args_source is pytest.Config.ArgsSource.TESTPATHS
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Compile the kernels once, before the processes start that would each do so."""
+    """Compile the kernels of every run before the processes start that would each do so.
+
+    What only some of all tests need is compiled beside the first of them.
+    """
+    compile_once()
     if config.option.tx and not hasattr(config, "workerinput"):
         import tpss
         from tpss.run.kernels import are_ready
@@ -40,6 +52,9 @@ def pytest_configure(config: pytest.Config) -> None:
         if not are_ready():
             print("Compiling the numerical kernels, once.", file=sys.stderr)
             tpss.simulate(short_line())
+        if are_all(config):
+            warm_up = subprocess.Popen([sys.executable, Path(__file__).with_name("warm_up.py")])
+            config.add_cleanup(warm_up.wait)
 
 
 @pytest.fixture(params=["compiled", "plain"])

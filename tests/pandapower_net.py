@@ -42,7 +42,7 @@ def solve_with_pandapower(scenario: tpss.Scenario, moment: xr.Dataset) -> Net:
     points_km = sorted({0.0, scenario.line.length_km, *stations_km, *transformers_km})
     line_kv = LINE_KV[scenario.supply.system]
     contact = {km: add_bus(net, "contact line", km, line_kv) for km in points_km}
-    lay_contact_line(net, scenario.supply.catenary, contact, add_trains(net, moment, line_kv))
+    lay_islands(net, scenario.supply, contact, add_trains(net, moment, line_kv))
     feeding = {km: behind_connection(net, scenario.supply, contact, km) for km in stations_km}
     if scenario.supply.high_voltage_line is not None:
         lay_high_voltage_line(net, scenario.supply, contact, feeding, transformers_km)
@@ -122,6 +122,25 @@ def add_trains(net: Net, moment: xr.Dataset, line_kv: float) -> list[tuple[float
     megawatt, megavar = trains.active_power.values / 1e6, trains.reactive_power.values / 1e6
     pp.create_loads(net, buses, p_mw=megawatt, q_mvar=megavar)
     return list(zip(trains.position.values / 1e3, buses, strict=True))
+
+
+def lay_islands(net: Net, supply: Supply, contact: Buses, trains: list[tuple[float, int]]) -> None:
+    """The contact line between neutral sections, each of which parts it in its middle.
+
+    Every island counts its angles from its own sources, as each has a slack of its own.
+    """
+    line_kv, begin_km, beginning = LINE_KV[supply.system], -math.inf, dict[float, int]()
+    for km in [*(each.middle_km for each in supply.neutral_sections), math.inf]:
+        own = {at: bus for at, bus in contact.items() if begin_km < at < km}
+        ending: Buses = {}
+        following: Buses = {}
+        if km < math.inf:
+            for buses, side in ((ending, "before"), (following, "behind")):
+                name = f"contact line at {km:g} km, {side} neutral section"
+                buses[km] = int(pp.create_bus(net, vn_kv=line_kv, name=name))
+        under = [(at, bus) for at, bus in trains if begin_km <= at < km]
+        lay_contact_line(net, supply.catenary, {**beginning, **own, **ending}, under)
+        begin_km, beginning = km, following
 
 
 def lay_contact_line(
@@ -233,6 +252,8 @@ def worst_differences(net: Net, moment: xr.Dataset) -> dict[str, float]:
         pd.concat([moment[f"{at}_{what}"].to_series().dropna() for at in ("pantograph", "node")])
         for what in ("voltage", "angle")
     )
+    seen = volts > 0.0  # that of a train all through a neutral section is recorded as none
+    volts, angles = volts[seen], angles[seen]
     found = found.loc[volts.index]
     differences = {
         "voltage": volts / (1e3 * found.vn_kv) - found.vm_pu,

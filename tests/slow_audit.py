@@ -48,7 +48,8 @@ def audit_of(scenario: tpss.Scenario) -> tuple[Audit, dict[str, float]]:
     powers = np.hypot(rows["station_active_power"], rows["station_reactive_power"])[: run.step]
     rounding_va = ROUNDINGS * np.finfo(float).eps * float(powers.max(initial=0.0))
     limits["power_mismatch_va"] += rounding_va / OF_A_LIMIT
-    return audit(outcome, model, np.array(prepared.layout.supply.node_level)), limits
+    plan = prepared.layout.supply
+    return audit(outcome, model, np.where(plan.at_line_level, plan.node_level, np.nan)), limits
 
 
 def audit(outcome: Outcome, model: Model, node_level: Floats) -> Audit:

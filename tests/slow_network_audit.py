@@ -12,11 +12,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import fsolve
 
+from slow_bundle_audit import add_bundles, bundled_sections
 from slow_figures import intervals_s, largest, nan_is_largest
 from tpss.audit.balances import ALLOWED_BALANCE
+from tpss.powerflow.bundles import NO_BUNDLES
 from tpss.powerflow.groups import sections_of
 from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import SHORTEST_PIECE_M, TOLERANCE, UNFED, Network
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.run.run import Outcome
 from tpss.sources.kinds import SourceKind
 from tpss.sources.mixed import TYPES
@@ -69,6 +72,16 @@ def power_mismatch_va(outcome: Outcome, model: Model) -> float:
     train_v, node_v = phasors(trains, "pantograph"), phasors(nodes, "node")
     section, place_m = (each[rows] for each in sections_and_places(outcome, model))
     train_a, leaving_a = _contact_line_currents(section, place_m, train_v, node_v, network)
+    astray_va = 0.0
+    if network.bundles != NO_BUNDLES:
+        volts = outcome.recording.conductors[rows]
+        for k in range(outcome.steps):
+            astray_va = max(
+                astray_va,
+                add_bundles(
+                    section[k], place_m[k], volts[k], node_v[k], network, train_a[k], leaving_a[k]
+                ),
+            )
     for branch in network.branches:
         current = node_v[:, branch.start_node] - node_v[:, branch.end_node]
         current = current / branch.impedance_ohm
@@ -91,6 +104,7 @@ def power_mismatch_va(outcome: Outcome, model: Model) -> float:
         largest(node_v * leaving_a.conj() - fed),
         stores_off_w(outcome, model, node_v),
         largest((train_v * train_a.conj() - drawn)[on_line]),
+        astray_va,
         key=nan_is_largest,
     )
 
@@ -146,8 +160,9 @@ def _contact_line_currents(
                 group, section[k], place_m[k], train_v[k], node_v[k], network,
                 drawn_a[k], leaving_a[k],
             )  # fmt: skip
+    bundled = bundled_sections(network)
     for s, part in enumerate(network.sections):
-        if any(s in group for group in sections_of(network.groups)):
+        if any(s in group for group in sections_of(network.groups)) or s in bundled:
             continue
         under = np.isfinite(train_v) & (section == s)
         ends_m = np.ones((len(place_m), 1))
@@ -243,6 +258,11 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     sources = network.sources
     p, q = stations["station_active_power"], stations["station_reactive_power"]
     n, node_v = stations["active_converters"], phasors(nodes, "node")[:, sources.node]
+    if network.bundles != NO_BUNDLES:  # the law is that at the terminals
+        current_a = ((p + 1j * q) / node_v).conj()
+        node_v = node_v - network.bundles.inner_ohm * current_a
+        power_va = node_v * current_a.conj()
+        p, q = power_va.real, power_va.imag
     out = n == 0.0  # of service: nothing is asked of them, and nothing fed
     assert (p[out] == 0.0).all()
     assert (q[out] == 0.0).all()
@@ -257,6 +277,9 @@ def converter_residual(outcome: Outcome, network: Network) -> float:
     ):
         own = sources.kind == kind
         asked_v[:, own] = phasor(p[:, own], q[:, own], n[:, own], node_v[:, own], sources[own])
+    if network.shared != NO_SHARED_GRIDS:
+        current_a = np.where(out, 0.0, (p + 1j * q) / np.where(out, 1.0, node_v)).conj()
+        asked_v -= current_a @ network.shared.mutual_ohm.T
     return largest(np.where(out, 0.0, node_v - asked_v) / network.system.base_voltage_v)
 
 

@@ -5,7 +5,8 @@ A fenced block says by its language and its title what becomes of it:
     toml, csv   title="line.toml"            is added to the end of that file, which may be new
     toml        title="The whole line.toml"  must be that file as it stands now
     diff        title="line.toml"            changes that file: lines with - go, lines with + come
-    bash                                     is run; title="Exit code 3" asks for that code
+    bash                                     is run, in a shell or, plain calls of TPSS, in this process;
+                                             title="Exit code 3" asks for that code
     python                                   is run, all blocks of a page in one namespace
     text        title="Output"               must be what the block before it has printed
     others                                   are shown only
@@ -18,15 +19,26 @@ import contextlib
 import io
 import os
 import re
+import shlex
 import subprocess
 import sys
 import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
+
+from tpss.cli.main import main
 
 _FENCE = re.compile(r'^( *)```(\w+)(?: title="(.*?)")?\n(.*?)^\1```$', re.MULTILINE | re.DOTALL)
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
+
+
+WIDTH = "80"
+"""Columns of the terminal."""
+
+_OF_A_SHELL = frozenset("|&;<>()$`\\*?[]#~{}!")
+"""Characters that mean more to a shell than themselves."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +64,40 @@ def blocks(page: str) -> list[Block]:
     ]
 
 
+def calls_of(commands: str) -> list[list[str]]:
+    """Arguments of the calls of TPSS, if that is all there is, and no shell is needed to read them."""
+    lines = [line for line in commands.replace("\\\n", " ").splitlines() if line.strip()]
+    if any(_OF_A_SHELL & set(line) or not line.startswith("tpss ") for line in lines):
+        return []
+    return [shlex.split(line)[1:] for line in lines]
+
+
+def call_here(calls: list[list[str]], folder: Path) -> tuple[int, str, str]:
+    """Call TPSS in this process, until a call fails: a new one would have to import all of it anew.
+
+    Returns
+    -------
+    int, str, str
+        Exit code of the last call, and what they printed as output and as errors.
+    """
+    out, err, code = io.StringIO(), io.StringIO(), 0
+    with (
+        contextlib.chdir(folder),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        patch.dict(os.environ, {"COLUMNS": WIDTH}),
+    ):
+        for arguments in calls:
+            with patch.object(sys, "argv", ["tpss", *arguments]):
+                try:
+                    main()
+                except SystemExit as ended:
+                    code = int(ended.code or 0)
+            if code != 0:
+                break
+    return code, out.getvalue(), err.getvalue()
+
+
 @dataclass
 class Reader:
     """Someone who types what a page shows."""
@@ -62,6 +108,8 @@ class Reader:
     seen: str = ""
     """All that was typed and printed."""
     names: dict[str, Any] = field(default_factory=dict)
+    in_shell: bool = True
+    """Whether all commands are typed into a shell; otherwise plain ones are called in this process."""
 
     def follow(self, block: Block) -> None:
         """Do what a block says; an `AssertionError` says what came out otherwise."""
@@ -91,18 +139,23 @@ class Reader:
         file.write_text(text.replace(before, after), "utf-8")
 
     def _run_shell(self, block: Block) -> None:
+        calls = [] if self.in_shell else calls_of(block.text)
+        code, out, err = call_here(calls, self.folder) if calls else self._in_shell(block.text)
+        expected = int(block.title.removeprefix("Exit code ") or 0)
+        assert code == expected, out + err
+        self._hear(out if expected == 0 else out + err)
+
+    def _in_shell(self, commands: str) -> tuple[int, str, str]:
         path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
         done = subprocess.run(
-            ["bash", "-e", "-o", "pipefail", "-c", block.text],
+            ["bash", "-e", "-o", "pipefail", "-c", commands],
             cwd=self.folder,
-            env={**os.environ, "PATH": path, "COLUMNS": "80"},
+            env={**os.environ, "PATH": path, "COLUMNS": WIDTH},
             capture_output=True,
             text=True,
             check=False,
         )
-        expected = int(block.title.removeprefix("Exit code ") or 0)
-        assert done.returncode == expected, done.stdout + done.stderr
-        self._hear(done.stdout if expected == 0 else done.stdout + done.stderr)
+        return done.returncode, done.stdout, done.stderr
 
     def _run_python(self, block: Block) -> None:
         printed = io.StringIO()

@@ -54,9 +54,9 @@ WINDOW = {
 
 TABLES: dict[str, dict[str, str]] = {
     "violations": {
-        "standard": "EN 50163 or EN 50388",
+        "standard": "EN 50163 or EN 50388; `grid` for the unbalance of one",
         "rule": "what was broken",
-        "subject": "train or zone",
+        "subject": "train, zone or busbar",
         "limit_kv": "the limit",
         "value_kv": "the voltage farthest beyond it, or the mean useful voltage",
         "duration_min": "time beyond the limit at a stretch; NaN for a mean",
@@ -165,6 +165,28 @@ TABLES: dict[str, dict[str, str]] = {
         **WINDOW,
         "highest_rms_a": "highest RMS current of any such window, at the branch's own level",
     },
+    "unbalance": {
+        "busbar": "name",
+        "stations": "transformer stations there",
+        "peak_r_a": "highest current of phase R in a time step, at the grid's voltage",
+        "peak_s_a": "... of phase S",
+        "peak_t_a": "... of phase T",
+        "peak_percent": "highest negative-sequence voltage in a time step, of the positive-sequence one",
+        "mean_10_min_percent": "highest mean of that over 10 min; of a shorter run, over all of it",
+        "from_min": "where that window begins",
+        "limit_percent": "what the mean is held against",
+        "verdict": "`kept` or `exceeded`",
+    },
+    "neutral_sections": {
+        "from_km": "where it begins",
+        "to_km": "where it ends",
+        "phases_before": "phases that feed the side of the lower kilometres",
+        "phases_behind": "... and that of the higher ones",
+        "angle_deg": "angle between the voltages of both sides without load",
+        "highest_kv": "highest voltage across it in a time step",
+        "mean_kv": "mean voltage across it",
+        "at_min": "when it was highest",
+    },
 }
 
 FIGURES = """## Single figures
@@ -173,6 +195,7 @@ FIGURES = """## Single figures
 |---|---|
 | `dimensioning_train` | train with the lowest mean useful voltage, or None |
 | `least_useful_voltage_kv` | what mean useful voltages are held against, by the line's highest speed |
+| `unbalance_in_words` | the busbar that is closest to its limit; empty if no station tells its phases |
 | `voltage_in_words` | that no train passed Umin1 or Umax1, or the longest time that one was allowed to |
 | `notes` | what the figures lack, in words |
 | `as_dict()` | the key figures that stand in `summary.json` under `standards` |"""

@@ -9,16 +9,26 @@ from tpss.units import label
 
 KINDS = {
     "catenaries": ("Contact-line systems", "`supply.catenary`"),
+    "contact_lines": (
+        "Contact lines and third rails of a direct current",
+        "`contact_line` of `supply.catenary`",
+    ),
+    "rails": ("Running rails", "`rails` of `supply.catenary`"),
     "high_voltage_lines": ("High-voltage lines", "`supply.high_voltage_line.type`"),
     "transformers": (
         "Transformers",
         "`line_transformer` and `station_transformer` of `supply.high_voltage_line`",
+    ),
+    "station_transformers": (
+        "Transformers of stations",
+        "`transformer` of `supply.transformer_stations`",
     ),
     "converters": ("Converters", "`type` of `supply.converter_stations`"),
     "rectifiers": ("Rectifiers", "`type` of `supply.rectifier_stations`"),
     "locomotives": ("Trains", "`model` of a train"),
     "systems": ("Electrification systems", "`supply.system`"),
     "voltage_limits": ("Voltage limits", "`supply.system`, by which the result is judged"),
+    "rail_limits": ("Limits of rails", "`standards.rails`, by which the result is judged"),
     "wires": ("Wires", "`wire` of conductors in a [geometry](geometry.md)"),
 }
 """Title of each kind, and the keys that take its names."""

@@ -157,6 +157,40 @@ OF_LOSSES = {
     "converter_losses": "only where types of converters describe what they lose: totals of the table of "
     "that name, the `origins` of the losses, losses by `stations`, and those `not_described`",
 }
+TRANSFORMER_LOSSES = {
+    "station": "transformer station",
+    "from_grid_mwh": "energy from the grid, at the terminals of the transformers",
+    "to_grid_mwh": "energy to it",
+    "burnt_mwh": 'energy that a station with `feedback = "resistor"` burns: what would go to the grid',
+    "load_mwh": "lost in the windings of its transformers, included in what is taken or given",
+    "no_load_mwh": "lost by its transformers without load, likewise",
+    "grid_mwh": "lost in the resistance of the grid before the terminals, not included; below 0 where "
+    "currents of another station at the busbar return by it",
+}
+RAILS = {
+    "line": "line, where there are several",
+    "position_km": "place of a node of the rails",
+    "highest_v": "highest voltage to earth in a step, of an alternating current its magnitude",
+    "highest_at_min": "when that is",
+    "lowest_v": "lowest one",
+    "permanent_v": "highest mean of its magnitude over 300 s; NaN where the run is shorter",
+    "short_v": "the same over a second, or over a step where that is longer",
+}
+STRAY_CURRENT = {
+    "line": "line, where there are several",
+    "leaving_a": "mean current that leaves its rails for the earth; as much comes back elsewhere",
+    "peak_a": "the highest of a step",
+    "leaving_ma_per_m": "the mean per length of all tracks",
+}
+AUTOTRANSFORMERS = {
+    "line": "line, where there are several",
+    "position_km": "where it stands",
+    "highest_winding_a": "highest current of its windings",
+    "highest_neutral_a": "highest current of its neutral, which leads to the rails",
+    "peak_loading": "current of the neutral over that at rated power",
+    "loading_15_min": "highest r.m.s. value of that over 15 min",
+    "loading_60_min": "over 1 h; NaN where the run is shorter",
+}
 CONVERTER_LOSSES = {
     "station": "converter station",
     "from_grid_mwh": "energy from the 50 Hz grid",
@@ -269,6 +303,14 @@ def page() -> str:
         described(STATIONS, result.stations, "column"),
         "### `converter_losses`, a row a converter station that describes losses",
         described(CONVERTER_LOSSES, result.converter_losses, "column"),
+        "### `transformer_losses`, a row a transformer station that tells its losses without load",
+        described(TRANSFORMER_LOSSES, result.transformer_losses, "column"),
+        "### `rails`, a row a place, where rails are [conductors of their own](../how-to/rails.md)",
+        described(RAILS, result.rails, "column"),
+        "### `stray_current`, a row a line, where besides the current is direct",
+        described(STRAY_CURRENT, result.stray_current, "column"),
+        "### `autotransformers`, a row an autotransformer",
+        described(AUTOTRANSFORMERS, result.autotransformers, "column"),
         "### `thermal`, a row a piece of equipment with a [rating](../how-to/thermal.md)",
         described(THERMAL, result.thermal, "column"),
         "### `thermal_windows`, a row a piece of equipment with a rating and window",

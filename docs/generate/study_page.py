@@ -132,7 +132,9 @@ MEANINGS = {
     "brakes",
     "braking.friction_mwh": "part of it: friction brakes",
     "braking.machine_losses_mwh": "part of it: lost in the machines",
-    "braking.refused_mwh": "part of it: offered to the line, which does not take it",
+    "braking.refused_mwh": "part of it: offered to the line, which does not take it, so that friction "
+    "brakes do",
+    "braking.rheostat_mwh": "part of it: likewise, and burnt in rheostats of trains",
     "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
     "braking.own_storage_mwh": "of that, what trains put into their own stores",
     "braking.fed_back_mwh": "part of it: what trains feed back into the line",
@@ -141,10 +143,11 @@ MEANINGS = {
     "braking.to_grid_mwh": "of that, what stations take back, on the railway's side",
     "braking.burnt_in_stations_mwh": "of that, what resistors of stations burn",
     "thermal.contact_line_use_percent": "highest use of what contact lines bear: thermal state, or "
-    "their r.m.s. load over a window, of what is allowed; this and the next three are null unless their "
+    "their r.m.s. load over a window, of what is allowed; this and the next four are null unless their "
     "kind of equipment has a `rating`",
     "thermal.transformer_use_percent": "likewise of transformers",
     "thermal.converter_use_percent": "likewise of converters",
+    "thermal.rectifier_use_percent": "likewise of rectifiers",
     "thermal.motor_use_percent": "likewise of the motors of a train",
     "thermal.hot_spot_c": "hottest hot spot of a transformer; null unless its rating has `cooling`",
     "thermal.loss_of_life_min": "longest life that the paper of a transformer lost; null likewise",

@@ -24,7 +24,7 @@ def test_every_file_of_the_library_is_a_kind():
     assert set(KINDS) == set(library.KINDS)
 
 
-SYSTEM_OF = {"3kV-": "DC-3kV", "1.5k": "DC-1.5kV", "750V": "DC-0.75kV"}
+SYSTEM_OF = {"3kV-": "DC-3kV", "PKP-": "DC-3kV", "1.5k": "DC-1.5kV", "750V": "DC-0.75kV"}
 """Systems of the rectifiers, by the beginnings of their names."""
 
 
@@ -55,9 +55,14 @@ def test_an_entry_is_shown_whole(tpss_command, kind, name):
     said = tpss_command("library", kind, name)
     assert (said.code, said.err) == (0, "")
     for key, value in library.values(kind, name).items():
-        if isinstance(value, dict):  # as it is written in TOML
-            numbers = {k: v for k, v in value.items() if not isinstance(v, str)}
-            assert all(f"{inner} = {each}" in said.out for inner, each in numbers.items())
+        if key == "by_system":
+            assert all(each in said.out for each in value)
+            continue
+        if isinstance(value, dict):  # as it is written in TOML, over several lines of its cell
+            numbers = {k: v for k, v in value.items() if not isinstance(v, str | dict | list)}
+            assert all(
+                inner in said.out and f"{each}" in said.out for inner, each in numbers.items()
+            )
             continue
         assert f"{key} {value}" in said.out
     assert "Source: " in said.out
@@ -72,14 +77,32 @@ def test_values_come_with_unit_and_meaning_and_defaults_too(tpss_command):
     assert "generator_reactance_pu 0.53 p.u. q-axis reactance of the generator." in reactance
 
 
+def of_a_train(system, *_):
+    """A scenario of the first system that a train is for, with nothing said of the train."""
+    document = direct_document(system) if system.startswith("DC-") else copy.deepcopy(SHORT_LINE)
+    document["supply"]["system"] = system
+    document["trains"] = {"freight": {}}
+    for service in document["traffic"]:
+        service["train"] = "freight"
+    return document
+
+
 @pytest.mark.parametrize(("kind", "name"), IN_SCENARIOS)
 def test_the_shown_usage_is_that_of_a_scenario(kind, name):
     """The lines are put into a scenario that names something else in that place, or nothing."""
-    if name.startswith("DC-") or kind == "rectifiers":
+    if kind in ("contact_lines", "rails"):
+        document = direct_document("DC-3kV")
+        document["supply"]["catenary"] = {"contact_line": "CA-160-3kV", "rails": "60E1"}
+    elif kind == "locomotives":
+        document = of_a_train(*library.values(kind, name).get("systems", ["15kV-16.7Hz"]))
+    elif name.startswith("DC-") or kind == "rectifiers":
         document = direct_document(name if name.startswith("DC-") else SYSTEM_OF[name[:4]])
     else:
         document = copy.deepcopy(SHORT_LINE)
         document["supply"]["high_voltage_line"] = {"type": "132kV", "transformers_km": [10.0]}
+    if kind == "station_transformers":
+        station = {"name": "Grid", "position_km": 15.0, "no_load_voltage_kv": 16.0}
+        document["supply"]["transformer_stations"] = [station]
     used = tomllib.loads(usage(kind, name))
     for table, part in used.items():
         document.setdefault(table, {})

@@ -8,6 +8,7 @@ import jsonschema
 import pytest
 
 import tpss
+from tpss import library
 from tpss.scenario.override import override
 from tpss.scenario.schema import scenario_schema
 
@@ -100,7 +101,7 @@ def test_names_of_the_library_are_offered():
     catenary = SCHEMA["$defs"]["Supply"]["properties"]["catenary"]
     assert catenary["anyOf"][0]["enum"] == ["AT", "BT"]
     model = SCHEMA["$defs"]["Train"]["properties"]["model"]
-    assert model["anyOf"][0]["enum"] == ["Rc4-freight-1470t"]
+    assert model["anyOf"][0]["enum"] == sorted(library.entries("locomotives"))
 
 
 def test_it_is_printed(tpss_command, capsys):

@@ -36,8 +36,12 @@ def test_the_tutorial_can_be_followed_and_quotes_what_it_prints(tmp_path):
 
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
 def test_a_guide_can_be_followed_from_the_end_of_the_tutorial(page, tmp_path):
-    """Guides go on with the tutorial's `line.toml`."""
-    reader = Reader(tmp_path)
+    """Guides go on with the tutorial's `line.toml`.
+
+    Other than the tutorial's, their plain commands are called in this process; what has pipes, quotes
+    that a shell has to read, or other programs in it goes to a shell.
+    """
+    reader = Reader(tmp_path, in_shell=False)
     for block in blocks(TUTORIAL.read_text("utf-8")):
         if block.language == "toml":
             reader.follow(block)

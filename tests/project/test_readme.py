@@ -28,7 +28,9 @@ def test_the_pipeline_on_a_clean_checkout_uses_the_readme_s_commands():
 
 def test_the_pipeline_tries_the_lowest_versions():
     """Of what the program needs; a requirement without a bound would be tried as it is today."""
-    assert (ROOT / ".ci" / "run").read_text("utf-8").endswith("\n.ci/lowest\n")
+    pipeline = (ROOT / ".ci" / "run").read_text("utf-8")
+    assert '\n.ci/lowest > "$venv.lowest" 2>&1 &\nlowest=$!\n' in pipeline
+    assert pipeline.endswith('\nwait "$lowest" || failed=$?\ncat "$venv.lowest"\nexit "$failed"\n')
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert all(re.fullmatch(r"[\w-]+>=[\d.]+", needed) for needed in project["dependencies"])
 

@@ -25,6 +25,8 @@ from .crowds import crowded_scenarios
 from .judge import judge, warm_up
 from .strategies import (
     direct_scenarios,
+    network_scenarios,
+    scenarios_of_conductors,
     scenarios_that_feed_back,
     sound_scenarios,
     spoilt_scenarios,
@@ -41,6 +43,8 @@ KINDS = {
     "crowded": crowded_scenarios,
     "feeding back": scenarios_that_feed_back,
     "direct current": direct_scenarios,
+    "conductors": scenarios_of_conductors,
+    "networks": network_scenarios,
 }
 
 

@@ -41,6 +41,13 @@ def rectifiers(draw: Draw, nominal_kv: float) -> Document:
             "short_circuit_percent": draw(numbers(4.0, 15.0)),
             "load_loss_kw": draw(numbers(0.0, 20.0)),
         }
+    if description == "transformer" and draw(st.booleans()):
+        kind["transformer"] |= {"no_load_loss_kw": 5.0, "diode_loss_kw": draw(numbers(0.0, 10.0))}
+    elif draw(st.integers(0, 3)) == 3:
+        kind["losses"] = {"idle_kw": 3.0, "quadratic_percent": draw(numbers(0.0, 3.0))}
+    if draw(st.integers(0, 3)) == 3:
+        overloads = [{"percent": 150.0, "minutes": 30.0}, {"percent": 300.0, "minutes": 1.0}]
+        kind["rating"] = {"time_constant_min": draw(numbers(1.0, 150.0)), "overloads": overloads}
     if description == "line" and draw(st.integers(0, 3)) == 3:
         held = {"voltage_kv": 0.98 * unloaded_kv, "droop_ohm": 0.1 * kind["resistance_ohm"]}
         kind["controlled"] = held
@@ -70,6 +77,7 @@ def trains(draw: Draw, nominal_kv: float, feeds_back: bool) -> Document:
             "un_kv": nominal_kv,
             "umin2_kv": nominal_kv * 2.0 / 3.0,
             "max_current_a": draw(numbers(1_500.0, 6_000.0)),
+            "auxiliaries": draw(st.sampled_from(["current", "power"])),
         }
         train["auxiliary_power_kw"] = min(train["auxiliary_power_kw"], 200.0)
     if feeds_back:
@@ -79,6 +87,7 @@ def trains(draw: Draw, nominal_kv: float, feeds_back: bool) -> Document:
             "max_power_kw": draw(numbers(100.0, 6_000.0)),
             "full_until_kv": 1.25 * nominal_kv,
             "zero_from_kv": (1.25 + width) * nominal_kv,
+            "rest": draw(st.sampled_from(["friction", "rheostat"])),
         }
     return train
 

@@ -13,6 +13,7 @@ from tpss import Scenario
 from tpss.kernel import plain
 from tpss.model import build_model
 from tpss.model.start import start_of
+from tpss.powerflow.bundles import NO_BUNDLE_FLOW, NO_BUNDLES
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
@@ -40,7 +41,7 @@ FINEST = 2e-4
 
 MOST_TRAINS = 200
 """On more, another load flow's paths are not followed: its matrices are dense.  Nor does it know nodes
-without a source, or that follow others, nor stores of energy at the line."""
+without a source, or that follow others, conductors beside the contact line, or stores of energy."""
 
 
 class Replay:
@@ -142,7 +143,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
     standing = state.flow.standing[: state.flow.sections.end[-1]]
     if standing.size > MOST_TRAINS or (model.network.source_of_node <= UNFED).any():
         return math.nan
-    if model.network.stores.size:
+    if model.network.bundles != NO_BUNDLES or model.network.stores.size:
         return math.nan
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
@@ -164,11 +165,14 @@ def raise_loads_within_the_band(model: Model, state: State) -> float:
     share, rise, start = 0.0, RISE, FLAT
     while share < 1.0 and rise > FINEST:
         before: list[Any] = [flow.nodes.voltage_v.copy(), flow.sections.current_a.copy()]
+        bundled = flow.bundles.voltage_v.copy() if flow.bundles != NO_BUNDLE_FLOW else None
         target = min(1.0, share + rise)
         status, _ = newton(target, start, MOST_PASSES, model.network, flow, loads)
         if status == Solution.SOLVED:
             share, start = target, WARM
         else:
             flow.nodes.voltage_v, flow.sections.current_a = before
+            if bundled is not None:
+                flow.bundles.voltage_v[:] = bundled
             rise /= 2.0
     return share

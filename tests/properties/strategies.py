@@ -13,6 +13,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from .bounds import with_bounds
+from .conductors import of_25_kv_or_direct, take_apart
 from .direct import into_direct_current
 from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
@@ -265,12 +266,16 @@ def with_one_retardation(trains: Document) -> None:
 
 
 @st.composite
-def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -> Document:
+def sound_scenarios(
+    draw: Draw, feed_back: bool = False, direct: bool = False, network: bool = False,
+    apart: bool = False,
+) -> Document:  # fmt: skip
     """A scenario without faults, but for trains that may be placed too fast to stop.
 
-    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network.  All trains
-    have electric brakes if they are to feed back, and half of the equipment says more of itself.  A
-    railway of direct current has the lines, the traffic and the outages of any other.
+    A fifth of the lines begin elsewhere than at 0, and a quarter are those of a network, or all if they
+    are to be.  All trains have electric brakes if they are to feed back, and half of the equipment says
+    more of itself.  A railway of direct current has the lines, the traffic and the outages of any other;
+    where conductors are apart, it has rails of its own, as those of 25 kV have.
     """
     begin_km = draw(BEGINNINGS_KM)
     line = draw(lines())
@@ -287,7 +292,7 @@ def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -
     }
     if document["simulation"].get("motion") == "stepped":
         with_one_retardation(document["trains"])
-    if draw(st.integers(0, 4)) == 4:
+    if draw(st.integers(0, 4)) == 4 or (apart and not direct):
         document = on_25_kv(draw, document)
     step = document["simulation"]["time_step_min"]
     span_min = step * draw(STEPS)
@@ -302,7 +307,7 @@ def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -
     if moves_continuously(document["simulation"]) and draw(st.integers(0, 3)) == 3:
         document["signalling"] = draw(SIGNALLING)
     document = document if begin_km is None else moved(document, begin_km)
-    if draw(st.integers(0, 3)) == 3:
+    if draw(st.integers(0, 3)) == 3 or network:
         document = into_network(draw, document, lines())
         give_tracks(Random(repr(document)), document)  # no draw: all else is as it was without
     if "signalling" in document and draw(st.booleans()):
@@ -319,6 +324,9 @@ def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -
         with_spare_time(draw, document)
     if direct:
         into_direct_current(draw, document)
+    if apart and of_25_kv_or_direct(document):
+        take_apart(draw, document)
+    if direct or apart:
         return document
     rarely = st.sampled_from([False, True] if feed_back else [False, False, False, True])
     for say_more in (with_bounds, with_mixed_stations, with_losses, with_ratings, with_protection):
@@ -327,9 +335,22 @@ def sound_scenarios(draw: Draw, feed_back: bool = False, direct: bool = False) -
     return document
 
 
+def scenarios_of_conductors() -> st.SearchStrategy[Document]:
+    """Sound scenarios whose rails are conductors of their own, of direct current and of 25 kV."""
+    return st.one_of(
+        sound_scenarios(direct=True, apart=True),  # type: ignore[call-arg]
+        sound_scenarios(apart=True),  # type: ignore[call-arg]
+    )
+
+
 def scenarios_that_feed_back() -> st.SearchStrategy[Document]:
     """Sound scenarios all of whose trains have electric brakes."""
     return sound_scenarios(feed_back=True)
+
+
+def network_scenarios() -> st.SearchStrategy[Document]:
+    """Sound scenarios of several lines that meet."""
+    return sound_scenarios(network=True)
 
 
 def direct_scenarios() -> st.SearchStrategy[Document]:

@@ -17,6 +17,7 @@ import tpss
 from properties.crowds import crowded_scenarios
 from properties.judge import judge, warm_up
 from properties.junctions import junctions
+from properties.phases import scenarios_at_phases
 from properties.strategies import direct_scenarios, sound_scenarios, spoilt_scenarios
 
 CASES = settings(
@@ -48,6 +49,21 @@ def test_sound_scenarios_run_by_the_rules_or_say_why_not():
     assert outcomes["finished"] > cases / 3
     assert outcomes["stalled"] > cases / 50
     assert outcomes["collapsed"] > cases / 50
+
+
+def test_stations_at_phases_of_a_grid_run_by_the_rules_or_say_why_not():
+    """Stations that share a grid's impedance, or feed both sides of a neutral section; some are out."""
+    outcomes: Counter[str] = Counter()
+
+    @settings(CASES, max_examples=60)
+    @given(scenarios_at_phases())
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document)] += 1
+
+    look()
+    cases = sum(outcomes.values())
+    assert cases >= 60
+    assert outcomes["finished"] > cases / 3
 
 
 def test_trains_that_meet_on_single_tracks_all_come_through():

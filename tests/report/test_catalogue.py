@@ -11,6 +11,7 @@ from tpss.report.contact_line import line_voltage
 from tpss.report.drawings.effort import machine_limit
 from tpss.report.drawings.energy import used_by_trains
 from tpss.report.figures import FIGURES, draw, effort, energy_flow, time_distance, voltage_envelope
+from tpss.report.figures.catalogue import applies
 from tpss.report.trains import NothingToDrawError
 
 from conftest import EXAMPLES
@@ -54,7 +55,33 @@ def title(figure):
     return figure.get_suptitle()
 
 
-@pytest.mark.parametrize("name", FIGURES)
+OF_CONVERTERS = [name for name in FIGURES if name != "unbalance"]
+"""Figures of a line that converter stations feed."""
+
+PHASES = {
+    "supply.converter_stations": [],
+    "supply.transformer_stations": [
+        {"name": "A$_{$", "position_km": 0.0, "no_load_voltage_kv": 16.0, "grid_kv": 132.0,
+         "grid_short_circuit_mva": 800.0, "phases": "RS",
+         "transformer": {"rated_mva": 10.0, "short_circuit_percent": 8.0}}],
+}  # fmt: skip
+
+
+def test_the_unbalance_is_drawn_with_its_means_and_the_currents_of_the_phases():
+    """Two phases carry one current; means begin after 10 min."""
+    result = run({**PHASES, "simulation.duration_min": 12.0})
+    figure = draw("unbalance", result)
+    share, mean, *currents = [axes.lines[-1].get_ydata() for axes in figure.axes[:5]]
+    peaks = [np.nanmax(each) for each in currents]
+    assert peaks[0] == pytest.approx(peaks[1])
+    assert peaks[2] == pytest.approx(0.0, abs=1e-9)
+    assert np.nanmax(share) == pytest.approx(result.standards.unbalance.peak_percent[0])
+    found = result.standards.unbalance.mean_10_min_percent[0]
+    assert np.nanmax(mean) == pytest.approx(found, rel=1e-6)
+    assert not applies("unbalance", run({"simulation.duration_min": 3.0}))
+
+
+@pytest.mark.parametrize("name", OF_CONVERTERS)
 def test_every_figure_is_drawn_with_the_scenario_s_name_above_it(hilly, storing, name):
     assert title(draw(name, storing if name == "storage" else hilly)).startswith("short-line")
 
@@ -185,7 +212,7 @@ def test_a_run_that_collapsed_says_so_in_every_title():
             "simulation.duration_min": 25.0}  # fmt: skip
     result = run(weak)
     assert result.status == "collapsed"
-    for name in set(FIGURES) - {"storage"}:  # of which it has none
+    for name in set(OF_CONVERTERS) - {"storage"}:  # of which it has none
         assert "collapsed at" in title(draw(name, result))
 
 
@@ -210,5 +237,7 @@ def test_names_that_are_formulas_to_matplotlib_are_drawn_as_they_are(tmp_path):
              "supply.converter_stations.0.name": "A$_{$",
              "trains.freight.motor_rating": MOTOR}  # fmt: skip
     result = run({**names, **STORING})
-    for name in FIGURES:
+    for name in OF_CONVERTERS:
         draw(name, result).savefig(tmp_path / "figure.svg")
+    fed = run({**PHASES, "simulation.duration_min": 3.0})
+    draw("unbalance", fed).savefig(tmp_path / "figure.svg")

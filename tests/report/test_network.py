@@ -166,12 +166,32 @@ def test_tracks_that_are_not_tied_have_voltages_of_their_own(double):
     assert len(words) >= len(other.lowest_kv)
 
 
-def test_posts_and_open_breaks_are_marked(double):
+def test_posts_and_breaks_are_marked_and_open_ones_are_hollow(double):
     shown = places(double)
     assert shown["coupling post"].x.tolist() == [20.0]
-    assert not shown["coupling post"].hollow
-    assert shown["open post"].hollow
+    assert shown["section break"].words == ["section break C: km 105"]
+    assert shown["open post"].words == ["open post P2: km 30"]
     assert shown["open section break"].words == ["open section break B: km 129"]
+    for closed, opened in (("coupling post", "open post"), ("section break", "open section break")):
+        assert shown[closed].symbol == shown[opened].symbol
+        assert (shown[closed].hollow, shown[opened].hollow) == (False, True)
+
+
+def test_what_an_outage_opens_is_drawn_open(double):
+    """Of a run of the same scenario: P1 and C are closed but for the outage."""
+    document = double.scenario.as_document()
+    document["outages"] = [{"name": "both", "opens": ["P1", "C"]}]
+    scenario = tpss.Scenario.from_document(document).with_outage("both")
+    shown = places(tpss.Result(scenario, double.dataset, double.summary))
+    assert not {"coupling post", "section break"} & set(shown)
+    assert shown["open post"].words == [
+        "open post P1: km 20, opened by both",
+        "open post P2: km 30",
+    ]
+    assert shown["open section break"].words == [
+        "open section break B: km 129",
+        "open section break C: km 105, opened by both",
+    ]
 
 
 def test_at_an_open_break_the_voltage_jumps():

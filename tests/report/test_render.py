@@ -19,6 +19,13 @@ def counted(drawing: Drawing) -> int:
     return sum(not isinstance(item, Mark) for panel in drawing.panels for item in panel.items)
 
 
+GRID = {
+    "name": "Grid", "position_km": 15.0, "no_load_voltage_kv": 16.0, "grid_kv": 132.0,
+    "grid_short_circuit_mva": 800.0, "phases": "RS",
+    "transformer": {"rated_mva": 10.0, "short_circuit_percent": 8.0},
+}  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def described():
     """The short line with converters that say what they lose, a rated catenary, trains with stores."""
@@ -29,6 +36,7 @@ def described():
             "traffic.0.headway_min": 10.0,
             "supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)",
             "supply.catenary": {"r_ohm_per_km": 0.21, "x_ohm_per_km": 0.2, "rating": rating},
+            "supply.transformer_stations": [GRID],
             "trains.freight.storage": store,
             "simulation.motion": None,
             "simulation.braking": None,

@@ -30,7 +30,7 @@ class Case:
     def __init__(self, scenario: Scenario, steps: int | None) -> None:
         model, layout = build_model(scenario)
         self.frame = frame_of(scenario, layout, model)
-        self.node_level = np.array(layout.supply.node_level)
+        self.node_level = np.where(layout.supply.at_line_level, layout.supply.node_level, np.nan)
         self.start = begin(model, build_services(scenario, model), steps)
         self.model = self.start.model
         self.run = run_of(self.start)

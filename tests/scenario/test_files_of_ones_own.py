@@ -125,11 +125,14 @@ def test_files_are_looked_for_beside_the_scenario_wherever_one_stands(
 def test_every_place_that_takes_a_library_name_takes_a_file():
     """A field that looks names up in the library stands among the places of files."""
 
+    conductors = {"catenary": ("contact_line", "rails")}  # of what may stand in a file itself
+
     def places(part: type[BaseModel], above: tuple[str, ...]) -> list[tuple[str, ...]]:
         found = []
         for name, field in part.model_fields.items():
             if any(isinstance(item, FromLibrary) for item in field.metadata):
                 found.append((*above, name))
+                found += [(*above, name, inner) for inner in conductors.get(name, ())]
                 continue
             waiting = [(field.annotation, (*above, name))]
             while waiting:
@@ -137,6 +140,7 @@ def test_every_place_that_takes_a_library_name_takes_a_file():
                 marks = getattr(annotation, "__metadata__", ())
                 if any(isinstance(item, FromLibrary) for item in marks):
                     found.append(at)
+                    found += [(*at, inner) for inner in conductors.get(at[-1], ())]
                     continue
                 if isinstance(annotation, type) and issubclass(annotation, BaseModel):
                     found += places(annotation, at)

@@ -87,7 +87,7 @@ def test_a_current_limitation_of_another_system_is_a_fault():
         short_line({"supply.system": "25kV-50Hz", "trains.freight.current_limitation": limitation})
     (finding,) = caught.value.findings
     assert finding.key == "trains.freight.current_limitation.un_kv"
-    assert "write un_kv = 25" in finding.remedy
+    assert "leave un_kv, umin2_kv and knee_factor out" in finding.remedy
 
 
 @pytest.mark.parametrize("system", library.entries("voltage_limits"))

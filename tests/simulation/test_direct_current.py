@@ -73,7 +73,7 @@ def test_a_transformer_s_data_give_voltage_and_resistance():
     kind = tpss.Scenario.from_document(direct_document("DC-3kV")).with_(
         {"supply.rectifier_stations.West.type": "3kV-6MW-12p"}
     ).supply.rectifier_stations[0].type  # fmt: skip
-    (no_current_a, unloaded_kv), (current_a, voltage_kv) = kind.points
+    (no_current_a, unloaded_kv), (current_a, voltage_kv), *_ = kind.points
     assert (no_current_a, unloaded_kv) == (0.0, pytest.approx(3.5112, abs=1e-4))
     ohm = (unloaded_kv - voltage_kv) * 1e3 / current_a
     assert ohm == pytest.approx(0.08803 + 0.01868, abs=2e-5)

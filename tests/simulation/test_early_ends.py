@@ -76,6 +76,8 @@ def test_too_many_trains_on_a_weak_line_collapse_and_keep_what_was_simulated():
     ],
     ids=["many trains", "late departure", "long trip"],
 )  # fmt: skip
-def test_a_run_that_memory_cannot_hold_is_refused_before_it_is_laid_out(changes):
+def test_a_run_that_memory_cannot_hold_is_refused_before_it_is_laid_out(changes, monkeypatch):
+    """And before a train runs alone to find out which are on the line: by steps without number."""
+    monkeypatch.delattr("tpss.run.start.trains_on_line")
     with pytest.raises(TooLargeError, match="GiB of memory"):
         tpss.simulate(short_line(changes))

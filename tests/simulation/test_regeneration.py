@@ -130,11 +130,50 @@ def test_the_parts_of_what_is_braked_add_up_to_it() -> None:
     result = run(scenario)
     (row,) = result.regeneration.to_dict("records")
     assert sum(row[part] for part in PARTS) == pytest.approx(row["braked_mwh"], rel=1e-12)
-    assert row["own_storage_mwh"] == 0.0
-    assert all(row[part] > 0.0 for part in PARTS if part != "own_storage_mwh")
+    absent = {"rheostat_mwh", "own_storage_mwh"}
+    assert all(row[part] > 0.0 for part in PARTS if part not in absent)
+    assert all(row[part] == 0.0 for part in absent)
     losses = row["machine_losses_mwh"]
     taken = row["refused_mwh"] + row["own_use_mwh"] + row["fed_back_mwh"]
     assert losses == pytest.approx((1.0 / EFFICIENCY - 1.0) * taken, rel=1e-9)
+
+
+def test_a_rheostat_burns_what_friction_brakes_would_have_to_take() -> None:
+    """The run is the same to the last bit; what the line does not take is told as burnt."""
+    weak = {"permille": -25.0, "r_ohm_per_km": 0.5, "zero_from_kv": 17.4}
+    friction, rheostat = run(document(**weak)), run(document(**weak, rest="rheostat"))
+    for name in ("route_position", "pantograph_voltage", "refused_power", "regenerated_power"):
+        np.testing.assert_array_equal(values(friction, name), values(rheostat, name), err_msg=name)
+    (left,), (burnt,) = (each.regeneration.to_dict("records") for each in (friction, rheostat))
+    assert burnt["rheostat_mwh"] == left["refused_mwh"] > 0.0
+    assert burnt["refused_mwh"] == left["rheostat_mwh"] == 0.0
+    for part in (*PARTS, "braked_mwh"):
+        if part not in ("refused_mwh", "rheostat_mwh"):
+            assert burnt[part] == left[part], part
+    assert "rheostats" in in_words(fed_back(rheostat.dataset, rheostat.scenario) or {})
+
+
+def test_a_rheostat_is_cold_where_the_line_takes_all() -> None:
+    result = run(document(full_until_kv=18.5, zero_from_kv=19.0, rest="rheostat"))
+    (row,) = result.regeneration.to_dict("records")
+    assert row["fed_back_mwh"] > 0.0
+    assert row["rheostat_mwh"] == row["refused_mwh"] == 0.0
+
+
+def test_of_two_types_of_train_only_that_with_a_rheostat_burns() -> None:
+    """Two trains with the same brakes follow each other down; the second has a rheostat."""
+    scenario = document(permille=-25.0, r_ohm_per_km=0.5, zero_from_kv=17.4)
+    other = copy.deepcopy(scenario["trains"]["freight"])
+    other["regeneration"]["rest"] = "rheostat"
+    scenario["trains"]["other"] = other
+    following = {**service("second", "A", "B", departures_min=[15.0]), "train": "other"}
+    scenario["traffic"].append(following)
+    scenario["simulation"] = {"time_step_min": 0.1, "duration_min": 60.0}
+    first, second = run(scenario).regeneration.to_dict("records")
+    assert first["refused_mwh"] > 0.0
+    assert first["rheostat_mwh"] == 0.0
+    assert second["rheostat_mwh"] > 0.0
+    assert second["refused_mwh"] == 0.0
 
 
 def test_another_train_uses_what_one_feeds_back() -> None:
@@ -226,6 +265,7 @@ def build(scenario: dict[str, Any]) -> None:
         ({"full_until_kv": 18.5}, "not below zero_from_kv, 18 kV"),
         ({"full_until_kv": 16.0}, "below the voltage of West without load, 16.5 kV"),
         ({"efficiency": 1.2}, "efficiency"),
+        ({"rest": "resistor"}, "rest"),
         ({"max_force_kn": 0.0}, "max_force_kn"),
     ],
 )

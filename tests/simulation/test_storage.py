@@ -173,6 +173,9 @@ FAULTS = {
                         "outside the line"),
     "a hair beside a station": ({f"{STORAGE}.Middle.position_km": 0.5003},
                                 f"{STORAGE}.0.position_km", "closer than a metre"),
+    "conductors of their own": (
+        {"supply.conductors": {"leakage_s_per_km": 0.1}}, f"{STORAGE}.0",
+        "stores are known between a single conductor and earth only"),
     "an unknown station": ({f"{STORAGE}.Middle.at": "Z"},
                            f"{STORAGE}.0.at", "no such station"),
 }  # fmt: skip

@@ -22,6 +22,7 @@ LABELS = {
     "braked [MWh]",
     "braked by friction [MWh]",
     "refused by the line [MWh]",
+    "burnt in rheostats of trains [MWh]",
     "fed back by trains [MWh]",
     "of it used by others [MWh]",
     "of it burnt in stations [MWh]",

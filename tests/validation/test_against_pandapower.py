@@ -89,6 +89,17 @@ def test_a_line_with_open_ends_and_trains_less_than_a_metre_apart_agrees():
     assert_agreement(odd_line())
 
 
+def test_islands_on_different_phases_agree():
+    """Each island is a net of its own; the line has one track here."""
+    one_track = {
+        "line.tracks": None,
+        "supply.tracks_tied": None,
+        "supply.catenary.mutual_r_ohm_per_km": None,
+        "supply.catenary.mutual_x_ohm_per_km": None,
+    }
+    assert_agreement(tpss.load_scenario(EXAMPLES / "neutral_section_25kv.toml", one_track))
+
+
 @pytest.mark.parametrize("feedback", ["grid", "none"])
 def test_trains_that_feed_back_agree(feedback):
     """Down a grade all trains are sources, of which one station takes nothing where it is told so."""

@@ -1,5 +1,6 @@
 """The examples against an independent, slow implementation of the same model."""
 
+import numpy as np
 import pytest
 
 import tpss
@@ -102,6 +103,31 @@ def test_the_metro_s_middle_station_takes_what_the_line_refuses():
     assert energy[1] < 0.98 * energy[0]
 
 
+def test_freight_over_a_hill_at_3_kv_needs_the_station_at_its_summit():
+    """With it no train is below the knee of its limitation, 0.9 x 3 kV; without it trains lose minutes.
+
+    An inverter there takes a third of what trains burn otherwise.
+    """
+    scenario = tpss.load_scenario(EXAMPLES / "freight_3kv.toml")
+    base, inverted, without = (
+        tpss.simulate(each, lost_time=True)
+        for each in (scenario, *map(scenario.variant, ("reversible", "without-summit")))
+    )
+    for each in (base, inverted, without):
+        assert (each.status, each.audit["passed"]) == ("finished", True)
+        assert each.standards.violations.empty
+        assert set(each.thermal.verdict) == {"within"}
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (base, without)]
+    assert 2.7 < lowest[0] < 2.9
+    assert 2.0 < lowest[1] < 2.5
+    lost_min = [each.summary["lost_time"]["total_min"] for each in (base, without)]
+    assert lost_min[0] < 0.1
+    assert lost_min[1] > 5.0
+    burnt = [each.regeneration.rheostat_mwh.sum() for each in (base, inverted)]
+    assert burnt[0] > 0.1
+    assert burnt[1] < 0.7 * burnt[0]
+
+
 def test_trams_run_through_the_old_town_from_their_stores():
     """Where there is no contact line they draw nothing; no store falls below a third, nobody strands."""
     result = tpss.simulate(tpss.load_scenario(EXAMPLES / "tram_750v.toml"))
@@ -120,7 +146,50 @@ def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
-        "both_ways", "emu_25kv", "line_320km", "line_320km_losses", "metro_750v", "network",
-        "overloaded", "own_trains", "thesis_original", "tram_750v",
+        "both_ways", "emu_25kv", "freight_3kv", "line_320km", "line_320km_losses", "metro_750v",
+        "network", "overloaded", "own_trains", "thesis_original", "tram_750v",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}
+
+
+def test_the_example_with_a_neutral_section_has_the_unbalance_of_its_connections():
+    """Of one pair of phases u₂ ≈ S/S_k; on two pairs of a busbar it is half as much as on one.
+
+    Between RS and ST stand √3 · 27.5 kV = 47.6 kV without load, a little more where trains feed back.
+    """
+    scenario = tpss.load_scenario(EXAMPLES / "neutral_section_25kv.toml")
+    base = tpss.simulate(scenario)
+    one, pair, scott = (
+        tpss.simulate(scenario.variant(name)) for name in ("one-busbar", "one-pair", "scott")
+    )
+    assert all(each.audit["passed"] for each in (base, one, pair, scott))
+    assert base.standards.violations.empty
+    peaks_mva = np.hypot(
+        base.dataset.station_active_power, base.dataset.station_reactive_power
+    ).max(dim="time")
+    shares = base.standards.unbalance.peak_percent.to_numpy()
+    assert shares == pytest.approx(peaks_mva.to_numpy() / 1500e4, rel=0.05)
+    alone, both, same, right = (
+        each.standards.unbalance.mean_10_min_percent.max() for each in (base, one, pair, scott)
+    )
+    assert both == pytest.approx(alone, rel=0.1)
+    assert same == pytest.approx(2.0 * both, rel=0.1)
+    assert right < 0.3 * both
+    assert 45.0 < base.standards.neutral_sections.mean_kv[0] < 47.6
+    fed_back = base.transformer_losses.to_grid_mwh.sum()
+    assert fed_back > 0.1
+
+
+def test_the_example_of_autotransformers_has_rails_below_their_limit_and_neutral_currents():
+    """A single conductor of the equivalent impedance has the same lowest voltage within 1 %."""
+    scenario = tpss.load_scenario(EXAMPLES / "hs_2x25kv.toml")
+    result = tpss.simulate(scenario)
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    assert 5.0 < result.rails.permanent_v.max() < 60.0
+    units = result.autotransformers
+    assert units.position_km.tolist() == [10.0, 20.0, 30.0, 40.0, 50.0]
+    assert (units.highest_neutral_a == 2.0 * units.highest_winding_a).all()
+    assert 0.1 < units.peak_loading.max() < 1.5
+    one = tpss.simulate(scenario.variant("one_conductor"))
+    lowest = [each.summary["lowest_voltage"]["voltage_kv"] for each in (result, one)]
+    assert lowest[0] == pytest.approx(lowest[1], rel=0.01)

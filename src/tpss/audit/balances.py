@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import magnitude
+from tpss.powerflow.bundles import NO_BUNDLES
 from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Network
 from tpss.record import Record, Records
@@ -104,6 +105,27 @@ class GroupScratch(NamedTuple):
     """What is left of the equation of each when it is eliminated, shape (pieces, widest + 1)."""
 
 
+class BundleScratch(NamedTuple):
+    """Scratch for bundles of conductors; an empty tuple if there are none."""
+
+    first: npt.NDArray[np.int64]
+    """First train of each section of the network, in the order of `Scratch.order`."""
+    end: npt.NDArray[np.int64]
+    """The one after the last."""
+    next: npt.NDArray[np.int64]
+    """Next train under each conductor."""
+    before_v: npt.NDArray[np.complex128]
+    """Voltages of the conductors where a piece begins. [V]"""
+    after_v: npt.NDArray[np.complex128]
+    """Where it ends. [V]"""
+    leaving_a: npt.NDArray[np.complex128]
+    """Currents that leave into a piece. [A]"""
+    ahead_a: npt.NDArray[np.complex128]
+    """Those that arrive at its end. [A]"""
+    arriving_a: npt.NDArray[np.complex128]
+    """Those that arrive at its beginning. [A]"""
+
+
 class Scratch(NamedTuple):
     """Scratch arrays, and the result."""
 
@@ -119,6 +141,7 @@ class Scratch(NamedTuple):
     place_m: npt.NDArray[np.float64]
     """Its place on the line. [m]"""
     groups: GroupScratch
+    bundles: BundleScratch
     stored: Records[Stored]
     """One record."""
 
@@ -134,6 +157,7 @@ def new_scratch(network: Network, trains: int) -> Scratch:
         section=np.zeros(trains, dtype=np.int64),
         place_m=np.zeros(trains),
         groups=_group_scratch(network, trains),
+        bundles=_bundle_scratch(network),
         stored=Stored.blank(1),
     )
 
@@ -148,6 +172,26 @@ def _group_scratch(network: Network, trains: int) -> GroupScratch:
         front=np.zeros((widest, widest + 1), dtype=complex),
         pieces=Piece.blank(trains + widest),
         factors=np.zeros((trains + widest, widest + 1), dtype=complex),
+    )
+
+
+def _bundle_scratch(network: Network) -> BundleScratch:
+    if network.bundles == NO_BUNDLES:
+        return cast("BundleScratch", ())
+    sections, widest = network.sections.size, network.bundles.section.shape[1]
+
+    def of_conductors() -> npt.NDArray[np.complex128]:
+        return np.zeros(widest, dtype=complex)
+
+    return BundleScratch(
+        first=np.zeros(sections, dtype=np.int64),
+        end=np.zeros(sections, dtype=np.int64),
+        next=np.zeros(widest, dtype=np.int64),
+        before_v=of_conductors(),
+        after_v=of_conductors(),
+        leaving_a=of_conductors(),
+        ahead_a=of_conductors(),
+        arriving_a=of_conductors(),
     )
 
 

@@ -19,8 +19,9 @@ def _audit_nothing(*_: Any) -> None:
 def audit_links(links: Links, node_v: Complexes, leaving_a: Complexes) -> None:
     """Add the currents into links to those that leave the nodes, shape (nodes,). [A]"""
     for k in range(links.admittance_s.size):
-        current = complex(0.0, 0.0)
+        voltage = complex(0.0, 0.0)
         for end in range(links.first[k], links.first[k + 1]):
-            current += links.admittance_s[k] * links.weight[end] * node_v[links.node[end]]
+            voltage += links.weight[end] * node_v[links.node[end]]
+        current = links.admittance_s[k] * voltage
         for end in range(links.first[k], links.first[k + 1]):
             leaving_a[links.node[end]] += links.weight[end] * current

@@ -10,11 +10,15 @@ is the audit's.
 import math
 
 from tpss.audit.balances import Scratch, audit_demand, worst
+from tpss.audit.bundles import audit_bundles, pass_bundled
 from tpss.audit.coupled import audit_groups, pass_trains
 from tpss.audit.links import audit_links
+from tpss.audit.sharing import drop_by_others
 from tpss.audit.stores import join_stores
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
+from tpss.powerflow.bundle_points import is_bundled
+from tpss.powerflow.bundle_state import terminal_voltage
 from tpss.powerflow.coupled import is_coupled
 from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED
 from tpss.powerflow.placing import is_unfed, section_at
@@ -63,9 +67,12 @@ def audit_network(
     for s in range(network.sections.size):
         if is_coupled(network.groups, s) and not is_unfed(s, network):
             k = pass_trains(network.groups, s, k, count, scratch)
+        elif is_bundled(network.bundles, s):
+            k = pass_bundled(network.bundles, s, k, count, scratch)
         else:
             k = _audit_section(step, s, k, count, model, recording, scratch)
     audit_groups(network.groups, step, count, model, recording, scratch)
+    audit_bundles(network.bundles, step, model, recording, scratch)
     if network.stores.size > 0:
         join_stores(step, network, recording.stores, scratch, figures)
     for n in range(scratch.node_v.size):
@@ -179,6 +186,8 @@ def audit_sources(
         voltage = complex(node.node_real, node.node_imag)
         power = complex(row.station_active_power, row.station_reactive_power)
         current = (power / voltage).conjugate()
+        voltage = terminal_voltage(network.bundles, s, voltage, current)
         off, _, _ = residual(voltage, current, row.active_converters, source, False)
+        off += drop_by_others(network.shared, s, step, model, recording)
         per_unit = magnitude(off) / network.system.base_voltage_v
         figures.converter_residual = worst(figures.converter_residual, per_unit)

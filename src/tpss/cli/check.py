@@ -1,7 +1,7 @@
 """The command ``tpss check``: what a scenario describes, without simulating it."""
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,15 +19,17 @@ from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.clock import clock_at
+from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.fields import Part, library_name
 from tpss.scenario.line import Line, SpeedLimit
+from tpss.scenario.of_the_system import under_its_system
 from tpss.scenario.open_step import with_step
 from tpss.scenario.override import parse_assignment
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
 from tpss.scenario.simulation import Simulation
 from tpss.scenario.standards import Standards
-from tpss.scenario.supply import HighVoltageLine, Post, SectionBreak, Supply
+from tpss.scenario.supply import Catenary, HighVoltageLine, Post, SectionBreak, Supply
 from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.scenario.traffic import Stop, Traffic
 from tpss.units import kilometres, on_line
@@ -80,7 +82,7 @@ def summary(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield from _line(line, f"{name}: " if several else "")
     yield from _supply(scenario.supply)
     for name, train in scenario.trains.items():
-        yield "train", f"{name}: {_train(train)}"
+        yield "train", f"{name}: {_train(train, scenario.supply.system)}"
     for text in _traffic(scenario.traffic, scenario.simulation.start_s):
         yield "traffic", text
     if scenario.signalling.separation != "none":
@@ -128,11 +130,18 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
     catenary = supply.catenary
     reactance = "" if supply.is_direct else f" + j{catenary.x_ohm_per_km:g}"
     impedance = f"{catenary.r_ohm_per_km:g}{reactance} Ω/km"
-    yield "catenary", f"{library_name('catenaries', catenary)}: {impedance}"
+    yield "catenary", f"{_conductors(catenary)}: {impedance}"
     yield "high voltage", _high_voltage(supply, supply.high_voltage_line)
     for station in supply.stations:
         place = on_line(station.line or "", f"{kilometres(station.position_km)} km")
         yield "feeding", f"{station.name} {place}: {station.in_words}"
+    if (conductors := supply.conductors) is not None:
+        leakage = f"{conductors.leakage_s_per_km:g} S/km from the rails of a track to earth"
+        yield "conductors", f"{leakage}, nodes every {conductors.nodes_every_km:g} km at most"
+    for each in supply.autotransformers:
+        places = ", ".join(kilometres(km) for km in each.positions_km)
+        where = on_line(each.line or "", f"{places} km")
+        yield "autotransf.", f"{where}: {each.rated_mva:g} MVA, {each.short_circuit_percent:g} %"
     for store in supply.storage:
         place = on_line(store.line or "", f"{kilometres(store.position_km)} km")
         yield "storage", f"{store.name} {place}: {store.in_words}"
@@ -145,6 +154,23 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
             yield kind, _listed([_switch(each) for each in switches])
     for section in supply.neutral_sections:
         yield "neutral", section.in_words
+
+
+def _conductors(catenary: Catenary) -> str:
+    """Library names of a contact line: of the whole, or of its conductors, worn and warm."""
+    if catenary.contact_line is None or catenary.rails is None:
+        return library_name("catenaries", catenary)
+    state = {
+        "worn by {:g} %": catenary.wear_percent,
+        "at {:g} °C": catenary.conductor_temperature_c,
+        "rails at {:g} °C": catenary.rails_temperature_c,
+    }
+    names = (
+        library_name("contact_lines", catenary.contact_line),
+        f"rails {library_name('rails', catenary.rails)}",
+    )
+    told = (words.format(value) for words, value in state.items() if value is not None)
+    return ", ".join((*names, *told))
 
 
 def _switch(switch: Post | SectionBreak) -> str:
@@ -175,7 +201,7 @@ def _standards(standards: Standards) -> str:
     texts = [
         f"{limits.system}: {limits.umin1_kv:g} to {limits.umax1_kv:g} kV, for a limited time "
         f"{limits.umin2_kv:g} to {limits.umax2_kv:g} kV",
-        *_changed(limits, "voltage_limits", limits.system),
+        *_changed(limits, library.entries("voltage_limits").get(limits.system, {})),
     ]
     if standards.peak_from_min or standards.peak_to_min is not None:
         end = "the end" if standards.peak_to_min is None else f"{standards.peak_to_min:g} min"
@@ -185,9 +211,8 @@ def _standards(standards: Standards) -> str:
     return "; ".join(texts)
 
 
-def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
-    """What a part changes in the library entry that it starts from, if anything."""
-    usual = library.entries(kind).get(entry or "", {})
+def _changed(part: Part, usual: Mapping[str, Any]) -> list[str]:
+    """What a part changes in the values of the library entry that it starts from, if anything."""
     changed = [
         f"{key} {_plain(getattr(part, key))} ({_plain(usual[key])})"
         for key in type(part).model_fields
@@ -196,14 +221,25 @@ def _changed(part: Part, kind: str, entry: str | None) -> list[str]:
     return [f"changed from the library: {', '.join(changed)}"] if changed else []
 
 
-def _train(train: Train) -> str:
+def _train(train: Train, system: str) -> str:
     key_data = [
         f"{units.words(key)} {getattr(train, key):g} {units.label(key)}"
         for key in KINDS["locomotives"].shown
         if getattr(train, key) is not None
     ]
     text = f"{train.model or 'own'}, {', '.join(key_data)}"
-    return "; ".join([text, *_changed(train, "locomotives", train.model)])
+    return "; ".join([text, *_changed(train, _of_model(train.model, system))])
+
+
+def _of_model(name: str | None, system: str) -> dict[str, Any]:
+    """Values of a model as it is under a system, by the keys that the library gives it."""
+    if name not in library.entries("locomotives"):
+        return {}
+    document = {"supply": {"system": system}, "trains": {"it": {"model": name}}}
+    under = without_reactive_power(under_its_system(document))["trains"]["it"]
+    model = Train.model_validate(under)
+    keys = {*library.entries("locomotives")[name], *under} & {*Train.model_fields}
+    return {key: getattr(model, key) for key in keys}
 
 
 def _plain(value: Any) -> str:

@@ -43,17 +43,22 @@ def osrd(
     trains: Annotated[
         Path | None, argument(metavar="[TRAINS]", help="Train schedules (JSON).")
     ] = None,
+    rolling_stock: Annotated[
+        list[Path] | None,
+        option(metavar="FILE", help="Rolling stock of a train (JSON); repeatable."),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Turn an infrastructure of OSRD, and its train schedules, into lines and a timetable.
 
     Tracks in a row become a line, operational points and switches its stations; lines meet at stations
     of one name. tracks.csv says which track lies where. Signalling is left out. In scenario.toml the
-    supply and the types of train are assumed, and marked as such.
+    supply is assumed, and marked as such, and so are types of train without a file of rolling stock; of
+    one with a file the effort curve of the lines' voltage is taken.
     """
     from tpss.cli.imports import import_osrd
 
-    import_osrd(infra, trains, out, force)
+    import_osrd(infra, trains, rolling_stock or [], out, force)
 
 
 @app.command(

@@ -45,11 +45,13 @@ def _told(told: Told) -> list[str]:
     return lines
 
 
-def import_osrd(infra: Path, trains: Path | None, out: Path, force: bool) -> None:
+def import_osrd(
+    infra: Path, trains: Path | None, stock: list[Path], out: Path, force: bool
+) -> None:
     """Write lines, a timetable and a scenario from files of OSRD, and print what was done."""
     from tpss.importers.osrd import read as read_osrd
 
-    _write_network(read_osrd(infra, trains), out, force)
+    _write_network(read_osrd(infra, trains, stock), out, force)
 
 
 def import_gtfs(feed: Path, routes: list[str], day: date | None, out: Path, force: bool) -> None:

@@ -13,6 +13,7 @@ from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
+from tpss.results.rail_words import rails_in_words
 from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import THERMAL, Result
 from tpss.results.step_words import step_lines
@@ -43,6 +44,9 @@ def print_result(result: Result, console: Console) -> None:
     print_table("Feeding stations", "station", columns, rows, console)
     if len(result.converter_losses):
         _print_losses(result.converter_losses, console)
+    if len(result.autotransformers):
+        _print_autotransformers(result.autotransformers, console)
+    _print_grid(result, console)
     if len(result.storage):
         _print_storage(result.storage, console)
     for line in key_figures(result):
@@ -83,6 +87,15 @@ _STATION_COLUMNS = (
     Column("mean_converters", "converters", "mean", 1),
 )
 
+_AUTOTRANSFORMER_COLUMNS = (
+    Column("line", "on", "", 0),
+    Column("highest_winding_a", "winding", "A", 0),
+    Column("highest_neutral_a", "neutral", "A", 0),
+    Column("peak_loading", "peak load", "%", 1, 100.0),
+    Column("loading_15_min", "15 min", "%", 1, 100.0),
+    Column("loading_60_min", "60 min", "%", 1, 100.0),
+)
+
 _RARE = ("to_grid_mwh", "burnt_mwh", "auxiliaries_mwh")
 """Columns of the 50 Hz side that are left out where they are 0."""
 
@@ -112,6 +125,32 @@ _STORAGE_COLUMNS = (
     Column("peak_discharge_kw", "peak out", "kW", 0),
     Column("lowest_soc", "lowest", "%", 0, 100.0),
     Column("highest_soc", "highest", "%", 0, 100.0),
+)
+
+_TRANSFORMER_COLUMNS = (
+    Column("from_grid_mwh", "taken", "MWh", 3),
+    Column("to_grid_mwh", "given", "MWh", 3),
+    Column("burnt_mwh", "burnt", "MWh", 3),
+    Column("load_mwh", "by load", "MWh", 3),
+    Column("no_load_mwh", "no load", "MWh", 3),
+    Column("grid_mwh", "in grid", "MWh", 3),
+)
+
+_BUSBAR_COLUMNS = (
+    Column("peak_r_a", "peak R", "A", 1),
+    Column("peak_s_a", "peak S", "A", 1),
+    Column("peak_t_a", "peak T", "A", 1),
+    Column("peak_percent", "peak U2/U1", "%", 2),
+    Column("mean_10_min_percent", "10 min", "%", 2),
+    Column("limit_percent", "limit", "%", 2),
+)
+
+_NEUTRAL_COLUMNS = (
+    Column("phases_before", "before", "", 0),
+    Column("phases_behind", "behind", "", 0),
+    Column("angle_deg", "angle", "°", 0),
+    Column("mean_kv", "mean U", "kV", 2),
+    Column("highest_kv", "highest U", "kV", 2),
 )
 
 _STEP_PLACE = [Column("line", "on", "", 0), Column("track", "track", "", 0)]
@@ -145,6 +184,35 @@ def _print_storage(found: pd.DataFrame, console: Console) -> None:
     print_table("Stores of energy", "store", _STORAGE_COLUMNS, rows, console)
     if len(found) > MOST_TRAINS:
         say(console, f"... and {len(found) - MOST_TRAINS} more stores, in the saved result")
+
+
+def _print_autotransformers(found: pd.DataFrame, console: Console) -> None:
+    places = [f"{km:g} km" for km in found.position_km]
+    rows = named_rows(found.assign(place=places), "place")
+    print_table("Autotransformers", "at", _AUTOTRANSFORMER_COLUMNS, rows, console)
+
+
+def _print_grid(result: Result, console: Console) -> None:
+    """Print the grid's side of transformer stations, busbars and voltages across neutral sections."""
+    lost = result.transformer_losses
+    occurs = [
+        each for each in _TRANSFORMER_COLUMNS if each.key not in _RARE or lost[each.key].any()
+    ]
+    neutral = result.standards.neutral_sections
+    places = [
+        on_line(line, f"{begin:g}-{end:g} km")
+        for line, begin, end in zip(
+            neutral.get("line", [""] * len(neutral)), neutral.from_km, neutral.to_km, strict=True
+        )
+    ]
+    shown = (
+        ("Grid's side of transformer stations", "station", occurs, lost),
+        ("Busbars of the grid", "busbar", _BUSBAR_COLUMNS, result.standards.unbalance),
+        ("Neutral sections", "place", _NEUTRAL_COLUMNS, neutral.assign(place=places)),
+    )
+    for title, first, columns, frame in shown:
+        if len(frame):
+            print_table(title, first, columns, named_rows(frame, first), console)
 
 
 def print_table(
@@ -200,6 +268,9 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
+    lines += rails_in_words(result)
+    if result.standards.unbalance_in_words:
+        lines.append(f"Unbalance: {result.standards.unbalance_in_words}")
     lines += thermal_in_words(summary.get(THERMAL))
     lines += step_lines(summary)
     lines.append(_audit(summary["audit"]))

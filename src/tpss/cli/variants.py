@@ -21,7 +21,7 @@ BASE = "base"
 
 COLUMNS = (
     "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %", "converters lose MWh",
-    "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh",
+    "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh", "unbalance %",
 )  # fmt: skip
 """Those of which no run has a figure are left out."""
 
@@ -99,6 +99,7 @@ def row_of(result: "Result") -> Row:
         None if loading != loading else 100.0 * float(loading),
         *(grid.get(key) for key in ("losses_mwh", "from_grid_mwh", "to_grid_mwh")),
         *(braking.get(key) for key in ("braked_mwh", "fed_back_mwh")),
+        max((each.mean_10_min_percent for each in result.standards.busbars), default=None),
     ]
     return Row(result.status, figures)
 

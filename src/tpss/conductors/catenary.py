@@ -1,5 +1,6 @@
 """The catenary of a scenario that stands for a line of many conductors."""
 
+import json
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         A catenary of a scenario cannot have these values.
     """
     z = chosen(constants)
-    table = {
+    table: dict[str, Any] = {
         "r_ohm_per_km": _rounded(1e3 * z.own.real),
         "x_ohm_per_km": _rounded(1e3 * z.own.imag),
     }
@@ -70,6 +71,8 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         for axis, value in in_common(z).items()
         if value > 0.0
     }
+    if conductors := conductors_of(constants):
+        table["conductors"] = conductors
     try:
         Catenary.model_validate(table)
     except ValidationError as error:
@@ -80,6 +83,34 @@ def catenary_of(constants: "LineConstants") -> dict[str, Any]:
         ]
         raise ScenarioError(findings) from error
     return table
+
+
+def conductors_of(constants: "LineConstants") -> dict[str, Any] | None:
+    """Table of the conductors of a catenary; None where a scenario knows none of these.
+
+    It knows one or two tracks with contact line and rails, and with feeders or without, of an
+    alternating current.  A positive feeder counts to the contact line, to which it is tied.
+    """
+    tracks, names = constants.geometry.tracks, list(constants.groups)
+    kinds = [name.partition(" ")[0] for name in names]
+    whole = all(kinds.count(kind) in (0, len(tracks)) for kind in ("contact", "rails", "feeder"))
+    if constants.frequency_hz == 0.0 or len(tracks) > 2 or not whole or "rails" not in kinds:
+        return None
+    merged = [name.replace("positive", "contact") for name in names]
+    kept = list(dict.fromkeys(merged))
+    sums = np.array([[float(each == name) for each in merged] for name in kept])
+    impedance = np.linalg.inv(sums @ np.linalg.inv(constants.impedance) @ sums.T)
+    susceptance = 2.0 * math.pi * constants.frequency_hz * sums @ constants.capacitance @ sums.T
+    return {
+        "names": kept,
+        "r_ohm_per_km": _rounded_rows(1e3 * impedance.real),
+        "x_ohm_per_km": _rounded_rows(1e3 * impedance.imag),
+        "b_us_per_km": _rounded_rows(1e9 * susceptance),
+    }
+
+
+def _rounded_rows(matrix: Any) -> list[list[float]]:
+    return [[_rounded(float(value)) for value in row] for row in matrix]
 
 
 def in_common(equivalent: Equivalent) -> dict[str, float]:
@@ -105,7 +136,19 @@ def catenary_text(constants: "LineConstants") -> str:
         f"line constants of {constants.geometry.source.name} at {constants.frequency_hz:g} Hz, "
         f"{constants.geometry.method}: {z.meaning}"
     )
-    return tomli_w.dumps({"source": source, **catenary_of(constants)})
+    table = catenary_of(constants)
+    conductors = table.pop("conductors", None)
+    text = tomli_w.dumps({"source": source, **table})
+    return text if conductors is None else f"{text}\n{_conductors_text(conductors)}"
+
+
+def _conductors_text(conductors: dict[str, Any]) -> str:
+    """Table of the conductors, a row of a matrix on a line."""
+    lines = ["[conductors]", f"names = {json.dumps(conductors['names'])}"]
+    for key in ("r_ohm_per_km", "x_ohm_per_km", "b_us_per_km"):
+        rows = ",\n".join(f"    {json.dumps(row)}" for row in conductors[key])
+        lines.append(f"{key} = [\n{rows},\n]")
+    return "\n".join(lines) + "\n"
 
 
 def _rounded(value: float) -> float:

@@ -10,11 +10,9 @@ from typing import NamedTuple
 
 from tpss.importers.network import ImportedNetwork
 from tpss.importers.quantities import DIGITS
+from tpss.importers.supplies import supply_of
 from tpss.scenario.routes import Hop, hops_of
 from tpss.units import kilometres
-
-REACH_KM = 30.0
-"""No station of a network is farther from a feeding station. [km]"""
 
 
 class FeedingPlace(NamedTuple):
@@ -39,7 +37,8 @@ class _Stretch(NamedTuple):
 
 def feeding_places(network: ImportedNetwork) -> list[FeedingPlace]:
     """Feeding stations for all parts of the contact line."""
-    return [place for part in _parts(_stretches(network)) for place in _places_in(part)]
+    reach_km = supply_of(network.system).reach_km
+    return [place for part in _parts(_stretches(network)) for place in _places_in(part, reach_km)]
 
 
 def _stretches(network: ImportedNetwork) -> Iterator[_Stretch]:
@@ -70,7 +69,7 @@ def _parts(stretches: Iterable[_Stretch]) -> list[list[_Stretch]]:
     return [here for _, here in parts]
 
 
-def _places_in(part: Sequence[_Stretch]) -> Iterator[FeedingPlace]:
+def _places_in(part: Sequence[_Stretch], reach_km: float) -> Iterator[FeedingPlace]:
     names = [name for stretch in part for name in stretch.stations]
     if not names:
         line, from_km, to_km, _ = part[0]
@@ -81,7 +80,7 @@ def _places_in(part: Sequence[_Stretch]) -> Iterator[FeedingPlace]:
     chosen = [max(names, key=names.count)]
     while True:
         distance_km, farthest = _farthest(hops, chosen)
-        if distance_km <= REACH_KM:
+        if distance_km <= reach_km:
             break
         chosen.append(farthest)
     yield from (FeedingPlace(name, name) for name in chosen)

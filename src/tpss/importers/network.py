@@ -85,6 +85,8 @@ class ImportedNetwork:
     neutral_sections: list[LineNeutral] = field(default_factory=list)
     system: str = ""
     """Electrification system of most of the lines, if it is known."""
+    stock: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """Tables of trains that were imported, by the kinds of the trains."""
     taken: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)

@@ -7,9 +7,10 @@ from typing import Any
 import tomli_w
 
 from tpss.errors import Finding, ScenarioError
-from tpss.importers.feeding import REACH_KM, feeding_places
+from tpss.importers.feeding import feeding_places
 from tpss.importers.network import ImportedNetwork, plain_name
 from tpss.importers.services import EXAMPLE, service_tables
+from tpss.importers.supplies import DEFAULT_SYSTEM, supply_of
 from tpss.importers.texts import comments
 from tpss.importers.timetable import begin_of_day, clock, csv_text, end_of_day
 from tpss.importers.ways import example_way
@@ -40,49 +41,6 @@ system = {system}
 {supply}{trains}
 {traffic}"""
 
-_SUPPLY = {
-    "25kV-50Hz": (
-        "catenary = { r_ohm_per_km = 0.169, x_ohm_per_km = 0.432 }",
-        """
-[[supply.transformer_stations]]
-name = {name}
-{place}
-no_load_voltage_kv = 27.5
-transformer = {{ rated_mva = 30.0, short_circuit_percent = 10.0 }}
-""",
-    ),
-    "15kV-16.7Hz": (
-        'catenary = "BT"                     # or "AT", a table, or a file of your own',
-        """
-[[supply.converter_stations]]
-name = {name}
-{place}
-type = "Q48/Q49"
-converters = 3
-""",
-    ),
-}
-"""Contact line and feeding station of the systems."""
-
-DEFAULT_SYSTEM = "15kV-16.7Hz"
-
-_TRAIN = """
-# ASSUMED, edit it: a multiple unit.
-[trains.{key}]
-tractive_effort = {{ max_force_kn = 200.0, max_power_kw = 5000.0 }}
-mass_t = 250.0
-adhesive_mass_t = 150.0
-rotating_mass_factor = 0.06
-resistance_a_n = 3000.0
-resistance_b_n_s_per_m = 80.0
-resistance_c_n_s2_per_m2 = 8.0
-max_speed_kmh = 160.0
-max_retardation_m_s2 = 0.8
-efficiency = 0.85
-power_factor = 1.0
-auxiliary_power_kw = 200.0
-"""
-
 _TIMETABLE = f"""
 [[timetables]]
 file = "{TIMETABLE}"
@@ -102,6 +60,8 @@ def files(network: ImportedNetwork) -> dict[str, str]:
     for line in network.lines:
         source = f"{network.format_name}, {network.sources[0].name}"
         texts[f"lines/{line.name}.toml"] = tomli_w.dumps({"source": source, **line.document})
+    for name, table in network.stock.items():
+        texts[f"trains/{name}.toml"] = tomli_w.dumps(table)
     if network.trains:
         texts[TIMETABLE] = csv_text(network.trains)
     if network.tracks:
@@ -114,6 +74,7 @@ def scenario_text(network: ImportedNetwork) -> str:
     sources = " and ".join(path.name for path in network.sources)
     kinds = {each.train_type: None for each in network.trains}
     kinds |= {each.train.train_type: None for each in network.services}
+    assumed = supply_of(network.system)
     return comments(f"Imported from {sources} of {network.format_name}.", network) + (
         _SCENARIO.format(
             name=_text(network.name),
@@ -121,10 +82,10 @@ def scenario_text(network: ImportedNetwork) -> str:
             simulation=_simulation(network),
             lines="".join(f'{name} = "lines/{name}.toml"\n' for name in network.stations),
             format_name=network.format_name,
-            reach_km=REACH_KM,
+            reach_km=assumed.reach_km,
             system=_text(network.system or DEFAULT_SYSTEM),
             supply=_supply(network),
-            trains="".join(_TRAIN.format(key=plain_name(kind)) for kind in kinds or ["train"]),
+            trains=_trains(network, list(kinds) or ["train"]),
             traffic=_traffic(network),
         )
     )
@@ -155,14 +116,26 @@ def _simulation(network: ImportedNetwork) -> str:
 
 def _supply(network: ImportedNetwork) -> str:
     """The contact line, assumed feeding stations, and the neutral sections of the file."""
-    catenary, station = _SUPPLY[network.system or DEFAULT_SYSTEM]
+    assumed = supply_of(network.system)
     stations = []
     for each in feeding_places(network):
         place = f"at = {_text(each.at)}"
         if not each.at:
             place = f"line = {_text(each.line)}\nposition_km = {each.position_km!r}"
-        stations.append(station.format(name=_text(each.name), place=place))
-    return f"{catenary}\n{''.join(stations)}{_neutral_sections(network)}"
+        stations.append(assumed.station.format(name=_text(each.name), place=place))
+    return f"{assumed.catenary}\n{''.join(stations)}{_neutral_sections(network)}"
+
+
+def _trains(network: ImportedNetwork, kinds: list[str]) -> str:
+    """Tables of the kinds of train: those of imported rolling stock, and assumed ones."""
+    assumed, texts = supply_of(network.system).train, []
+    names = [plain_name(kind) for kind in kinds]
+    if names == ["train"] and network.stock:
+        names = list(network.stock)
+    for name in names:
+        own = f'\n[trains.{name}]\nmodel = "trains/{name}.toml"\n'
+        texts.append(own if name in network.stock else assumed.format(key=name))
+    return "".join(texts)
 
 
 def _neutral_sections(network: ImportedNetwork) -> str:
@@ -183,7 +156,8 @@ def _traffic(network: ImportedNetwork) -> str:
         return text + service_tables(network.services, hours)
     begin, end, via = example_way(network.stations)
     passed = f"via = [{', '.join(map(_text, via))}]\n" if via else ""
-    return EXAMPLE.format(begin=_text(begin), end=_text(end), via=passed)
+    train = next(iter(network.stock), "train")
+    return EXAMPLE.format(train=_text(train), begin=_text(begin), end=_text(end), via=passed)
 
 
 def _text(words: str) -> str:

@@ -6,10 +6,12 @@ https://osrd.fr: its railjson and its train schedules, which are public formats.
 """
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from tpss.importers.network import ImportedNetwork, plain_name
 from tpss.importers.osrd_infra import Infra, read_infra
+from tpss.importers.osrd_stock import read_stock, systems_of, train_of
 from tpss.importers.osrd_tracks import tracks_of
 from tpss.importers.osrd_trains import (
     PathItem,
@@ -20,17 +22,27 @@ from tpss.importers.osrd_trains import (
     left_out_of_trains,
     read_trains,
 )
+from tpss.importers.supplies import DEFAULT_SYSTEM, mixed_systems
 from tpss.importers.track_network import TrackNetwork, network_of
 from tpss.importers.track_stations import PLACE, POINT
 from tpss.importers.ways import with_passes
 from tpss.units import kilometres
 
-SYSTEMS = {"25000V": "25kV-50Hz", "25kV": "25kV-50Hz", "15000V": "15kV-16.7Hz"}
+SYSTEMS = {
+    "25000V": "25kV-50Hz",
+    "25kV": "25kV-50Hz",
+    "15000V": "15kV-16.7Hz",
+    "3000V": "DC-3kV",
+    "1500V": "DC-1.5kV",
+    "750V": "DC-0.75kV",
+}
 """Systems of the library, by the voltages of electrifications."""
 
 
-def read(infra_path: Path, trains_path: Path | None = None) -> ImportedNetwork:
-    """Lines, and trains if there is a file of them.
+def read(
+    infra_path: Path, trains_path: Path | None = None, stock_paths: Sequence[Path] = ()
+) -> ImportedNetwork:
+    """Lines, trains if there is a file of them, and what these are, of files of rolling stock.
 
     Raises
     ------
@@ -61,6 +73,7 @@ def read(infra_path: Path, trains_path: Path | None = None) -> ImportedNetwork:
         assumed=made.assumed(),
     )
     _add_trains(network, trains, places, made)
+    _add_stock(network, stock_paths)
     if given:
         network.left_out.extend(left_out_of_trains(given, places))
     return network
@@ -89,6 +102,25 @@ def _add_trains(
         )
 
 
+def _add_stock(network: ImportedNetwork, paths: Sequence[Path]) -> None:
+    """Trains of files of rolling stock, as they are under the network's system."""
+    system = network.system or DEFAULT_SYSTEM
+    for name, (stock, path) in read_stock(paths).items():
+        curves = systems_of(stock, SYSTEMS)
+        if system not in curves:
+            modes = ", ".join(stock.effort_curves.modes)
+            network.left_out.append(f"{name} of {path.name}, a train for {modes}, not for {system}")
+            continue
+        table = train_of(stock, curves, system)
+        network.stock[plain_name(name, "train")] = {"source": f"OSRD, {path.name}", **table}
+        network.taken.append(f"{name} of {path.name}: effort curves for {', '.join(curves)}")
+    if network.stock:
+        network.assumed.append(
+            "of rolling stock: all of its mass on driven axles, an efficiency of 0.85 and auxiliaries "
+            "of 100 kW"
+        )
+
+
 def _electrified_m(infra: Infra) -> Counter[str]:
     """Lengths of track by the voltages of their contact lines. [m]"""
     lengths_m: Counter[str] = Counter()
@@ -99,8 +131,13 @@ def _electrified_m(infra: Infra) -> Counter[str]:
 
 def _system(infra: Infra) -> str:
     """The system of the library that most of the electrified tracks have."""
+    return next(iter(_systems(infra)), "")
+
+
+def _systems(infra: Infra) -> list[str]:
+    """Systems of the library that electrified tracks have, that of the most first."""
     voltages = [voltage for voltage, _ in _electrified_m(infra).most_common()]
-    return next((SYSTEMS[each] for each in voltages if each in SYSTEMS), "")
+    return [SYSTEMS[each] for each in voltages if each in SYSTEMS]
 
 
 def _left_out(infra: Infra, made: TrackNetwork) -> list[str]:
@@ -132,4 +169,5 @@ def _left_out(infra: Infra, made: TrackNetwork) -> list[str]:
             each.speed_limit_by_tag for each in infra.speed_sections if each.speed_limit
         ),
     }
-    return [words for words, is_so in told.items() if is_so] + made.left_out()
+    mixed = mixed_systems(_systems(infra), bool(made.neutral.found))
+    return [words for words, is_so in told.items() if is_so] + mixed + made.left_out()

@@ -11,6 +11,7 @@ from tpss.importers.network import ImportedNetwork, plain_name
 from tpss.importers.railml2 import ImportedTrains, names_of, trains_of
 from tpss.importers.railml2_tracks import Reader
 from tpss.importers.railml_file import RailmlFile, counted, system_of
+from tpss.importers.supplies import mixed_systems
 from tpss.importers.track_network import TrackNetwork, level_track, network_of
 from tpss.importers.track_stations import POINT
 from tpss.importers.ways import with_passes
@@ -44,7 +45,7 @@ def network_from(file: RailmlFile) -> ImportedNetwork:
         f"railML {file.version}",
         made.lines,
         tracks=made.ranges,
-        system=next((system_of(*each) for each, _ in reader.electrified_m.most_common()), ""),
+        system=next(filter(None, _systems(reader)), ""),
         taken=made.taken(),
         left_out=_left_out(reader, made),
         assumed=_assumed(made),
@@ -76,6 +77,11 @@ def _add_trains(
     network.assumed.extend(given.assumed)
 
 
+def _systems(reader: Reader) -> list[str]:
+    """Systems of the electrified tracks, that of the most first; empty ones are not known."""
+    return [system_of(*each) for each, _ in reader.electrified_m.most_common()]
+
+
 def _left_out(reader: Reader, made: TrackNetwork) -> list[str]:
     file, counts = reader.file, reader.counts
     signalling = counted({words: file.count(*tags) for words, tags in SIGNALLING.items()})
@@ -98,7 +104,8 @@ def _left_out(reader: Reader, made: TrackNetwork) -> list[str]:
         ),
         f"operational points without a place on the tracks: {', '.join(reader.lost)}": reader.lost,
     }
-    return [words for words, is_so in told.items() if is_so] + made.left_out()
+    mixed = mixed_systems(_systems(reader), separated=False)
+    return [words for words, is_so in told.items() if is_so] + mixed + made.left_out()
 
 
 def _assumed(made: TrackNetwork) -> list[str]:

@@ -11,6 +11,7 @@ from tpss.errors import Finding, ScenarioError
 from tpss.importers.network import ImportedNetwork, plain_name
 from tpss.importers.railml3_tracks import Reader
 from tpss.importers.railml_file import RailmlFile, counted, system_of
+from tpss.importers.supplies import mixed_systems
 from tpss.importers.track_network import TrackNetwork, level_track, network_of
 from tpss.units import kilometres
 
@@ -56,11 +57,16 @@ def network_from(file: RailmlFile) -> ImportedNetwork:
         made.lines,
         tracks=made.ranges,
         neutral_sections=made.neutral.found,
-        system=next((system_of(*each) for each, _ in electrified_m.most_common()), ""),
+        system=next(filter(None, _systems(electrified_m)), ""),
         taken=made.taken(),
         left_out=_left_out(reader, made, electrified_m),
         assumed=_assumed(reader, made),
     )
+
+
+def _systems(electrified_m: Counter[tuple[float, float]]) -> list[str]:
+    """Systems of the electrified tracks, that of the most first; empty ones are not known."""
+    return [system_of(*each) for each, _ in electrified_m.most_common()]
 
 
 def _electrified_m(reader: Reader) -> Counter[tuple[float, float]]:
@@ -112,7 +118,8 @@ def _left_out(
         ),
         "the timetable: trains are read from railML 2 only": file.count("timetable"),
     }
-    return [words for words, is_so in told.items() if is_so] + made.left_out()
+    mixed = mixed_systems(_systems(electrified_m), bool(made.neutral.found))
+    return [words for words, is_so in told.items() if is_so] + mixed + made.left_out()
 
 
 def _assumed(reader: Reader, made: TrackNetwork) -> list[str]:

@@ -8,7 +8,13 @@ from tpss.errors import Finding, ScenarioError
 from tpss.importers.documents import MOST_FINDINGS
 from tpss.importers.xml_tree import REMEDY, read_xml
 
-SYSTEMS = {(25.0, 50.0): "25kV-50Hz", (15.0, 16.7): "15kV-16.7Hz"}
+SYSTEMS = {
+    (25.0, 50.0): "25kV-50Hz",
+    (15.0, 16.7): "15kV-16.7Hz",
+    (3.0, 0.0): "DC-3kV",
+    (1.5, 0.0): "DC-1.5kV",
+    (0.75, 0.0): "DC-0.75kV",
+}
 """Systems of the library, by voltage [kV] and frequency [Hz] in one decimal."""
 
 

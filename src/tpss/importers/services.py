@@ -10,7 +10,7 @@ EXAMPLE = """
 # ASSUMED, edit it: no trains were imported.
 [[traffic]]
 name = "service"
-train = "train"
+train = {train}
 from = {begin}
 to = {end}
 {via}headway_min = 30.0

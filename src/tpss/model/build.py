@@ -15,6 +15,7 @@ from tpss.model.held_limits import without_coasting
 from tpss.model.legs import build_legs
 from tpss.model.neutral import build_neutral
 from tpss.model.outages import layout_of, service_of
+from tpss.model.phases import demand_one_angle
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
 from tpss.model.stores import demand_thresholds_in_order
@@ -62,6 +63,7 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     demand_thresholds_in_order(scenario)
     lines = scenario.lines_by_name
     plan = layout_of(scenario, scenario.outage).plan
+    demand_one_angle(scenario, plan)
     routes = routes_of(scenario)
     running = running_trains(scenario, routes)
     types, points = build_train_types(running, limits_of_system(scenario.supply.system))

@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 from tpss.model.parting import Joint, Parting, joined_over, set_apart
 from tpss.powerflow.network import SectionPart
+from tpss.scenario.line import DECIMALS
 from tpss.scenario.outages import OutSection
-from tpss.scenario.supply import Catenary, Post, Supply
+from tpss.scenario.supply import Catenary, Conductors, Post, Supply
 from tpss.scenario.supply.contact_line import WithoutContactLine
 from tpss.units import kilometres, si
 
@@ -271,9 +272,23 @@ def _marks_of(
     bare = [each for each in supply.without_contact_line if line.holds(each.line)]
     ends_km |= {km for each in bare for km in (each.from_km, each.to_km)}
     points_km = sorted({*ends_km, *ties_km, *posts_km, *breaks})
+    points_km = sorted({*points_km, *nodes_between_km(points_km, supply.conductors)})
     return _Marks(
         points_km, ties_km, posts_km, breaks, parting.switches, out, parting.guarded, bare
     )
+
+
+def nodes_between_km(points_km: Sequence[float], conductors: Conductors | None) -> list[float]:
+    """Further places of nodes, so that no piece of line is longer than is asked for. [km]"""
+    if conductors is None:
+        return []
+    found = []
+    for begin_km, end_km in pairwise(points_km):
+        pieces = math.ceil((end_km - begin_km) / conductors.nodes_every_km - 1e-9)
+        found += [
+            round(begin_km + (end_km - begin_km) * k / pieces, DECIMALS) for k in range(1, pieces)
+        ]
+    return found
 
 
 def bears_overloads(catenary: Catenary) -> bool:

@@ -103,7 +103,9 @@ class Laid(NamedTuple):
             units |= {each.station: 0 for each in out if each.station >= 0}
             opened = [] if outage is None else _transformers_out(outage, plan)
             opened += [each.transformer for each in out if each.transformer >= 0]
-            network = in_service(network, units, opened)
+            out_of_service = [s for s, left in units.items() if left == 0]
+            links = [k for s in out_of_service for k in plan.station_links.get(s, ())]
+            network = in_service(network, units, opened, links)
         return following(network, leaders) if leaders else network
 
 

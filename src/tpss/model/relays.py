@@ -13,7 +13,12 @@ from tpss.run.switching import Switching
 from tpss.scenario.outages import Outage
 from tpss.scenario.rating import Rating, TransformerRating
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import ConverterStation, MixedStation, TransformerStation
+from tpss.scenario.supply import (
+    ConverterStation,
+    MixedStation,
+    RectifierStation,
+    TransformerStation,
+)
 from tpss.units import si
 
 
@@ -32,7 +37,8 @@ def with_relays(start: Start, scenario: Scenario, outage: Outage | None) -> Star
     if not relays:
         problem = "nothing of the supply has a rating with overloads, so nothing trips"
         remedy = (
-            "give rating.overloads of a converter type, transformer or catenary, or leave it out"
+            "give rating.overloads of a type of converters or rectifiers, of a transformer or catenary, "
+            "or leave it out"
         )
         raise ScenarioError(
             [Finding(scenario.given_source, "protection.trip", "true", problem, remedy)]
@@ -59,6 +65,16 @@ def station_relays(scenario: Scenario) -> Iterator[Relay]:
             yield from _relays(protected, station.type.rating)
         elif isinstance(station, TransformerStation):
             yield from _relays(protected, station.transformer.rating)
+        elif isinstance(station, RectifierStation):
+            current_a, voltage_kv = zip(*station.type.points, strict=True)
+            yield from (
+                relay._replace(
+                    rated_a=station.type.rated_current_a,
+                    group_current_a=current_a,
+                    group_voltage_v=tuple(kv * 1e3 for kv in voltage_kv),
+                )
+                for relay in _relays(protected, station.type.rating)
+            )
 
 
 def _transformers(laid: Laid) -> Iterator[Relay]:

@@ -103,6 +103,8 @@ def _transformer_station(node: int, station: TransformerStation) -> Any:
         size_ohm = 2.0 * voltage_v**2 / si(station, "grid_short_circuit_mva")
         direction = complex(station.grid_r_over_x, 1.0)
         grid_ohm = size_ohm * direction / abs(direction)
+    # What lies in the halves of a secondary of two windings is a part of the line's links.
+    in_law = 1.0 - station.share_in_halves if station.secondary == "2x" else 1.0
     return Source.row(
         node=node,
         kind=SourceKind.GRID,
@@ -112,7 +114,7 @@ def _transformer_station(node: int, station: TransformerStation) -> Any:
         grid=GridLaw.row(
             no_load_voltage_v=voltage_v,
             grid_impedance_ohm=grid_ohm,
-            transformer_impedance_ohm=complex(unit.r_pu, reactance_pu) * base_ohm,
+            transformer_impedance_ohm=complex(unit.r_pu, reactance_pu) * base_ohm * in_law,
         ),
     )
 

@@ -11,8 +11,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
+from tpss.model.conductors import FLAT_PU, add_conductors, autotransformers_of
 from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
 from tpss.model.feeding import Feeding, feedings_of
 from tpss.model.parting import (
@@ -23,8 +27,10 @@ from tpss.model.parting import (
     renamed,
     representatives,
 )
+from tpss.model.shared_grids import mutual_impedances_ohm
 from tpss.model.sources import build_sources
 from tpss.model.stores import build_stores
+from tpss.powerflow.bundles import BundlePart, edges_of_bundles
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.links import LinkPart, edges_of_links
@@ -58,6 +64,7 @@ class SupplyPlan:
     branch_kinds: list[str] = field(default_factory=list)
     sections: list[SectionPart] = field(default_factory=list)
     section_names: list[str] = field(default_factory=list)
+    section_kinds: list[str] = field(default_factory=list)
     coupled: list[tuple[int, ...]] = field(default_factory=list)
     """Sections side by side that have an impedance in common."""
     branch_level: list[float] = field(default_factory=list)
@@ -66,6 +73,8 @@ class SupplyPlan:
     """Nodes of the stores of energy."""
     runs: list[list[Run]] = field(default_factory=list)
     """Of each line."""
+    feeding: list[dict[float, int]] = field(default_factory=list)
+    """Nodes of the contact line of each line where its tracks are tied, by their places. [km]"""
     node_line: list[int] = field(default_factory=list)
     """Index of the line of each node."""
     joints: list[Joint] = field(default_factory=list)
@@ -75,6 +84,17 @@ class SupplyPlan:
     links: list[LinkPart] = field(default_factory=list)
     link_names: list[str] = field(default_factory=list)
     link_kinds: list[str] = field(default_factory=list)
+    station_links: dict[int, list[int]] = field(default_factory=dict)
+    """Links that are windings of a station, by its number: they are out when it is."""
+    bundles: list[BundlePart] = field(default_factory=list)
+    """Sections that are conductors side by side."""
+    rails_beside: dict[int, int] = field(default_factory=dict)
+    """Nodes of the contact line, and those of the rails there, where these are conductors."""
+    inner_ohm: list[float] = field(default_factory=list)
+    """Resistance between the node of each source and its terminals, where there are bundles. [Ω]"""
+
+    kinds_of_contact_line: ClassVar = (CONTACT_LINE, FEEDER, BUSBAR)
+    """Kinds of nodes that have the voltage of the contact line."""
 
     @property
     def edges(self) -> list[tuple[int, int]]:
@@ -82,7 +102,24 @@ class SupplyPlan:
         ends = [(section.start_node, section.end_node) for section in self.sections]
         within = edges_within(self.coupled, ends)
         lumped = [(branch.start_node, branch.end_node) for branch in self.branches]
-        return ends + within + lumped + edges_of_links(self.links)
+        joined = edges_of_links(self.links) + edges_of_bundles(self.bundles, ends)
+        return ends + within + lumped + joined
+
+    @property
+    def at_line_level(self) -> npt.NDArray[np.bool_]:
+        """Whether each node has a voltage at which trains could run; not one to earth beside rails."""
+        levels = zip(self.node_level, self.node_kinds, strict=True)
+        apart = (*FLAT_PU, *self.kinds_of_contact_line) if self.bundles else ()
+        return np.array([level == 1.0 and kind not in apart for level, kind in levels])
+
+    @property
+    def flat_pu(self) -> list[float]:
+        """Voltage of each node without load, over that of the contact line. [1]"""
+        return [FLAT_PU.get(kind, 1.0) for kind in self.node_kinds]
+
+    def contact_node(self, line: LineLayout, position_km: float) -> int:
+        """Node of the contact line of a line at a place where all its tracks are tied."""
+        return self.feeding[line.number][position_km]
 
     def one_with(self, joints: Sequence[Joint]) -> list[int]:
         """The node that each node is one with where some pairs are joined."""
@@ -139,7 +176,7 @@ class SupplyPlan:
 
     def branch_kind_of_each(self) -> list[str]:
         """Kind of each of them."""
-        return [*self.branch_kinds, *(CONTACT_LINE for _ in self._section_ends())]
+        return [*self.branch_kinds, *(kind for kind in self.section_kinds for _ in range(2))]
 
     def branch_resistance_ohm(self) -> list[float]:
         """Resistance of each of them at its own level; NaN for the ends of sections. [ohm]"""
@@ -168,12 +205,10 @@ def build_supply(
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)
     network = assemble(
-        *parts,
-        room=plan.room(),
-        groups=plan.coupled,
-        links=plan.links,
+        *parts, room=plan.room(), groups=plan.coupled, links=plan.links, bundles=plan.bundles,
+        flat_pu=plan.flat_pu, inner_ohm=plan.inner_ohm, mutual_ohm=mutual_impedances_ohm(supply),
         stores=build_stores(plan.stores, supply.storage),
-    )
+    )  # fmt: skip
     return mark_unfed(network), plan
 
 
@@ -211,6 +246,10 @@ def joined_network(
         room=plan.room(),
         groups=plan.coupled,
         links=[link._replace(nodes=tuple(node[n] for n in link.nodes)) for link in plan.links],
+        bundles=plan.bundles,
+        flat_pu=plan.flat_pu,
+        inner_ohm=plan.inner_ohm,
+        mutual_ohm=mutual_impedances_ohm(supply),
         stores=build_stores([node[n] for n in plan.stores], supply.storage),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
@@ -282,6 +321,7 @@ def plan_supply(
         own = (each for each in supply.storage if line.holds(each.line))
         store_node |= {each.name: node[each.position_km] for each in own}
     plan.sources = [node_of[station.name] for station in supply.stations]
+    add_conductors(plan, supply, lines)
     plan.stores = [store_node[each.name] for each in supply.storage]
     return plan
 
@@ -326,6 +366,7 @@ class _OnLine(NamedTuple):
             for km, name in line.junctions
             if (line.name in busbars[name] if name in busbars else supply.junctions_tied)
         }
+        autotransformers = (km for km, _ in autotransformers_of(supply, line))
         stores_km = {each.position_km for each in supply.storage if line.holds(each.line)}
         fed_km = {each.places_km[line.name] for each in feedings if line.name in each.places_km}
         return cls(
@@ -333,7 +374,7 @@ class _OnLine(NamedTuple):
             transformers_km=transformers,
             has_high_voltage=beside,
             junctions=junctions,
-            feeding_km={*fed_km, *transformers, *junctions, *stores_km},
+            feeding_km={*fed_km, *transformers, *junctions, *autotransformers, *stores_km},
         )
 
 
@@ -360,10 +401,13 @@ def _lay_line(
 
     first = len(plan.sections)
     laid = lay_contact_line(line, supply, here.feeding_km, make_node, first, parting)
-    plan.coupled += laid.coupled(first)
+    if supply.conductors is None:  # otherwise they are bundles
+        plan.coupled += laid.coupled(first)
     plan.sections += laid.sections
     plan.section_names += [f"{CONTACT_LINE} {name}" for name in laid.names]
+    plan.section_kinds += [CONTACT_LINE] * len(laid.names)
     plan.runs.append(laid.runs)
+    plan.feeding.append(dict(laid.node))
     plan.joints += laid.joints
     plan.guards += laid.guards
     return laid.node

@@ -233,6 +233,7 @@ def _line_current(train: Train) -> Any:
         auxiliary_current_a=train.auxiliary_current_a,
         no_traction_voltage_v=si(limit, "umin2_kv"),
         full_current_voltage_v=limit.knee_factor * si(limit, "un_kv"),
+        auxiliary_power_va=train.auxiliary_kva * 1e3 if limit.auxiliaries == "power" else 0.0,
     )
 
 

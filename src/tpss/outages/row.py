@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from tpss.results.result import Result
+from tpss.results.standards.unbalance import GRID
 from tpss.results.standards.windows import WINDOWS_MIN, highest_means, step_values
 from tpss.results.stops import LATE_MIN
 from tpss.results.stranded import stranded_trains
@@ -32,7 +33,8 @@ class Verdict(IntEnum):
     USEFUL_VOLTAGE = 7
     TRIPPED = 8
     OVERLOAD = 9
-    KEPT = 10
+    UNBALANCE = 10
+    KEPT = 11
 
     @property
     def words(self) -> str:
@@ -48,6 +50,7 @@ class Verdict(IntEnum):
             Verdict.USEFUL_VOLTAGE: "useful voltage too low",
             Verdict.TRIPPED: "tripped",
             Verdict.OVERLOAD: "station overloaded",
+            Verdict.UNBALANCE: "grid unbalanced",
             Verdict.KEPT: "limits kept",
         }[self]
 
@@ -127,14 +130,16 @@ def _verdict(result: Result, figures: Mapping[str, Any]) -> Verdict:
     violated = set(result.standards.violations.standard)
     if "EN 50163" in violated:
         return Verdict.VOLTAGE
-    if violated:
+    if "EN 50388" in violated:
         return Verdict.USEFUL_VOLTAGE
     if figures.get(TRIPS):
         return Verdict.TRIPPED
     loading = figures[f"loading_{OVERLOAD_MIN:g}_min"]
     if math.isnan(loading):  # a run that is shorter
         loading = figures["peak_loading"]
-    return Verdict.OVERLOAD if loading > 1.0 else Verdict.KEPT
+    if loading > 1.0:
+        return Verdict.OVERLOAD
+    return Verdict.UNBALANCE if GRID in violated else Verdict.KEPT
 
 
 def trips_in_words(trips: Sequence[Mapping[str, Any]]) -> str:

@@ -135,7 +135,7 @@ class _Search:
         count = len((set(self.table.index) & self.own) | {case.digest for case in cases})
         if count > most:
             problem = f"the proof takes {count:,} cases by now"
-            place = (str(self.case_list.plan.source), "evaluate.most_cases", str(most))
+            place = (self.case_list.plan.given, "evaluate.most_cases", str(most))
             raise ScenarioError([Finding(*place, problem, "raise it; finished cases are kept")])
         self.table = self.simulate(cases)
 

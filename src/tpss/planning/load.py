@@ -1,6 +1,7 @@
 """Load a plan from its file, with the scenarios that it starts from."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from tpss.planning.plan_faults import (
     renewals_of,
 )
 from tpss.scenario.files import read_toml
+from tpss.scenario.given_path import named_as_given
 from tpss.scenario.load import demand_no_scenario
 from tpss.scenario.override import copy_of, override
 from tpss.scenario.scenario import Scenario
@@ -62,6 +64,8 @@ class Plan:
     """Of the plan, as in its file."""
     source: Path
     areas: tuple[PlannedArea, ...]
+    given: str
+    """The plan file as it was named, by which findings name it."""
 
     def with_(self, changes: Mapping[str, Any]) -> "Plan":
         """The plan with values set by key path; its scenarios stay as they were read.
@@ -71,8 +75,9 @@ class Plan:
         ScenarioError
             A path leads to no place, or the changed plan has faults.
         """
-        document = override(self.document, changes, self.source)
-        file = read_plan_file(document, self.source)
+        with self.named_as_given():
+            document = override(self.document, changes, self.source)
+            file = read_plan_file(document, self.source)
         areas = tuple(
             replace(
                 area,
@@ -82,6 +87,10 @@ class Plan:
             for area in self.areas
         )
         return replace(self, file=file, document=document, areas=areas)
+
+    def named_as_given(self) -> AbstractContextManager[None]:
+        """Let findings name the plan's files as the user did."""
+        return named_as_given(self.source, self.given)
 
     @property
     def futures(self) -> dict[str, Future]:
@@ -135,7 +144,7 @@ def plan_of(document: Mapping[str, Any], source: Path) -> Plan:
         findings += _of_outages(file, areas, source)
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
-    return Plan(file, copy_of(document), source.absolute(), tuple(areas))
+    return Plan(file, copy_of(document), source.absolute(), tuple(areas), str(source))
 
 
 def read_plan_file(given: Mapping[str, Any], source: Path) -> PlanFile:
@@ -262,7 +271,7 @@ def _scenarios(file: PlanFile) -> dict[str, str]:
 
 def _planned_area(name: str, scenario: str, file: PlanFile, source: Path) -> PlannedArea:
     key = f"areas.{name}.scenario" if name else "scenario"
-    place = (source.parent / scenario).absolute()
+    place = source.parent / scenario
     try:
         document = read_toml(place, key)
         today = Scenario.from_document(document, place)
@@ -273,7 +282,7 @@ def _planned_area(name: str, scenario: str, file: PlanFile, source: Path) -> Pla
         )
         raise ScenarioError([first, *error.findings]) from error
     return PlannedArea(
-        name, document, place, today, measures_of(name, file), renewals_of(name, file)
+        name, document, place.absolute(), today, measures_of(name, file), renewals_of(name, file)
     )
 
 

@@ -47,6 +47,11 @@ def check_plan(plan: Plan) -> CaseList:
     NoPlanError
         No plan meets the budgets.
     """
+    with plan.named_as_given():
+        return _checked(plan)
+
+
+def _checked(plan: Plan) -> CaseList:
     case_list = CaseList(plan)
     most = plan.file.evaluate.most_cases
     if len(case_list) > most and plan.file.evaluate.by == SIMULATION:
@@ -125,7 +130,7 @@ def run_plan(
     effort = Effort()
     effort = Effort(effort.gap if gap is None else gap, time_limit_s or math.inf)
     case_list, target = check_plan(plan), CaseFolder(Path(folder))
-    with target.opened():
+    with plan.named_as_given(), target.opened():
 
         def simulate_of(of: CaseList, cases: Sequence[Case]) -> pd.DataFrame:
             return simulate_cases(

@@ -214,7 +214,7 @@ def _demand_payment(simulated: Simulated) -> None:
             problem = f"the price is missing; {place} gives back {mwh:.4g} MWh a year to the grid"
             remedy = "add it, with its source; 0 only if nobody pays for it"
             key = f"{PRICES}.{FED_BACK}"
-            raise ScenarioError([Finding(str(case_list.plan.source), key, "", problem, remedy)])
+            raise ScenarioError([Finding(case_list.plan.given, key, "", problem, remedy)])
 
 
 def _fixed(case_list: CaseList, number: int) -> Array:

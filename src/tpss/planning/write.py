@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,14 @@ from tpss.planning.excel import WORKBOOK, excel_of
 from tpss.planning.finer import Compared, finer_sentences, finer_table
 from tpss.planning.first_costs import first_costs
 from tpss.planning.learnt import Learnt
-from tpss.planning.load import plan_of
+from tpss.planning.load import Plan, plan_of
 from tpss.planning.plan import SIMULATION
 from tpss.planning.prove import Grade
 from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
 from tpss.planning.turning import Turn
 from tpss.planning.uncounted import estimated, uncounted, unknown
+from tpss.scenario.given_path import from_here, named_as_given
 from tpss.sweep.folder import REMEDY
 from tpss.sweep.versions import versions
 
@@ -189,8 +191,16 @@ def read_model(folder: Path, changes: dict[str, Any]) -> Model:
         The changed plan has faults.
     """
     document = read_document(folder)
-    plan = plan_of(document["plan"], Path(document["source"]))
-    case_list = CaseList(plan.with_(changes) if changes else plan)
+    source = Path(document["source"])
+    given = from_here(source)
+    with named_as_given(source, given):
+        plan = replace(plan_of(document["plan"], source), given=given)
+        return _model_within(folder, plan.with_(changes) if changes else plan)
+
+
+def _model_within(folder: Path, plan: Plan) -> Model:
+    """Model of a plan from the cases that a folder holds."""
+    case_list = CaseList(plan)
     table = CaseFolder(folder).table()
     missing = sum(case.digest not in table.index for case in case_list.cases)
     if missing and case_list.plan.file.evaluate.by == SIMULATION:

@@ -17,8 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
+from tpss.powerflow.bundles import without_dead_conductors
 from tpss.powerflow.links import add_admittances, ends_of, without_links
 from tpss.powerflow.network import UNFED, Network
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
 from tpss.record import copy_of_records
 
 
@@ -52,6 +54,8 @@ def in_service(
     source_of_node[source_of_node == UNFED] = -1
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
     changed = changed._replace(links=without_links(network.links, opened_links))
+    if network.shared != NO_SHARED_GRIDS:
+        changed = changed._replace(shared=shared_grids(network.shared.mutual_ohm, sources))
     return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
 
 
@@ -61,11 +65,13 @@ def mark_unfed(network: Network) -> Network:
     if not unfed.any():
         return network
     source_of_node = np.where(unfed, UNFED, network.source_of_node)
-    return network._replace(source_of_node=source_of_node)
+    dead = unfed[network.sections["start_node"]]
+    bundles = without_dead_conductors(network.bundles, dead)
+    return network._replace(source_of_node=source_of_node, bundles=bundles)
 
 
 def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
-    """What the branches and links in service put into each block of the linear system. [S]
+    """What branches and links in service, and common grids, put into each block of the system. [S]
 
     Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
     """
@@ -77,6 +83,7 @@ def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
         total[[a, b]] += admittance
         total[[place[a, b], place[b, a]]] -= admittance
     add_admittances(network.links, place, total)
+    stamp_shared(total, network.shared, network.sources, place)
     return total
 
 

@@ -19,6 +19,9 @@ import math
 
 from tpss.kernel import at, fused, inlined, kernel
 from tpss.numerics.pairs import scaled, squared
+from tpss.powerflow.bundle import evaluate_bundles
+from tpss.powerflow.bundle_points import is_bundled
+from tpss.powerflow.bundle_state import stay_with_bundles
 from tpss.powerflow.chain import LINKED, MOVED, WARM, push_load, push_piece, train_current
 from tpss.powerflow.coupled import evaluate_groups, is_coupled
 from tpss.powerflow.network import Flow, Loads, Network
@@ -110,14 +113,18 @@ def _evaluate_linked(
     begin_pass(not moves, network, flow)
     largest, merit = 0.0, 0.0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, s):
+        if is_coupled(network.groups, s) or is_bundled(network.bundles, s):
             continue
         end_v = run_linked_chain(s, scale, moves, network, flow, loads)
         square, _ = join_section(s, end_v, not moves, network, flow)
         largest = max(largest, square * network.sections[at(s)].gap_weight)
         merit += square
+    start = MOVED if moves else LINKED
     largest, merit, _ = evaluate_groups(
-        network.groups, largest, merit, 1.0, scale, MOVED if moves else LINKED, network, flow, loads
+        network.groups, largest, merit, 1.0, scale, start, network, flow, loads
+    )
+    largest, merit, _ = evaluate_bundles(
+        network.bundles, largest, merit, 1.0, scale, start, network, flow, loads
     )
     for n in range(flow.nodes.size):
         square = evaluate_node(n, not moves, network, flow)
@@ -133,6 +140,7 @@ def _stay(flow: Flow) -> None:
         flow.nodes[at(n)].direction_v = 0.0
     for s in range(flow.sections.size):
         flow.sections[at(s)].direction_a = 0.0
+    stay_with_bundles(flow.bundles)
 
 
 @kernel

@@ -29,8 +29,22 @@ from tpss.numerics.block_lu import Block, Pattern, Unknown, find_pattern
 from tpss.numerics.curve import CurvePoint, Points
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail
+from tpss.powerflow.bundles import (
+    BundleFlow,
+    BundlePart,
+    Bundles,
+    bundles_of,
+    edges_of_bundles,
+    new_bundle_flow,
+)
 from tpss.powerflow.groups import GroupFlow, Groups, edges_within, groups_of, new_group_flow
 from tpss.powerflow.links import LinkPart, Links, add_admittances, edges_of_links, links_of
+from tpss.powerflow.shared_grids import (
+    SharedGrids,
+    edges_of_shared,
+    shared_grids,
+    stamp_shared,
+)
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
@@ -243,13 +257,17 @@ class Network(NamedTuple):
     `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
-    """What the branches put into each block of the linear system. [S]"""
+    """What the branches, and grids of several sources, put into each block of the linear system. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups
     """Of coupled sections."""
     links: Links
     """Lumped elements between several nodes."""
+    bundles: Bundles
+    """Of sections that are conductors side by side."""
+    shared: SharedGrids
+    """Grids of several sources."""
     stores: Records[StoreLaw]
     """Stores of energy at its nodes."""
 
@@ -270,6 +288,7 @@ class Flow(NamedTuple):
     search: Records[Search]
     """One record."""
     groups: GroupFlow
+    bundles: BundleFlow
     stores: Records[Stored]
 
 
@@ -346,6 +365,10 @@ def assemble(
     room: Sequence[tuple[int, int]] = (),
     groups: Sequence[Sequence[int]] = (),
     links: Sequence[LinkPart] = (),
+    bundles: Sequence[BundlePart] = (),
+    flat_pu: Sequence[float] = (),
+    inner_ohm: Sequence[float] = (),
+    mutual_ohm: Complexes | None = None,
     stores: Records[StoreLaw] | None = None,
 ) -> Network:
     """Network from its parts.
@@ -363,17 +386,24 @@ def assemble(
     groups : sequence of sequences of int
         Numbers of sections side by side that are coupled.
     links : sequence of LinkPart
+    bundles : sequence of BundlePart
+        None of their sections is one of a group.
+    flat_pu, inner_ohm : sequences of float
+        Of nodes and sources, where there are bundles: see `Bundles`.
+    mutual_ohm : array of complex, shape (sources, sources), optional
+        What sources that share a grid do to each other, see `shared_grids`. [Ω]
     stores : records of StoreLaw, optional
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
     edges += [(part.start_node, part.end_node) for part in branches]
-    edges += edges_of_links(links)
-    edges += room
+    edges += edges_of_links(links) + edges_of_bundles(bundles, ends)
+    edges += [*room, *edges_of_shared(mutual_ohm, sources["node"].tolist())]
     pattern, place = _pattern(n_nodes, tuple(edges))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]
     impedances += [abs(part.impedance_ohm) for part in links]
+    impedances += [abs(z) for part in bundles for z in part.impedance_ohm_per_m.diagonal()]
     rounding = max(resolution_va(z, system) for z in impedances) / system.base_power_va
     source_of_node = np.full(n_nodes, -1, dtype=np.int64)
     source_of_node[sources["node"]] = np.arange(sources.size)
@@ -387,6 +417,8 @@ def assemble(
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
     linked = links_of(links)
     add_admittances(linked, place, admittance_s)
+    shared = shared_grids(mutual_ohm, sources)
+    stamp_shared(admittance_s, shared, sources, place)
 
     return Network(
         system=system,
@@ -401,6 +433,8 @@ def assemble(
         tolerance=max(TOLERANCE, rounding),
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
         links=linked,
+        bundles=bundles_of(bundles, ends, place, np.array(flat_pu), np.array(inner_ohm)),
+        shared=shared,
         stores=StoreLaw.blank(0) if stores is None else stores,
     )
 
@@ -417,6 +451,7 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         laws=copy_of_records(network.sources),
         search=Search.blank(1),
         groups=new_group_flow(network.groups),
+        bundles=new_bundle_flow(network.bundles, n_trains),
         stores=Stored.blank(network.stores.size),
     )
     flow.stores.energy_j[:] = network.stores["start_j"]

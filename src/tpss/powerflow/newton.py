@@ -6,6 +6,7 @@ kinds of equation, all complex:
     section s from a to b:  E_s(V_a, I_s) = V_b            (`chain` pushes V_a, I_s to the end E_s)
     node without source:    Σ leaving currents = 0
     node with source:       V = f(P, Q),  P + jQ = V conj(J),  J = Σ leaving currents
+    ... that shares a grid: J + Σ Y (V - E) = 0, see `shared_grids`
     node that is not fed:   V = 0
     node that follows:      V = V of another node, of which it is a second name
 
@@ -53,6 +54,14 @@ from tpss.numerics.pairs import (
     scaled,
     squared,
 )
+from tpss.powerflow.bundle import direct_bundles, evaluate_bundles
+from tpss.powerflow.bundle_points import is_bundled
+from tpss.powerflow.bundle_state import (
+    mark_bundles,
+    step_bundles,
+    terminal_voltage,
+    through_terminals,
+)
 from tpss.powerflow.chain import (
     CHECK,
     FLAT,
@@ -65,6 +74,7 @@ from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.links import leave_by_links
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
+from tpss.powerflow.sharing import balance_of_sharing, shares_its_grid
 from tpss.powerflow.stores import add_stores
 from tpss.sources.kinds import residual
 
@@ -184,11 +194,15 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
             return follow(n, FOLLOWS - s, network, flow)
         node.right_side -= node.leaving_current_a
         return squared(node.leaving_current_a) * network.system.per_square_ampere
+    if shares_its_grid(network.shared, s):
+        return balance_of_sharing(network.shared, n, s, network, flow)
     running = flow.sources[at(s)].running
+    voltage_v = terminal_voltage(network.bundles, s, node.voltage_v, node.leaving_current_a)
     value, by_voltage, by_current = residual(
-        node.voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
+        voltage_v, node.leaving_current_a, running, network.sources[at(s)], derivatives
     )
     if derivatives:
+        by_current = through_terminals(network.bundles, s, by_voltage, by_current)
         _turn_source_row(n, value, by_voltage, by_current, network, flow)
     return squared(value) * network.system.per_square_volt
 
@@ -248,7 +262,7 @@ def evaluate(
     # 2. Contact-line sections (F.35)-(F.38), with the trains' demands.
     largest, merit, sign = 0.0, 0.0, 1.0
     for s in range(network.sections.size):
-        if is_coupled(network.groups, s):
+        if is_coupled(network.groups, s) or is_bundled(network.bundles, s):
             continue
         end_v = run_chain(s, scale, start, network, flow, loads)
         square, side = join_section(s, end_v, derivatives, network, flow)
@@ -257,6 +271,9 @@ def evaluate(
         merit += square
     largest, merit, sign = evaluate_groups(
         network.groups, largest, merit, sign, scale, start, network, flow, loads
+    )
+    largest, merit, sign = evaluate_bundles(
+        network.bundles, largest, merit, sign, scale, start, network, flow, loads
     )
     # 3. Current balance of the nodes, or the law of the sources.
     for n in range(flow.nodes.size):
@@ -281,6 +298,7 @@ def find_direction(network: Network, flow: Flow) -> float:
         change = end_v - apply(solution.transfer_p, solution.transfer_q, start_v) - solution.gap_v
         solution.direction_a = apply(solution.inverse_p, solution.inverse_q, change)
     direct_groups(network.groups, network, flow)
+    direct_bundles(network.bundles, network, flow)
     return sign
 
 
@@ -291,6 +309,7 @@ def mark_base(flow: Flow) -> None:
         flow.nodes[at(node)].base_v = flow.nodes[at(node)].voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].base_a = flow.sections[at(s)].current_a
+    mark_bundles(flow.bundles)
 
 
 @inlined
@@ -302,6 +321,7 @@ def take_step(size: float, flow: Flow) -> None:
     for s in range(flow.sections.size):
         section = flow.sections[at(s)]
         section.current_a = section.base_a + size * section.direction_a
+    step_bundles(flow.bundles, size)
 
 
 @inlined

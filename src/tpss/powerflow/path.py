@@ -38,6 +38,15 @@ from enum import IntEnum
 
 from tpss.kernel import at, inlined, kernel, switch
 from tpss.numerics.pairs import squared
+from tpss.powerflow.bundle_points import start_bundles
+from tpss.powerflow.bundle_state import (
+    flat_voltage,
+    keep_bundles,
+    mirror_bundles,
+    predict_bundles_on_path,
+    set_bundles_aside,
+    take_bundles_back,
+)
 from tpss.powerflow.chain import WARM
 from tpss.powerflow.linked import newton_linked
 from tpss.powerflow.network import Ending, Flow, Loads, Network
@@ -86,6 +95,7 @@ def set_aside(flow: Flow) -> None:
         flow.nodes[at(n)].aside_v = flow.nodes[at(n)].voltage_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].aside_a = flow.sections[at(s)].current_a
+    set_bundles_aside(flow.bundles)
 
 
 @kernel
@@ -95,6 +105,7 @@ def take_back(flow: Flow) -> None:
         flow.nodes[at(n)].voltage_v = flow.nodes[at(n)].aside_v
     for s in range(flow.sections.size):
         flow.sections[at(s)].current_a = flow.sections[at(s)].aside_a
+    take_bundles_back(flow.bundles)
 
 
 @kernel
@@ -109,6 +120,7 @@ def keep(flow: Flow) -> None:
         for k in range(section.first, section.end):
             place = flow.standing[at(k)]
             place.passed_v, place.good_v = place.good_v, place.voltage_v
+    keep_bundles(flow.bundles)
 
 
 @kernel
@@ -125,6 +137,7 @@ def predict_on_path(ahead: float, flow: Flow) -> None:
         for k in range(section.first, section.end):
             place = flow.standing[at(k)]
             place.voltage_v = place.good_v + ahead * (place.good_v - place.passed_v)
+    predict_bundles_on_path(flow.bundles, ahead)
 
 
 @kernel
@@ -139,6 +152,7 @@ def mirror_on_path(flow: Flow) -> None:
         for k in range(section.first, section.end):
             place = flow.standing[at(k)]
             place.voltage_v = 2.0 * place.good_v - place.voltage_v
+    mirror_bundles(flow.bundles)
 
 
 @kernel
@@ -190,11 +204,11 @@ def start_alike(network: Network, flow: Flow) -> None:
     """Set the state of like sources without load."""
     mean_v, mean_angle = mean_unloaded(network)
     for n in range(flow.nodes.size):
-        flow.nodes[at(n)].voltage_v = complex(
-            mean_v * math.cos(mean_angle), mean_v * math.sin(mean_angle)
-        )
+        alike_v = complex(mean_v * math.cos(mean_angle), mean_v * math.sin(mean_angle))
+        flow.nodes[at(n)].voltage_v = flat_voltage(network.bundles, n, alike_v)
     for s in range(flow.sections.size):
         flow.sections[at(s)].current_a = 0.0
+    start_bundles(network.bundles, network, flow)
 
 
 @kernel
@@ -221,6 +235,8 @@ def solve_on_way(
         network.tolerance,
         network.groups,
         network.links,
+        network.bundles,
+        network.shared,
         network.stores,
     )
     if steps == LINKED:

@@ -2,6 +2,7 @@
 
 from tpss.kernel import at, inlined
 from tpss.numerics.pairs import squared
+from tpss.powerflow.bundle_state import lies_in_band
 from tpss.powerflow.network import UNFED, Flow, Network
 from tpss.sources.kinds import is_plausible
 
@@ -13,7 +14,9 @@ def voltages_are_plausible(network: Network, flow: Flow) -> bool:
     high = network.system.highest_voltage_v**2
     for n in range(flow.nodes.size):
         plausible = low <= squared(flow.nodes[at(n)].voltage_v) <= high
-        if not plausible and network.source_of_node[at(n)] != UNFED:
+        if plausible or network.source_of_node[at(n)] == UNFED:
+            continue
+        if lies_in_band(network.bundles, n):
             return False
     for s in range(flow.sections.size):
         for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):

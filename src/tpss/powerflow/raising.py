@@ -1,6 +1,8 @@
 """All loads raised together, from the state without load, by steps that shrink where Newton fails."""
 
 from tpss.kernel import at, kernel
+from tpss.powerflow.bundle_points import start_bundles
+from tpss.powerflow.bundle_state import flat_voltage
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
@@ -16,9 +18,11 @@ SHORTEST_STEP = 1e-4
 def start_flat(network: Network, flow: Flow) -> None:
     """Set the state without load: base voltage everywhere, no current."""
     for n in range(flow.nodes.size):
-        flow.nodes[at(n)].voltage_v = network.system.base_voltage_v
+        base_v = complex(network.system.base_voltage_v, 0.0)
+        flow.nodes[at(n)].voltage_v = flat_voltage(network.bundles, n, base_v)
     for s in range(flow.sections.size):
         flow.sections[at(s)].current_a = 0.0
+    start_bundles(network.bundles, network, flow)
 
 
 @kernel

@@ -27,6 +27,7 @@ has done by a kernel that is compiled when it is needed.
 
 from tpss.kernel import at, compile_quickly, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
+from tpss.powerflow.bundle_state import predict_bundles, remember_bundles
 from tpss.powerflow.chain import FLAT, WARM
 from tpss.powerflow.keeping import bring_back, keep_all
 from tpss.powerflow.linked import newton_linked
@@ -73,6 +74,7 @@ def predict(flow: Flow) -> None:
     for s in range(flow.sections.size):
         section = flow.sections[at(s)]
         section.current_a = 2.0 * section.last_a - section.before_a
+    predict_bundles(flow.bundles)
 
 
 @inlined
@@ -88,6 +90,7 @@ def remember(first: int, flow: Flow) -> None:
         section = flow.sections[at(s)]
         section.before_a = section.current_a if first else section.last_a
         section.last_a = section.current_a
+    remember_bundles(flow.bundles, first)
 
 
 @inlined

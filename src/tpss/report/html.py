@@ -22,10 +22,12 @@ from tpss.report.drawings.journey import journey
 from tpss.report.drawings.losses import losses
 from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
+from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
+from tpss.report.drawings.unbalance import unbalance
 from tpss.report.drawings.voltage import envelopes
 from tpss.report.measured import MeasuredPart, measured_part
 from tpss.report.moving import network_moving
@@ -52,6 +54,7 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "converters": (station_loading, 440),
     "losses": (losses, 260),
     "converter-losses": (converter_losses, 440),
+    "unbalance": (unbalance, 760),
     "storage": (storage, 440),
     "thermal": (thermal, 440),
 }
@@ -138,7 +141,9 @@ def report(
         ),
         tables.of_frame("stations", "Feeding stations", result.stations),
         *tables.of_converter_losses(result),
+        *tables.of_transformer_losses(result),
         *tables.of_regeneration(result),
+        *tables.of_conductors(result),
         *tables.of_storage(result),
         *(
             [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
@@ -210,14 +215,25 @@ def _figures(
 def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     rated = {label: run for label, run in runs.items() if run.equipment.elements}
     lossy = {label: run for label, run in runs.items() if len(run.converter_losses)}
+    at_grid = {label: run for label, run in runs.items() if len(run.standards.unbalance)}
     storing = {label: run for label, run in runs.items() if len(run.storage)}
-    shown = {"thermal": rated, "converter-losses": lossy, "storage": storing}
+    shown = {
+        "thermal": rated, "converter-losses": lossy, "unbalance": at_grid, "storage": storing,
+    }  # fmt: skip
     drawn = {
         key: render(describe(own), height)
         for key, (describe, height) in OVER_TIME.items()
         if (own := shown.get(key, runs))
     }
-    return {**drawn, **_braked(runs)}
+    return {**drawn, **_braked(runs), **_rails(runs)}
+
+
+def _rails(runs: Mapping[str, Result]) -> dict[str, Figure]:
+    """Voltage of the rails of a single run; nothing unless they are conductors of their own."""
+    if len(runs) > 1 or not all(len(run.rails) for run in runs.values()):
+        return {}
+    drawing = rail_voltage(next(iter(runs.values())))
+    return {"rails": render(drawing, 60 + 320 * len(drawing.panels))}
 
 
 def _braked(runs: Mapping[str, Result]) -> dict[str, Figure]:

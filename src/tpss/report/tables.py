@@ -11,6 +11,7 @@ from tpss import units
 from tpss.results.places import LINE
 from tpss.results.regeneration import fed_back
 from tpss.results.result import Result
+from tpss.results.standards.unbalance import GRID
 from tpss.results.storage import totals
 from tpss.scenario.differences import differences
 from tpss.units import on_line
@@ -92,6 +93,8 @@ def of_standards(result: Result) -> list[Table]:
         ),
         "station-power": ("Highest mean power of feeding stations", evidence.station_power),
         "losses-by-kind": ("Losses by kind of branch", evidence.losses),
+        "grid-busbars": ("Unbalance at the busbars of the grid", evidence.unbalance),
+        "neutral-sections": ("Voltages across neutral sections", evidence.neutral_sections),
     }
     return [of_frame(key, caption, frame) for key, (caption, frame) in shown.items() if len(frame)]
 
@@ -103,6 +106,23 @@ def of_converter_losses(result: Result) -> list[Table]:
     if found.origin.str.contains("estimate").any():
         caption += ", losses by estimate"
     return [of_frame("converter-losses", caption, found)] if len(found) else []
+
+
+def of_conductors(result: Result) -> list[Table]:
+    """Rails, stray current and autotransformers, where there are any."""
+    tables = {
+        "rails": ("Voltage of the rails to earth", result.rails),
+        "stray_current": ("Stray current", result.stray_current),
+        "autotransformers": ("Autotransformers", result.autotransformers),
+    }
+    return [of_frame(name, title, frame) for name, (title, frame) in tables.items() if len(frame)]
+
+
+def of_transformer_losses(result: Result) -> list[Table]:
+    """The grid's side of transformer stations, where any tells its losses without load."""
+    found = result.transformer_losses
+    caption = "Grid's side of the transformer stations"
+    return [of_frame("transformer-losses", caption, found)] if len(found) else []
 
 
 def of_regeneration(result: Result) -> list[Table]:
@@ -146,7 +166,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
     return [
         ("status", "", result.status),
         ("audit", "", "passed" if result.audit["passed"] else "failed"),
-        ("violations of voltage limits", "", len(evidence.violations)),
+        ("violations of voltage limits", "", int((evidence.violations.standard != GRID).sum())),
         ("studied train", "", summary["studied_train"]),
         ("trip time", "min", summary["trip_time_min"]),
         ("simulated time", "min", summary["duration_min"]),
@@ -161,6 +181,12 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         _place("place of lowest voltage", lowest),
         ("time of lowest voltage", "min", lowest.get("time_min")),
         *_highest_loading(stations),
+        *(
+            (f"unbalance at {busbar}, highest mean of 10 min", "%", percent)
+            for busbar, percent in zip(
+                evidence.unbalance.busbar, evidence.unbalance.mean_10_min_percent, strict=True
+            )
+        ),
         *(
             (f"mean useful voltage, {zone}", "kV", float(mean_kv))
             for zone, mean_kv in zip(zones.zone, zones.mean_useful_kv, strict=True)
@@ -198,6 +224,7 @@ BRAKED = {
     "friction_mwh": "braked by friction",
     "machine_losses_mwh": "lost in machines that brake",
     "refused_mwh": "refused by the line",
+    "rheostat_mwh": "burnt in rheostats of trains",
     "own_use_mwh": "own use of trains that brake",
     "own_storage_mwh": "taken by stores of their own",
     "fed_back_mwh": "fed back by trains",

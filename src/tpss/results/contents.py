@@ -22,7 +22,7 @@ TABLES = "tables"
 _OF_STANDARDS = (
     "violations", "voltage", "excursions", "low_voltage_places", "useful_voltage_zones",
     "useful_voltage_trains", "energy", "energy_blocks", "station_power", "load_duration", "converters",
-    "losses", "branch_current",
+    "losses", "branch_current", "unbalance", "neutral_sections",
 )  # fmt: skip
 TABLE_PLACES = {
     "trips": "trips",
@@ -31,6 +31,10 @@ TABLE_PLACES = {
     "stations": "stations",
     "regeneration": "regeneration",
     "converter_losses": "converter_losses",
+    "rails": "rails",
+    "stray_current": "stray_current",
+    "autotransformers": "autotransformers",
+    "transformer_losses": "transformer_losses",
     "storage": "storage",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
@@ -46,8 +50,8 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "braking", "storage", "thermal", "energy",
-    "effort",
+    "stations", "converters", "converter-losses", "unbalance", "braking", "storage", "thermal",
+    "rails", "energy", "effort",
 )  # fmt: skip
 
 

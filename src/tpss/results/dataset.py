@@ -16,7 +16,15 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import LINKED, ON_BOARD, RECORDED, REGENERATED, STORED, Recorded
+from tpss.step.recorded import (
+    LINKED,
+    ON_BOARD,
+    RECORDED,
+    REGENERATED,
+    RETURNED,
+    STORED,
+    Recorded,
+)
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -53,6 +61,12 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         variables |= {
             each.name: xr.Variable(each.dimensions, values, described(each))
             for each, values in zip(LINKED, polar, strict=True)
+        }
+    if outcome.recording.rails.size:
+        polar = _polar(np.asarray(outcome.recording.rails), "rail", ...)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, values, described(each))
+            for each, values in zip(RETURNED, polar, strict=True)
         }
     if outcome.recording.stores.size:
         rows = np.asarray(outcome.recording.stores)
@@ -146,9 +160,22 @@ def _arrays(outcome: Outcome, layout: Layout) -> dict[str, npt.NDArray[Any]]:
     arrays["position"] = _places(arrays["route_position"], leg)
     if recording.without_power_s.size:
         arrays["pantograph_voltage"][_lacking(outcome)] = 0.0
+    if plan.rails_beside:
+        _measure_to_rails(arrays, rows["node"], plan.rails_beside)
     arrays["node_voltage"] *= np.array(plan.node_level)
     arrays["branch_current"] = arrays["branch_current"] / np.array(plan.branch_levels())
     return arrays
+
+
+def _measure_to_rails(
+    arrays: dict[str, npt.NDArray[Any]], rows: Any, rails_beside: dict[int, int]
+) -> None:
+    """Give nodes of the contact line their voltage to the rails there, as that of trains."""
+    nodes, rails = (list(each) for each in zip(*rails_beside.items(), strict=True))
+    volts = rows["node_real"] + 1j * rows["node_imag"]
+    between = volts[:, nodes] - volts[:, rails]
+    arrays["node_voltage"][:, nodes] = np.abs(between)
+    arrays["node_angle"][:, nodes] = np.angle(between)
 
 
 def _lacking(outcome: Outcome) -> npt.NDArray[np.bool_]:

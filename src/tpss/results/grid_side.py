@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.model.sources import mixed_law
+from tpss.physics.rectifier_bridge import current_at_power
 from tpss.record import Records
 from tpss.results.standards.windows import Floats
 from tpss.scenario.scenario import Scenario
@@ -19,6 +20,8 @@ from tpss.scenario.supply import (
     ConverterStation,
     ConverterType,
     MixedStation,
+    RectifierStation,
+    RectifierType,
     Station,
     TransformerStation,
 )
@@ -73,6 +76,27 @@ class LossLaw:
 
 
 @dataclass(frozen=True)
+class Characteristic:
+    """Voltage of a group of rectifiers over its current."""
+
+    current_a: tuple[float, ...]
+    voltage_v: tuple[float, ...]
+    rated_a: float
+    """Current to which its loading refers. [A]"""
+
+    def loading(self, power_w: Floats) -> Floats:
+        """Current at a power, over the rated one; 0 where it gives none. [1]"""
+        points = np.array(self.current_a), np.array(self.voltage_v)
+        return current_at_power(power_w, *points) / self.rated_a
+
+
+def characteristic_of(kind: RectifierType, rated_a: float) -> Characteristic:
+    """Characteristic of a group, with the current to which its loading refers. [A]"""
+    current_a, voltage_kv = zip(*kind.points, strict=True)
+    return Characteristic(current_a, tuple(kv * 1e3 for kv in voltage_kv), rated_a)
+
+
+@dataclass(frozen=True)
 class Units:
     """Converters of one type in a station."""
 
@@ -82,6 +106,17 @@ class Units:
     """How many run in a station with several types; None: as many as are recorded."""
     origin: str | None = None
     """Where the figures of the losses come from."""
+    rectifier: "Characteristic | None" = None
+    """Of a group of rectifiers, whose losses follow its current."""
+
+    def loading(self, power_va: Complexes, count: Floats) -> Floats:
+        """Load of one of so many that run: apparent power, or current of rectifiers that feed. [1]"""
+        rating_va = count * (self.law.rating_va if self.law is not None else 1.0)
+        apparent = np.hypot(power_va.real, power_va.imag) / rating_va
+        if self.rectifier is None:
+            return np.asarray(apparent)
+        feeds = power_va.real > 0.0
+        return np.where(feeds, self.rectifier.loading(power_va.real / count), apparent)
 
 
 @dataclass(frozen=True)
@@ -100,6 +135,8 @@ class StationSide:
     burns : bool
         Whether a resistor takes what the railway feeds back beyond the losses, so that nothing reaches
         the grid; of one that takes nothing back too, whose law takes a trace for its angle.
+    no_load_w : float
+        Losses of one of its transformers without load. [W]
     """
 
     name: str
@@ -108,6 +145,7 @@ class StationSide:
     auxiliaries_w: float | None = None
     burns: bool = False
     blocks: bool = False
+    no_load_w: float = 0.0
 
     @property
     def is_described(self) -> bool:
@@ -166,12 +204,13 @@ def powers_of(active_w: Floats, reactive_var: Floats, running: Floats, side: Sta
         if units.law is None:
             continue
         count = running if units.count is None else np.where(runs, units.count, 0.0)
-        rating_va = np.where(runs, count, 1.0) * units.law.rating_va
-        loading = np.where(runs, np.hypot(own.real, own.imag) / rating_va, 0.0)
+        loading = np.where(runs, units.loading(own, np.where(runs, count, 1.0)), 0.0)
         idle = idle + count * units.law.idle_w
         by_load = by_load + count * units.law.by_load_w(loading, own.real < 0.0)
     auxiliaries = np.where(runs, side.auxiliaries_w or 0.0, 0.0)
     balance = active_w + idle + by_load + auxiliaries
+    if side.no_load_w:
+        balance = balance + np.where(runs, running, 0.0) * side.no_load_w
     surplus = np.maximum(-balance, 0.0)
     to_grid, burnt = (zero, surplus) if side.burns else (surplus, zero)
     from_grid = np.maximum(balance, 0.0)
@@ -204,7 +243,13 @@ def sides_of(scenario: Scenario) -> tuple[StationSide, ...]:
 
 def _side_of(station: Station) -> StationSide:
     if isinstance(station, TransformerStation):
-        return StationSide(station.name, burns=station.feedback != "grid")
+        no_load_w = si(station.transformer, "no_load_loss_kw")
+        return StationSide(station.name, burns=station.feedback != "grid", no_load_w=no_load_w)
+    if isinstance(station, RectifierStation):
+        group = _group_of(station.type)
+        if group.law is None:
+            return StationSide(station.name)
+        return StationSide(station.name, (group,), blocks=station.feedback == "none")
     if not isinstance(station, ConverterStation | MixedStation):
         return StationSide(station.name)
     mixed = None
@@ -227,6 +272,26 @@ def _units_of(kind: ConverterType, count: float | None = None) -> Units:
     if kind.losses is None:
         return Units(None, count)
     return Units(law_of(kind.losses, si(kind, "rating_mva")), count, kind.losses.origin)
+
+
+def _group_of(kind: RectifierType) -> Units:
+    """A group of rectifiers: its losses over the current, of a transformer at its own rated one."""
+    unit, rated_a = kind.transformer, kind.rated_current_a
+    rating_va = rated_a * kind.unloaded_kv * 1e3
+    if kind.losses is not None:
+        law, origin = law_of(kind.losses, rating_va), kind.losses.origin
+        return Units(law, origin=origin, rectifier=characteristic_of(kind, rated_a))
+    if unit is None or unit.no_load_loss_kw is None:
+        return Units(None)
+    diodes_w = (unit.diode_loss_kw or 0.0) * si_factor("_kw") * unit.rated_a / rated_a
+    law = LossLaw(
+        si(unit, "rated_kva"),
+        si(unit, "no_load_loss_kw"),
+        linear=diodes_w / si(unit, "rated_kva"),
+        quadratic=unit.load_loss_kw / unit.rated_kva,
+        feedback_quadratic=unit.load_loss_kw / unit.rated_kva,
+    )
+    return Units(law, rectifier=characteristic_of(kind, unit.rated_a))
 
 
 def law_of(losses: ConverterLosses, rating_va: float) -> LossLaw:

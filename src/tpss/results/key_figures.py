@@ -17,6 +17,7 @@ from tpss.model.build import Layout
 from tpss.powerflow.system import System
 from tpss.results.grid_side import StationSide, sides_of
 from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
+from tpss.results.regeneration import have_rheostats
 from tpss.results.standards.useful_voltage import LEAST_PRESENCE_S, window_steps
 from tpss.results.standards.windows import TOLERANCE
 from tpss.results.tables import J_PER_MWH
@@ -178,6 +179,8 @@ class Frame:
     """The stations' 50 Hz sides."""
     feeds_back: bool
     """Whether trains have electric brakes."""
+    rheostats: npt.NDArray[np.bool_]
+    """Whether the trains of a service burn what the line does not take."""
     rated: Scenario | None
     """The scenario, if something in it has a rating."""
 
@@ -191,11 +194,12 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         zones=_zones(scenario, layout),
         lines=layout.lines,
         stations=layout.stations,
-        at_line_level=np.array(layout.supply.node_level) == 1.0,
+        at_line_level=layout.supply.at_line_level,
         limits=limits_of(model),
         system=model.network.system,
         sides=sides_of(scenario),
         feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
+        rheostats=have_rheostats([service.name for service in scenario.traffic], scenario),
         rated=scenario if has_ratings(scenario) else None,
     )
 
@@ -254,7 +258,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
-        braking=braking_mwh(run, frame.sides),
+        braking=braking_mwh(run, frame.sides, frame.rheostats),
         thermal={},
         tripped=tuple(trip.protected.name for trip in run.trips) if start.relays else None,
         lowest_voltage=_lowest_voltage(run, whole, frame),

@@ -18,7 +18,7 @@ from tpss.results.step_words import step_warnings
 from tpss.results.storage import storage_notes
 from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
-from tpss.units import on_line
+from tpss.units import kilometres, on_line
 
 MOST_CIRCULATING = 0.1
 """Energy that stations may receive from others without a note, as a share of what trains and losses
@@ -35,6 +35,9 @@ APART_M = 1e8
 
 MOST_STRANDED = 5
 """Trains without power that are listed."""
+
+WIDEST_DEG = 121.0
+"""Angle across a neutral section above that of two pairs of phases in their order, 120°. [°]"""
 
 FEW = 3
 """Train-steps that closeness may take without a note, as of a train that passes."""
@@ -54,6 +57,7 @@ def notes(result: Result) -> list[str]:
         *_trips(result),
         *step_warnings(result.summary),
         *_unfed(result),
+        *_wide_angles(result),
         *_stranded(result),
         *_current_limits(result),
         *storage_notes(result.dataset, result.scenario),
@@ -100,6 +104,19 @@ def _unfed(result: Result) -> Iterator[str]:
             yield words
 
 
+def _wide_angles(result: Result) -> Iterator[str]:
+    """Neutral sections between voltages further apart than those of two phases in their order."""
+    for each in result.standards.across:
+        if each.angle_deg > WIDEST_DEG:
+            place = on_line(each.line, f"{kilometres(each.from_km)}-{kilometres(each.to_km)} km")
+            phases = f"{each.phases_before} and {each.phases_behind}"
+            yield (
+                f"the voltages on both sides of the neutral section at {place} ({phases}) are "
+                f"{each.angle_deg:.0f}° apart: up to {each.highest_kv:.1f} kV stand across it; another "
+                "order of the phases of one side makes it less"
+            )
+
+
 def _stranded(result: Result) -> Iterator[str]:
     """Trains that stood without power."""
     stood = stranded_trains(result.dataset)
@@ -116,21 +133,28 @@ def _stations_that_trip(result: Result) -> set[str]:
     return {relay.protected.name for relay in station_relays(result.scenario)}
 
 
+def _rated_rectifiers(result: Result) -> set[str]:
+    """Names of rectifier stations whose ratings say how long they bear how much: they are judged."""
+    stations = result.scenario.supply.rectifier_stations
+    return {each.name for each in stations if each.type.rating and each.type.rating.overloads}
+
+
 def _overloads(result: Result) -> Iterator[str]:
     """Stations whose running converters or transformers were above their rating for several steps."""
+    unit = "MW" if result.scenario.supply.is_direct else "MVA"
     data, h = result.dataset, step_s(result.dataset) / 60.0
     loading = step_values(data, "converter_loading")
     apparent_mva = np.hypot(*_station_powers_mw(result))
-    tripping = _stations_that_trip(result)
+    tripping, judged = _stations_that_trip(result), _rated_rectifiers(result)
     for i, name in enumerate(data.station.to_numpy()):
         above = loading[:, i] > 1.0
-        if above.sum() < 2:
+        if above.sum() < 2 or (name in judged and name not in tripping):
             continue
         worst = int(np.nanargmax(loading[:, i]))
         times = np.flatnonzero(above)
         yield (
             f"{name} was loaded to {100.0 * loading[worst, i]:.0f} % of its rating "
-            f"({apparent_mva[worst, i]:.1f} MVA at {worst * h:.2f} min), and above 100 % for "
+            f"({apparent_mva[worst, i]:.1f} {unit} at {worst * h:.2f} min), and above 100 % for "
             f"{above.sum() * h:.2f} min between {times[0] * h:.2f} and {(times[-1] + 1) * h:.2f} min; "
             f"{'it trips by its overloads' if name in tripping else BEYOND}"
         )

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from tpss.results.grid_side import StationSide, powers_of
 from tpss.results.regeneration import OWN_STORAGE, RECORDED_POWERS
@@ -25,12 +26,15 @@ def grid_side_mwh(run: Run, sides: Sequence[StationSide], feeds_back: bool) -> d
     """
     lost = drawn = fed_back = math.nan
     described = any(side.is_described for side in sides)
-    if described or feeds_back:
+    told = described or any(side.no_load_w for side in sides)
+    if told or feeds_back:
         found, duration_s = grid_side_w(run, sides), _duration_s(run)
         energies = [math.fsum(each.sum(axis=1) * duration_s) / J_PER_MWH for each in found]
         fed_back = energies[2]
+        if told:
+            drawn = energies[1]
         if described:
-            lost, drawn = energies[:2]
+            lost = energies[0]
     return {
         "converter_losses_mwh": lost,
         "drawn_from_grid_mwh": drawn,
@@ -38,7 +42,9 @@ def grid_side_mwh(run: Run, sides: Sequence[StationSide], feeds_back: bool) -> d
     }
 
 
-def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
+def braking_mwh(
+    run: Run, sides: Sequence[StationSide], rheostats: npt.NDArray[np.bool_]
+) -> dict[str, float]:
     """Where the work of all brakes goes; empty without electric brakes. [MWh]
 
     Parameters
@@ -46,6 +52,8 @@ def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     run : Run
     sides : sequence of StationSide
         What stations do with what is fed back.
+    rheostats : array of bool, shape (services,)
+        Whether the trains of a service burn what the line does not take.
     """
     if not run.recording.regeneration.size:
         return {}
@@ -54,10 +62,11 @@ def braking_mwh(run: Run, sides: Sequence[StationSide]) -> dict[str, float]:
     own = set(rows.dtype.names or ())
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}
     stations = np.asarray(run.recording.stations)[: run.step]
+    of_trains = rheostats[[train.route for train in run.trains]]
     if run.recording.on_board.size:
         recorded[OWN_STORAGE] = np.asarray(run.recording.on_board)[OWN_STORAGE][: run.step]
     stored_w = np.asarray(run.recording.stores)[: run.step]["store_power"]
-    powers = braking_powers(recorded, stations["station_active_power"], sides, stored_w)
+    powers = braking_powers(recorded, stations["station_active_power"], sides, of_trains, stored_w)
     duration_s = _duration_s(run)
     return {name: float((duration_s @ w).sum()) / J_PER_MWH for name, w in powers.items()}
 

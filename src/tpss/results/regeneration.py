@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
@@ -19,9 +20,14 @@ STORED = "store_power"
 """Variable that it has where there are stores at the line."""
 
 PARTS = (
-    "friction_mwh", "machine_losses_mwh", "refused_mwh", "own_use_mwh", "own_storage_mwh",
+    "friction_mwh",
+    "machine_losses_mwh",
+    "refused_mwh",
+    "rheostat_mwh",
+    "own_use_mwh",
+    "own_storage_mwh",
     "fed_back_mwh",
-)  # fmt: skip
+)
 """Columns into which `braked_mwh` is divided."""
 
 USES = ("used_by_others_mwh", "to_stores_mwh", "to_grid_mwh", "burnt_in_stations_mwh")
@@ -47,9 +53,10 @@ def regeneration(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
     """One row per train: the work of all its brakes, its parts, and where what it feeds back goes.
 
     Friction brakes give what electric ones do not.  Of the work of these the machine loses a part; of
-    what it offers the line may refuse some, which friction brakes or a resistor take; the rest feeds the
-    train itself first, its auxiliaries, its motors in the same step, and its store; then the line.
-    Empty unless trains have electric brakes.
+    what it offers the line may not take some: `rheostat_mwh` of trains with a rheostat, which burn it,
+    and `refused_mwh` of others, whose friction brakes take over.  The rest feeds the train itself first,
+    its auxiliaries, its motors in the same step, and its store; then the line.  Empty unless trains have
+    electric brakes.
 
     Of what all trains feed back in a step, stores at the line take some, stations some, into the grid or
     resistors, and the rest is used by other trains or lost on the line.  Trains share these uses in
@@ -89,9 +96,17 @@ def by_service(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
 def _energies_mwh(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Floats]:
     """Energies by the names `TOTALS`, shape (trains,)."""
     stations = step_values(dataset, "station_active_power")
+    rheostats = have_rheostats(dataset.service.to_numpy().tolist(), scenario)
     stored = step_values(dataset, STORED) if STORED in dataset else None
-    powers = powers_of(_recorded(dataset), stations, sides_of(scenario), stored)
+    powers = powers_of(_recorded(dataset), stations, sides_of(scenario), rheostats, stored)
     return {name: over_time(each, dataset) / J_PER_MWH for name, each in powers.items()}
+
+
+def have_rheostats(services: Sequence[str], scenario: Scenario) -> npt.NDArray[np.bool_]:
+    """Whether trains of services burn what the line does not take in a rheostat."""
+    brakes = {name: train.regeneration for name, train in scenario.trains_by_service().items()}
+    burn = {name for name, own in brakes.items() if own is not None and own.rest == "rheostat"}
+    return np.array([service in burn for service in services], dtype=bool)
 
 
 def _recorded(dataset: xr.Dataset) -> dict[str, Floats]:
@@ -99,7 +114,7 @@ def _recorded(dataset: xr.Dataset) -> dict[str, Floats]:
     return {name: step_values(dataset, name) for name in known}
 
 
-def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
+def parts_of(recorded: Mapping[str, Floats], rheostats: npt.NDArray[np.bool_]) -> dict[str, Floats]:
     """Power of the brakes and its parts, by the columns of their energies. [W], shape (steps, trains)
 
     Parameters
@@ -107,6 +122,8 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
     recorded : mapping of str to array, shape (steps, trains)
         What is recorded, by the names `RECORDED_POWERS`, and `OWN_STORAGE` where there is any; NaN of
         trains that are not on the line. [W]
+    rheostats : array of bool, shape (trains,)
+        Whether they burn what the line does not take.
     """
     braked, electric, regenerated, refused, active = (
         np.nan_to_num(recorded[name]) for name in RECORDED_POWERS
@@ -120,7 +137,8 @@ def parts_of(recorded: Mapping[str, Floats]) -> dict[str, Floats]:
         "braked_mwh": braked,
         "friction_mwh": braked - electric,
         "machine_losses_mwh": electric - regenerated - refused,
-        "refused_mwh": refused,
+        "refused_mwh": np.where(rheostats, 0.0, refused),
+        "rheostat_mwh": np.where(rheostats, refused, 0.0),
         "own_use_mwh": regenerated - stored - fed_back,
         "own_storage_mwh": stored,
         "fed_back_mwh": fed_back,
@@ -131,6 +149,7 @@ def powers_of(
     recorded: Mapping[str, Floats],
     station_w: Floats,
     sides: Sequence[StationSide],
+    rheostats: npt.NDArray[np.bool_],
     stored_w: Floats | None = None,
 ) -> dict[str, Floats]:
     """Those, and where what is fed back goes, by the names `TOTALS`. [W], shape (steps, trains)
@@ -143,10 +162,12 @@ def powers_of(
         Power that stations feed into the railway. [W]
     sides : sequence of StationSide
         What stations do with what is fed back.
+    rheostats : array of bool, shape (trains,)
+        As of `parts_of`.
     stored_w : array, shape (steps, stores), optional
         Power that stores at the line take. [W]
     """
-    parts = parts_of(recorded)
+    parts = parts_of(recorded, rheostats)
     given = parts["fed_back_mwh"]
     total = given.sum(axis=1)
     taken = np.maximum(-np.nan_to_num(station_w), 0.0)
@@ -185,6 +206,7 @@ def in_words(totals: dict[str, Any]) -> str:
         "own use": totals["own_use_mwh"],
         "own stores": totals["own_storage_mwh"],
         "losses of the machines": totals["machine_losses_mwh"],
+        "rheostats": totals["rheostat_mwh"],
         "refused by the line": totals["refused_mwh"],
         "friction": totals["friction_mwh"],
     }

@@ -10,12 +10,15 @@ import pandas as pd
 import xarray as xr
 
 from tpss.results import store, tables
+from tpss.results.autotransformers import autotransformers
 from tpss.results.converter_losses import converter_losses
+from tpss.results.rails import rails, stray_current
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
 from tpss.results.storage import storage
 from tpss.results.thermal.judge import Thermal, thermal_of
+from tpss.results.transformer_losses import transformer_losses
 from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
 
@@ -92,9 +95,29 @@ class Result:
         return regeneration(self.dataset, self.scenario)
 
     @cached_property
+    def rails(self) -> pd.DataFrame:
+        """One row per place: voltage of the rails to earth; empty unless they are conductors."""
+        return rails(self.dataset, self.scenario)
+
+    @cached_property
+    def stray_current(self) -> pd.DataFrame:
+        """One row per line: current that leaves the rails of a direct current; otherwise empty."""
+        return stray_current(self.dataset, self.scenario)
+
+    @cached_property
+    def autotransformers(self) -> pd.DataFrame:
+        """One row per autotransformer: its currents and its loading; empty if there are none."""
+        return autotransformers(self.dataset, self.scenario)
+
+    @cached_property
     def converter_losses(self) -> pd.DataFrame:
         """One row per converter station that describes losses: the 50 Hz side; otherwise empty."""
         return converter_losses(self.dataset, self.scenario)
+
+    @cached_property
+    def transformer_losses(self) -> pd.DataFrame:
+        """One row per transformer station that tells its losses without load; otherwise empty."""
+        return transformer_losses(self.dataset, self.scenario)
 
     @cached_property
     def storage(self) -> pd.DataFrame:

@@ -37,6 +37,7 @@ from tpss.powerflow.chain import WARM
 from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Loads
 from tpss.powerflow.newton import MOST_PASSES, newton
+from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
 from tpss.step.advance import advance, prepare_trains
@@ -52,8 +53,9 @@ Call = tuple[Any, tuple[Any, ...]]
 """A kernel, and arguments of the types with which the clock calls it."""
 
 
-_ready: set[tuple[Clock, bool]] = set()
-"""Clocks all of whose kernels this process has compiled or loaded, and whether with coupled sections."""
+_ready: set[tuple[Clock, bool, bool]] = set()
+"""Clocks all of whose kernels this process has compiled or loaded, and whether with coupled sections and
+with grids of several sources."""
 
 _one_at_a_time = threading.Lock()
 
@@ -66,11 +68,13 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
     Parameters
     ----------
     model : Model
-        Any: all have the same types, but those with coupled sections, see `kernel.where_any`.
+        Any: all have the same types, but those with coupled sections or grids of several sources, see
+        `kernel.where_any`.
     clock : callable
         What runs the steps.
     """
-    kernels = clock, model.network.groups != NO_GROUPS
+    network = model.network
+    kernels = clock, network.groups != NO_GROUPS, network.shared != NO_SHARED_GRIDS
     with _one_at_a_time:
         if kernels in _ready:
             return

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.physics.rectifier_bridge import current_at_power
 from tpss.run.relays import Relay, Trip
 from tpss.run.run import INTERRUPTED, Clock, Progress, Run, advance_to_end, run_of
 from tpss.run.start import Start
@@ -98,6 +99,11 @@ def _load(run: Run, relay: Relay) -> Floats:
             np.nan_to_num(run.recording.branch_current[: run.step, relay.current]) / relay.rated_a
         )
     s, rows = relay.protected.station, np.asarray(run.recording.stations)[: run.step]
+    if relay.group_current_a:
+        points = np.array(relay.group_current_a), np.array(relay.group_voltage_v)
+        groups = np.maximum(rows["active_converters"][:, s], 1.0)
+        each_w = np.nan_to_num(rows["station_active_power"][:, s]) / groups
+        return current_at_power(each_w, *points) / relay.rated_a
     if relay.type_number < 0:
         return np.asarray(rows["converter_loading"][:, s])
     powers_va = rows["station_active_power"][:, s] + 1j * rows["station_reactive_power"][:, s]

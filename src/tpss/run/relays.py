@@ -30,6 +30,10 @@ class Relay(NamedTuple):
     """Type of the units in a station with several; -1: it has one."""
     rated_va: float = 1.0
     """Rated power of all units of that type. [VA]"""
+    group_current_a: tuple[float, ...] = ()
+    """Currents at the points of the characteristic of a group of rectifiers; none: no rectifiers. [A]"""
+    group_voltage_v: tuple[float, ...] = ()
+    """Voltages at these points. [V]"""
 
 
 class Trip(NamedTuple):

@@ -311,6 +311,8 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         regeneration=kept.regeneration[:rows, :count],
         without_power_s=kept.without_power_s[:rows, :count],
         links=kept.links[:rows],
+        conductors=kept.conductors[:rows, :count],
+        rails=kept.rails[:rows, :count],
         stores=kept.stores[:rows],
         on_board=kept.on_board[:rows, :count],
     )

@@ -84,10 +84,12 @@ def begin(
         The recording would not fit into memory.
     """
     h = model.options.step_s
-    on_line = trains_on_line(model, services)
     first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
     capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
     departures = sum(service.departures_before(capacity * h) for service in services)
+    # Too many steps are told before trains run by all of them to find out which are on the line.
+    demand_room(model, capacity, departures)
+    on_line = trains_on_line(model, services)
     demand_room(model, capacity, len(on_line) + departures)
     trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
     names = [train.name for train in trains]

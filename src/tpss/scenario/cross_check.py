@@ -9,12 +9,13 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import Finding
+from tpss.scenario.busbars import check_busbars
 from tpss.scenario.direct_current import check_direct_current
 from tpss.scenario.events import check_events
 from tpss.scenario.feeding_points import check_feeding_points
 from tpss.scenario.feeds import check_feeds
 from tpss.scenario.itineraries import check_traffic
-from tpss.scenario.machine import CurrentLimitation
+from tpss.scenario.of_the_system import check_systems, under_its_system
 from tpss.scenario.positions import check_positions, check_stations_named
 from tpss.scenario.raw import Fault, number, table
 from tpss.scenario.stepped_motion import check_stepped_motion
@@ -29,9 +30,10 @@ LONGEST_AGGRESSIVE_STEP_MIN = 1.0
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     """All faults between the parts of a document."""
     supply, simulation = table(document, "supply"), table(document, "simulation")
-    findings = list(check_positions(document))
+    findings = [*check_systems(document), *check_positions(document)]
+    document = under_its_system(dict(document))
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
-    findings += [*check_feeds(document), *check_wiring(document)]
+    findings += [*check_feeds(document), *check_wiring(document), *check_busbars(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *check_stepped_motion(document)]
     findings += _planned_order(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
@@ -78,10 +80,11 @@ def _other_systems(document: Mapping[str, Any], system: object) -> Iterator[Faul
     nominal_kv = system_named(system).nominal_kv
     for name, train in table(document, "trains").items():
         limitation = table(train, "current_limitation") if isinstance(train, Mapping) else {}
-        un_kv = number(limitation, "un_kv") or CurrentLimitation.model_fields["un_kv"].default
-        if limitation and un_kv != nominal_kv:
+        un_kv = number(limitation, "un_kv")
+        if un_kv is not None and un_kv != nominal_kv:
             problem = f"not the nominal voltage of the system {system}, {nominal_kv:g} kV"
             remedy = (
-                f"write un_kv = {nominal_kv:g}, and umin2_kv and max_current_a that belong to it"
+                "leave un_kv, umin2_kv and knee_factor out: they are those of the system; and give "
+                "the max_current_a that belongs to it"
             )
             yield f"trains.{name}.current_limitation.un_kv", f"{un_kv:g}", problem, remedy

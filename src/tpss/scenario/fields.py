@@ -136,14 +136,22 @@ def either_or(*keys: str) -> PydanticCustomError:
     return fault(f"give either {', '.join(keys[:-1])} or {keys[-1]}", remedy)
 
 
-def demand_entry(kind: str, name: str) -> str:
-    """A name, which must be one of the library's entries of a kind."""
+def demand_entry(kind: str, name: str, own: str = "") -> str:
+    """A name, which must be one of the library's entries of a kind.
+
+    Parameters
+    ----------
+    kind : str
+    name : str
+    own : str
+        Key path of tables whose names would have been accepted too, for those who tell of the fault.
+    """
     known = library.entries(kind)
     if name not in known:
         raise PydanticCustomError(
             "unknown_name",
             "the library has no such entry in {kind}",
-            {"kind": kind, "known": sorted(known)},
+            {"kind": kind, "known": sorted(known), "own": own},
         )
     return name
 
@@ -187,7 +195,7 @@ class FromLibrary:
     def _look_up(self, value: Any) -> Any:
         if not isinstance(value, str):
             return value
-        return library.values(self.kind, demand_entry(self.kind, value))
+        return library.values(self.kind, demand_entry(self.kind, value, self.own))
 
 
 def one_of(*keys: str) -> Callable[[JsonSchemaValue], None]:

@@ -34,6 +34,12 @@ def named_as_given(source: Path, given: str) -> Iterator[None]:
         raise ScenarioError(findings) from error
 
 
+def from_here(path: Path) -> str:
+    """A path of which nobody knows how it was named: from the working folder, if it lies there."""
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
 def _as_given(file: str, source: Path, given: str) -> str:
     if file.startswith(str(source)):
         return given + file.removeprefix(str(source))

@@ -251,7 +251,8 @@ class CurrentLimitation(Part):
         default=0.95,
         gt=0,
         le=1,
-        description="a, the share of Un from which the full current is allowed.",
+        description="a, the share of Un from which the full current is allowed; without `un_kv` this "
+        "and the next ones are those of the supply's system.",
     )
     un_kv: Real = Field(default=15.0, gt=0, le=100, description="Nominal voltage, Un.")
     umin2_kv: Real = Field(
@@ -260,6 +261,11 @@ class CurrentLimitation(Part):
         le=100,
         description="Lowest non-permanent voltage, Umin2, at which there is no traction; in between "
         "the current falls linearly.",
+    )
+    auxiliaries: Literal["current", "power"] = Field(
+        default="current",
+        description="Where the current falls to: to that of the auxiliaries at Umin2, along a straight "
+        "line, or at each voltage to what their `power` takes there.",
     )
 
     @model_validator(mode="after")

@@ -1,6 +1,6 @@
 """Regenerative braking of a train: its limits, and the voltages at which the line stops taking it."""
 
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -48,6 +48,11 @@ class Regeneration(Part):
         le=100,
         description="Voltage from which it takes none; leave it out: the highest voltage of the system, "
         "Umax2.",
+    )
+    rest: Literal["friction", "rheostat"] = Field(
+        default="friction",
+        description="What takes the part that the line does not take: friction brakes, or a rheostat on "
+        "the train, which burns it. The motion is the same.",
     )
 
     @model_validator(mode="after")

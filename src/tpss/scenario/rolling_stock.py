@@ -18,6 +18,10 @@ from tpss.scenario.machine import (
 from tpss.scenario.on_board import OnBoardStorage
 from tpss.scenario.rating import MotorRating
 from tpss.scenario.regeneration import Regeneration
+from tpss.scenario.supply.system import SystemName
+
+BY_SYSTEM = "by_system"
+"""Key of what a train is under one system or another."""
 
 LARGEST_SHARE = 0.5
 """Largest share of rotating parts in the mass of a train; 1 plus it is the largest factor."""
@@ -40,6 +44,16 @@ class Train(Part):
         default=None,
         description="Library model, or the name of a file that ends in .toml, whose values the "
         "other keys override; leave it out, and give all of them.",
+    )
+    systems: tuple[SystemName, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="Electrification systems that it is made for; leave it out: any.",
+    )
+    by_system: dict[SystemName, dict[str, Any]] | None = Field(
+        default=None,
+        description="What differs under a system, by its name: any keys of a train, in place of those "
+        "here. Only that of the supply's system counts.",
     )
     tractive_effort: TractiveEffort = Field(
         description="Highest force of the motors: the name of a machine (Rc4), a table over speed "
@@ -275,7 +289,12 @@ class Train(Part):
         limit = self.current_limitation
         if limit is None:
             return 0.0
-        return self.auxiliary_power_kw / self.auxiliary_power_factor / limit.umin2_kv
+        return self.auxiliary_kva / limit.umin2_kv
+
+    @property
+    def auxiliary_kva(self) -> float:
+        """Apparent power of the auxiliaries. [kVA]"""
+        return self.auxiliary_power_kw / self.auxiliary_power_factor
 
     @model_validator(mode="after")
     def _auxiliaries_draw_less_than_the_train_may(self) -> Self:
@@ -322,4 +341,6 @@ class Train(Part):
         known = library.entries("locomotives")
         # An unknown model is reported by its own field; any values allow the others to be checked too.
         model = given["model"] if given["model"] in known else next(iter(known))
-        return completed(given, library.values("locomotives", model))
+        values = library.values("locomotives", model)
+        # What it is under the system of the supply has been put into its place already.
+        return completed(given, {key: values[key] for key in values if key != BY_SYSTEM})

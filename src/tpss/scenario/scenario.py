@@ -16,6 +16,7 @@ from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
 from tpss.scenario.given_path import named_as_given
 from tpss.scenario.line import Line
+from tpss.scenario.of_the_system import under_its_system
 from tpss.scenario.outage_faults import outage_faults
 from tpss.scenario.outages import Outage, Outages
 from tpss.scenario.override import copy_of, override
@@ -114,7 +115,8 @@ class Scenario(Part):
         if system not in library.entries(SYSTEMS):
             return given
         standards = {**standards, "voltage_limits": {"system": system, **limits}}
-        return without_reactive_power({**given, "standards": standards})
+        judged = under_its_system({**given, "standards": standards})
+        return without_reactive_power(judged)
 
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))

@@ -79,6 +79,7 @@ def _demand_reactance_of_alternating_current(
     """The contact line of an alternating current has a reactance, that of a direct one has none."""
     key = "x_ohm_per_km"
     catenary["required"].remove(key)
+    catenary["anyOf"] = [{"required": ["r_ohm_per_km"]}, {"required": ["contact_line", "rails"]}]
     own = {"if": {"type": "object"}, "then": {"required": [key]}}
     systems = library.entries("systems")
     direct = sorted(name for name, each in systems.items() if each["frequency_hz"] == 0.0)

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from tpss import library
 from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, name_of_line, unique
+from tpss.scenario.rail_limits import RailLimits
 
 KIND = "voltage_limits"
 
@@ -90,6 +91,11 @@ class Standards(Part):
         default={},
         validate_default=True,
         description="Limits of the voltage at the pantograph.",
+    )
+    rails: RailLimits = Field(
+        default={},
+        validate_default=True,
+        description="Limits of rails that are conductors of their own, see `supply.conductors`.",
     )
     peak_from_min: Real = Field(
         default=0.0, ge=0, description="Where the peak window of the mean useful voltage begins."

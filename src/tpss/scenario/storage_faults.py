@@ -15,6 +15,7 @@ from tpss.scenario.supply.supply import STATIONS, STORAGE
 def check_storage(document: Mapping[str, Any]) -> Iterator[Fault]:
     """Stores at a line of alternating current, or a hair's breadth beside a feeding point."""
     supply, simulation = table(document, "supply"), table(document, "simulation")
+    yield from _beside_conductors(supply)
     stores = list(items(supply, STORAGE))
     trains = table(document, "trains").values()
     on_board = any(isinstance(train, Mapping) and "storage" in train for train in trains)
@@ -40,6 +41,19 @@ def check_storage(document: Mapping[str, Any]) -> Iterator[Fault]:
             key = f"supply.{STORAGE}.{i}.position_km"
             yield key, f"{km:.17g}", problem, "place it there, or elsewhere"
         before.append(place)
+
+
+def _beside_conductors(supply: Mapping[str, Any]) -> Iterator[Fault]:
+    """Stores, and stretches without contact line, where rails are conductors of their own."""
+    if not table(supply, "conductors"):
+        return
+    remedy = "leave supply.conductors out, or this"
+    for i, store in items(supply, STORAGE):
+        problem = "stores are known between a single conductor and earth only"
+        yield f"supply.{STORAGE}.{i}", repr(store.get("name", "")), problem, remedy
+    for i, _ in items(supply, "without_contact_line"):
+        problem = "along it the rails would end too, which go on"
+        yield f"supply.without_contact_line.{i}", "", problem, remedy
 
 
 def _place(part: Mapping[str, Any]) -> tuple[object, float | None]:

@@ -59,10 +59,6 @@ _REMEDIES = {
 }
 
 
-_OWN = {"type": ("supply", "converter_types"), "wire": ("wires",)}
-"""Keys that take names of one's own beside those of the library, and where these are described."""
-
-
 def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Model:
     """Validated `model` of a document.
 
@@ -107,11 +103,9 @@ def _follows_from_another(
         if location == ("traffic",) and inlined.document.get("timetables"):
             return True  # of which none gave a train
         return any(other[: len(location)] == location != other for other in locations)
-    if detail["type"] == "unknown_name" and location[-1] in _OWN:
-        own = inlined.document
-        for key in _OWN[str(location[-1])]:
-            own = own.get(key, {}) if isinstance(own, dict) else {}
-        return isinstance(own, dict) and detail["input"] in own  # which has a fault of its own
+    if detail["type"] == "unknown_name":
+        own = _at(detail["ctx"]["own"], inlined.document)
+        return not isinstance(own, dict) or detail["input"] in own  # which has a fault of its own
     if detail["type"] == "default_factory_not_called":
         return True  # what is left out follows from another key, which has a fault
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
@@ -120,6 +114,14 @@ def _follows_from_another(
     if location[-1:] == ("gradients",) and location[:-1] in (lines := lines_of(inlined.document)):
         return "gradients_file" in lines[location[:-1]] and detail["type"] == "missing"
     return False
+
+
+def _at(path: str, document: dict[str, Any]) -> Any:
+    """What stands at a key path of a document; an empty table if nothing does."""
+    found: Any = document
+    for key in path.split("."):
+        found = found.get(key, {}) if isinstance(found, dict) else {}
+    return {} if found is None else found
 
 
 def _is_of_positions(detail: dict[str, Any]) -> bool:
@@ -136,7 +138,10 @@ def _traced(finding: Finding, inlined: Inlined) -> Finding:
 def _finding(model: type, detail: dict[str, Any], inlined: Inlined) -> Finding:
     part, location = _follow(model, detail["loc"])
     file, place = inlined.origin(location)
-    problem, remedy = _explain(part, place, detail)
+    if detail["type"] == "unknown_name":
+        problem, remedy = _explain_name(detail, inlined.document)
+    else:
+        problem, remedy = _explain(part, place, detail)
     key = ".".join(str(name) for name in place)
     return Finding(str(file), key, _shown(detail), problem, remedy)
 
@@ -161,9 +166,6 @@ def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, 
     unit = units.label(words[-1]) if words else ""
     if kind in ("extra_forbidden", "unexpected_keyword_argument"):
         return _unknown_key(part, detail["loc"])
-    if kind == "unknown_name":
-        own = f"; or name a file of your own that ends in {SUFFIX}"
-        return message, suggest(str(detail["input"]), context["known"]) + own
     if kind == "literal_error":
         known = [word.strip("' ") for word in context["expected"].replace(" or ", ",").split(",")]
         return "not one of the choices", suggest(str(detail["input"]), known)
@@ -183,6 +185,16 @@ def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, 
     return _PROBLEMS.get(kind, message), _REMEDIES.get(
         kind, "see the commented examples for this key"
     )
+
+
+def _explain_name(detail: dict[str, Any], document: dict[str, Any]) -> tuple[str, str]:
+    """What is wrong with a name that neither the library has nor, where it may, the document itself."""
+    context, problem = detail["ctx"], detail["msg"]
+    own = _at(context["own"], document)
+    if own:
+        problem += f", nor has {context['own']}"
+    remedy = suggest(str(detail["input"]), {*context["known"], *own})
+    return problem, f"{remedy}; or name a file of your own that ends in {SUFFIX}"
 
 
 def _unknown_key(part: type, location: Location) -> tuple[str, str]:

@@ -153,7 +153,7 @@ def _neutral_at_a_node(
     begin, end = number(section, "from_km"), number(section, "to_km")
     if begin is None or end is None:
         return
-    places = [*_nodes(section, document), *_breaks(section, document)]
+    places = [*_nodes(section, document, but_connections=True), *_breaks(section, document)]
     inside = [km for km in places if begin - CLOSEST_KM < km < end + CLOSEST_KM]
     if inside:
         problem = (
@@ -222,8 +222,13 @@ def _on_one_line(
     return len(lines_of(document)) == 1 or one.get("line") == other.get("line")
 
 
-def _nodes(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
-    """Where the contact line of a part's line is fed, meets others or ends. [km]"""
+def _nodes(
+    part: Mapping[str, Any], document: Mapping[str, Any], but_connections: bool = False
+) -> list[float]:
+    """Where the contact line of a part's line is fed, meets others or ends. [km]
+
+    Stations with a connection, which stand at a neutral section and feed beside it, may be left out.
+    """
     supply, lines = table(document, "supply"), lines_of(document)
     line = part.get("line", next(iter(lines)) if len(lines) == 1 else None)
     if line not in lines:
@@ -233,6 +238,7 @@ def _nodes(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
         for kind in (*STATIONS, "posts", STORAGE)
         for _, each in items(supply, kind)
         if len(lines) == 1 or each.get("line") == line
+        if not (but_connections and each.get("connection"))
     ]
     if len(lines) == 1 or table(supply, "high_voltage_line").get("line") == line:
         fed += placed_transformers(supply, len(lines))

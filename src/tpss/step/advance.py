@@ -5,6 +5,7 @@ from tpss.driving.driver import prepare
 from tpss.driving.passage import SLACK_M
 from tpss.kernel import at, inlined, kernel, plain
 from tpss.numerics.curve import Points
+from tpss.powerflow.bundle_points import order_points
 from tpss.powerflow.network import Request, Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces, set_unfed_aside
 from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
@@ -111,6 +112,7 @@ def place_trains(model: Model, state: State) -> int:
     state.clock[0].short_pieces = measure_pieces(count, model.network, state.flow)
     if model.control.fixed_voltage_v <= 0.0:
         state.clock[0].unfed = set_unfed_aside(model.network, state.flow)
+    order_points(model.network.bundles, model.network, state.flow)
     return count
 
 

@@ -1,18 +1,23 @@
 """Keep everything: states at the instants, forces and powers over the intervals between them."""
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tpss.driving.work import mean_powers
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined, kernel, where_any
 from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude, squared
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
+from tpss.powerflow.bundle import losses_of_bundles
+from tpss.powerflow.bundle_points import is_bundled
+from tpss.powerflow.bundles import EARTH, Bundles
 from tpss.powerflow.coupled import is_coupled, losses_of_groups
 from tpss.powerflow.links import record_links
 from tpss.powerflow.network import Flow, Network, Standing
+from tpss.powerflow.sharing import losses_by_others
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
@@ -213,7 +218,9 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         row.station_reactive_power = power.imag
         row.active_converters = running
         row.converter_loading = loading(power, running, source.rating_va)
-        row.station_losses = losses(node.leaving_current_a, running, source)
+        current = node.leaving_current_a
+        row.station_losses = losses(current, running, source)
+        row.station_losses += losses_by_others(network.shared, s, network, flow)
     lost_w = 0.0
     for b in range(network.branches.size):
         branch = network.branches[at(b)]
@@ -229,11 +236,35 @@ def record_network(step: int, network: Network, flow: Flow, recording: Recording
         recording.branch_current[at(step), at(lumped + 2 * s + 1)] = magnitude(
             solution.end_current_a
         )
-        if not is_coupled(network.groups, s):
+        if not (is_coupled(network.groups, s) or is_bundled(network.bundles, s)):
             lost_w += section_losses(s, network, flow)
     lost_w += losses_of_groups(network.groups, flow)
+    record_conductors(network.bundles, step, flow, recording)
+    lost_w += losses_of_bundles(network.bundles, flow)
     lost_w += record_links(network.links, step, flow.nodes, recording.links)
     recording.network_losses[at(step)] = lost_w
+
+
+def _no_conductors(*_: Any) -> None:
+    """`record_conductors` where there are no bundles."""
+
+
+@where_any(without=_no_conductors)
+def record_conductors(bundles: Bundles, step: int, flow: Flow, recording: Recording) -> None:
+    """Voltages of all conductors at the trains under bundles, and of the rails there."""
+    own = flow.bundles
+    for g in range(bundles.size.size):
+        for p in range(own.first[at(g)], own.first[at(g + 1)]):
+            point = own.points[at(p)]
+            i = flow.standing[at(point.standing)].train
+            for c in range(bundles.size[at(g)]):
+                voltage_v = own.voltage_v[at(i), at(c)]
+                recording.conductors[at(step), at(i), at(c)] = voltage_v
+            returns = bundles.returns[at(g), at(point.conductor)]
+            if returns != EARTH:
+                rails_v = own.voltage_v[at(i), at(returns)]
+                recording.rails[at(step), at(i)].rail_real = rails_v.real
+                recording.rails[at(step), at(i)].rail_imag = rails_v.imag
 
 
 @kernel

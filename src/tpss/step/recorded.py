@@ -164,6 +164,14 @@ ON_BOARD = (
 """What is recorded besides where trains have stores of energy on board."""
 
 
+RETURNED = (
+    Recorded("rail_voltage", "train", "V", "voltage of the rails to earth, at the train",
+             phasor="rail"),
+    Recorded("rail_angle", "train", "rad", "angle of that voltage", phasor="rail"),
+)  # fmt: skip
+"""What is recorded besides where rails are conductors of their own."""
+
+
 def _fields_of(what: str, table: Sequence[Recorded]) -> list[str]:
     own = (field for each in table if each.of == what for field in each.fields)
     return list(dict.fromkeys(own))
@@ -200,6 +208,10 @@ class StationRow(Row, of="station"):
 
 class LinkRow(Row, of="link", table=LINKED):
     """Row of a link."""
+
+
+class RailRow(Row, of="train", table=RETURNED):
+    """What the rails do at a train."""
 
 
 class StoreRow(Row, of="store", table=STORED):

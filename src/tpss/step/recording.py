@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import at, inlined
+from tpss.powerflow.bundles import Complexes, widest_of
 from tpss.powerflow.links import count_links
 from tpss.record import Record, Records
 from tpss.step.model import Model
@@ -14,6 +15,7 @@ from tpss.step.recorded import (
     LinkRow,
     NodeRow,
     OnBoardRow,
+    RailRow,
     RegenerationRow,
     StationRow,
     StoreRow,
@@ -66,6 +68,11 @@ class Recording(NamedTuple):
     sections. [s]"""
     links: Records[LinkRow]
     """Shape (instants, links)."""
+    conductors: Complexes
+    """Shape (instants, trains, most conductors): voltages of all conductors at each train.  Without any
+    instants unless there are bundles of them. [V]"""
+    rails: Records[RailRow]
+    """Shape (instants, trains).  Empty unless there are such bundles."""
     stores: Records[StoreRow]
     """Shape (instants, stores at the line)."""
     on_board: Records[OnBoardRow]
@@ -93,6 +100,7 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += 8 * (network.branches.size + 2 * network.sections.size + 2)
     row += 4 * trains * is_kept_apart(model) + 8 * trains * _has_neutral(model)
     row += count_links(network.links) * LinkRow.dtype.itemsize
+    row += 16 * trains * (widest_of(network.bundles) + (widest_of(network.bundles) > 0))
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
     row += network.stores.size * StoreRow.dtype.itemsize
     row += trains * OnBoardRow.dtype.itemsize * _stores_on_board(model)
@@ -141,6 +149,11 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         return unknown(size).view(kind.dtype).reshape(rows, columns).view(np.recarray)
 
     ends = network.branches.size + 2 * network.sections.size
+    widest = widest_of(network.bundles)
+
+    def conductors_of_trains() -> Complexes:
+        size = rows * trains * widest
+        return unknown(2 * size).view(complex).reshape(rows if widest else 0, trains, widest)
 
     return Recording(
         trains=blank(trains, TrainRow),
@@ -156,6 +169,8 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         regeneration=blank(trains, RegenerationRow, rows if _regenerates(model) else 0),
         without_power_s=np.full((rows if _has_neutral(model) else 0, trains), np.nan),
         links=blank(count_links(network.links), LinkRow),
+        conductors=conductors_of_trains(),
+        rails=blank(trains, RailRow, rows if widest_of(network.bundles) else 0),
         stores=blank(network.stores.size, StoreRow),
         on_board=blank(trains, OnBoardRow, rows if _stores_on_board(model) else 0),
     )

@@ -34,8 +34,9 @@ def check(design: Design) -> Names:
     ScenarioError
         Some cannot be built; each finding names the study's key and value.
     """
-    built = build_ends(design)
-    built += [_build(design, case) for case in spread(design.cases, SAMPLE)]
+    with design.study.named_as_given():
+        built = build_ends(design)
+        built += [_build(design, case) for case in spread(design.cases, SAMPLE)]
     return Names(
         stations=tuple(dict.fromkeys(name for each in built for name in each.layout.stations)),
         services=tuple(dict.fromkeys(s.name for each in built for s in each.start.services)),

@@ -24,7 +24,8 @@ def scenario_of(design: Design, case: int) -> Scenario:
     ScenarioError
         The values of the case do not give a valid scenario.
     """
-    return scenario_with(design, design.values(case), case)
+    with design.study.named_as_given():
+        return scenario_with(design, design.values(case), case)
 
 
 def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scenario:

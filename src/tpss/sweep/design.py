@@ -105,6 +105,11 @@ def design_of(study: Study) -> Design:
     ScenarioError
         A range of a grid has no number of values.
     """
+    with study.named_as_given():
+        return _design_of(study)
+
+
+def _design_of(study: Study) -> Design:
     parameters = parameters_of(study)
     findings = [
         Finding(

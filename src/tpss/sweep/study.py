@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -12,6 +13,7 @@ from pydantic import Field, model_validator
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.fields import LINE, Name, Part, Real, Whole, fault
 from tpss.scenario.files import read_toml
+from tpss.scenario.given_path import named_as_given
 from tpss.scenario.inline import inline_files
 from tpss.scenario.load import demand_no_scenario
 from tpss.scenario.override import copy_of
@@ -116,6 +118,8 @@ class Study:
     base_source: Path
     timetables: dict[str, str] = field(default_factory=dict)
     """Texts of timetables by the names of their files, if timetables vary."""
+    given: str = ""
+    """The study file as it was named, by which findings name it; empty: by its absolute path."""
 
     @property
     def digest(self) -> str:
@@ -133,6 +137,10 @@ class Study:
         text = json.dumps([document, self.base, *more], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
+    def named_as_given(self) -> AbstractContextManager[None]:
+        """Let findings name the study's files as the user did."""
+        return named_as_given(self.source, self.given or str(self.source))
+
     def as_json(self) -> str:
         """The study as text, from which `study_of_json` restores it, on any computer."""
         return json.dumps(
@@ -142,6 +150,7 @@ class Study:
                 "source": str(self.source),
                 "base_source": str(self.base_source),
                 "timetables": self.timetables,
+                "given": self.given,
             }
         )
 
@@ -155,6 +164,7 @@ def study_of_json(text: str) -> Study:
         source=Path(parts["source"]),
         base_source=Path(parts["base_source"]),
         timetables=parts.get("timetables", {}),
+        given=parts.get("given", ""),
     )
 
 
@@ -180,7 +190,7 @@ def load_study(path: str | Path) -> Study:
     base_source = source.parent / file.scenario
     base, timetables = _load_base(base_source, source, file)
     _demand_variable(file, base, source)
-    return Study(file, base, source.absolute(), base_source.absolute(), timetables)
+    return Study(file, base, source.absolute(), base_source.absolute(), timetables, str(source))
 
 
 def _demand_variable(file: StudyFile, base: Mapping[str, Any], source: Path) -> None:

@@ -9,7 +9,8 @@ r"""Current limitation of a train at low voltage: what it leaves for the motors.
         I_{aux},\ \text{without traction} & U \le U_{min2}
     \end{cases}
 
-I_aux is the current of the auxiliaries at U_min2.  The largest force m of the motors is the root of
+I_aux is the current of the auxiliaries at U_min2, or, where their power is given, S_aux / U at each
+voltage.  The largest force m of the motors is the root of
 
 .. math:: P(m)^2 + Q(m, U)^2 = (U I_{lim}(U))^2
 
@@ -56,10 +57,37 @@ def highest_line_current(voltage_v: float, limit: LineCurrentLimit) -> tuple[flo
     ----------
     [EN50388]_, current limitation of trains at low voltage.
     """
+    if limit.auxiliary_power_va > 0.0:
+        return beside_auxiliary_power(voltage_v, limit)
     return ramp(
         voltage_v, limit.no_traction_voltage_v, limit.full_current_voltage_v,
         limit.auxiliary_current_a, limit.highest_current_a,
     )  # fmt: skip
+
+
+@kernel
+def beside_auxiliary_power(voltage_v: float, limit: LineCurrentLimit) -> tuple[float, float]:
+    r"""`highest_line_current` whose lower end is what the auxiliaries' power takes at the voltage.
+
+    [A], [A/V]
+
+    .. math:: I = f I_{max} + (1 - f) \frac{S_{aux}}{U}, \qquad f = \frac{U - U_{min2}}{a U_n - U_{min2}}
+
+    with f from 0 to 1.
+
+    Parameters are those of `highest_line_current`; the voltage is positive.
+
+    References
+    ----------
+    [EN50388]_, current limitation of trains at low voltage.
+    """
+    share, share_slope = ramp(
+        voltage_v, limit.no_traction_voltage_v, limit.full_current_voltage_v, 0.0, 1.0
+    )
+    auxiliary_a = limit.auxiliary_power_va / voltage_v
+    current = share * limit.highest_current_a + (1.0 - share) * auxiliary_a
+    by_share = (limit.highest_current_a - auxiliary_a) * share_slope
+    return current, by_share - (1.0 - share) * auxiliary_a / voltage_v
 
 
 @kernel

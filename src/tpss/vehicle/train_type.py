@@ -26,6 +26,9 @@ class LineCurrentLimit(Record):
     """Line voltage at which there is no traction, U_min2. [V]"""
     full_current_voltage_v: float = 0.0
     """Line voltage from which the current is whole, a U_n. [V]"""
+    auxiliary_power_va: float = 0.0
+    """Apparent power of the auxiliaries, by which their current follows the voltage; 0: it is the one
+    above at any. [VA]"""
 
 
 class Networks(Record):

@@ -84,6 +84,27 @@ def test_current_falls_from_the_knee_to_that_of_the_auxiliaries(
     assert found == pytest.approx((current_a, slope_a_per_v), rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("voltage_v", "current_a", "slope_a_per_v"),
+    [
+        (10_000, 16.5, -0.00165),
+        (12_000, 132.5962, 0.118053),
+        (13_000, 251.0355, 0.118796),
+        (14_250, 400.0, 0.0),
+        (16_500, 400.0, 0.0),
+    ],
+)
+def test_current_may_fall_to_what_the_auxiliaries_power_takes(
+    as_run, voltage_v, current_a, slope_a_per_v
+):
+    """At 12 kV f = 1/3.25: 400 f + (1 - f) 165/12 = 132.5962 A, slope (400 - 13.75) / 3250 - (1 - f)
+    13.75 / 12000 = 0.118053 A/V; below 11 kV 165 kVA / U.
+    """
+    kind, _ = kind_of(**{**PURE, "current_limitation": {**LIMIT, "auxiliaries": "power"}})
+    found = as_run(highest_line_current)(voltage_v, kind.line_current)
+    assert found == pytest.approx((current_a, slope_a_per_v), rel=1e-5)
+
+
 def test_force_is_what_the_current_leaves_for_the_motors(as_run):
     kind, points = kind_of(**PURE)
     train = train_at(72.0, kind, points)
@@ -151,6 +172,18 @@ def test_motors_and_auxiliaries_draw_the_allowed_current_or_the_machine_limits(
         else:
             assert math.hypot(p, q) / voltage_v <= allowed_a
     assert limited > 0
+
+
+@pytest.mark.parametrize("voltage_v", [11.3e3, 12.4e3, 13.7e3, 14.6e3])
+def test_slopes_beside_the_auxiliaries_power_are_those_over_voltage(as_run, voltage_v):
+    kind, points = kind_of(**{**PURE, "current_limitation": {**LIMIT, "auxiliaries": "power"}})
+    train = train_at(72.0, kind, points, 1e9, 30e3)
+
+    def drawn(at_v):
+        return as_run(electrical_demand)(at_v, kind, train, SCRATCH)
+
+    slope = central_difference(lambda v: drawn(v)[0], voltage_v, 0.5)
+    assert drawn(voltage_v)[2] == pytest.approx(slope, rel=1e-5, abs=1e-4)
 
 
 @pytest.mark.parametrize("effort", EFFORTS.values(), ids=EFFORTS.keys())

@@ -18,6 +18,7 @@ PARTS = {
     "own_storage_mwh": ("own stores", "#DDCC77"),
     "burnt_in_stations_mwh": ("burnt in stations", COLOURS[3]),
     "machine_losses_mwh": ("lost in machines", COLOURS[1]),
+    "rheostat_mwh": ("burnt in rheostats", "#882255"),
     "refused_mwh": ("refused by the line", COLOURS[4]),
     "friction_mwh": ("friction", "#777777"),
 }

@@ -268,21 +268,35 @@ def _high_voltage_line(result: Result, paths: Paths) -> Iterator[parts.Item]:
 
 
 def _switches(result: Result, paths: Paths) -> Iterator[parts.Places]:
-    """Coupling posts, open ones hollow, open breaks of the contact line, and neutral sections."""
-    supply, line_of = result.scenario.supply, result.scenario.line_of
+    """Coupling posts and breaks of the contact line, open ones hollow, and neutral sections."""
+    supply, line_of, outage = (
+        result.scenario.supply,
+        result.scenario.line_of,
+        result.scenario.outage,
+    )
+    opened = outage.opens if outage is not None else ()
     kinds = (
-        ("coupling post", parts.DIAMOND, COLOURS[3], False, [p for p in supply.posts if p.closed]),
-        ("open post", parts.DIAMOND, COLOURS[3], True, [p for p in supply.posts if not p.closed]),
-        (
-            "open section break", parts.CROSS, COLOURS[1], False,
-            [b for b in supply.section_breaks if not b.closed],
-        ),
-    )  # fmt: skip
-    for name, symbol, colour, hollow, switches in kinds:
-        if switches:
-            x, y = _spread(paths, [(line_of(each), each.position_km) for each in switches])
-            words = [f"{name} {each.name}: km {kilometres(each.position_km)}" for each in switches]
+        ("coupling post", "open post", parts.DIAMOND, COLOURS[3], supply.posts),
+        ("section break", "open section break", parts.CROSS, COLOURS[1], supply.section_breaks),
+    )
+    for closed, open_, symbol, colour, switches in kinds:
+        for hollow, name in ((False, closed), (True, open_)):
+            chosen = [e for e in switches if hollow == (e.name in opened or not e.closed)]
+            if not chosen:
+                continue
+            x, y = _spread(paths, [(line_of(each), each.position_km) for each in chosen])
+            words = [
+                f"{name} {each.name}: km {kilometres(each.position_km)}"
+                + (f", opened by {outage.name}" if outage and each.closed and hollow else "")
+                for each in chosen
+            ]
             yield parts.Places(x, y, name, symbol, colour, words, hollow=hollow)
+    yield from _neutral_sections(result, paths)
+
+
+def _neutral_sections(result: Result, paths: Paths) -> Iterator[parts.Places]:
+    """Neutral sections, at their middles."""
+    supply, line_of = result.scenario.supply, result.scenario.line_of
     if supply.neutral_sections:
         places = [(line_of(each), each.middle_km) for each in supply.neutral_sections]
         words = [

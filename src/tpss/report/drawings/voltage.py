@@ -102,11 +102,18 @@ def _trains(result: Result, name: str, k: int) -> parts.Curve:
 
 
 def limit_marks(limits: VoltageLimits) -> list[parts.Mark]:
-    """Nominal voltage and limits by which a result is judged, by their names in EN 50163."""
+    """Nominal voltage and limits by which a result is judged, by their names in EN 50163.
+
+    Under direct current both lowest voltages are the same, and have one mark.
+    """
     marks = []
     for name in ("min2", "min1", "n", "max1", "max2"):
         kv: float = getattr(limits, f"u{name}_kv")
         words, printed = f"U{name} {kv:g} kV", f"$U_{{{name}}}$ {kv:g}"
+        if limits.umin1_kv == limits.umin2_kv and name.startswith("min"):
+            if name == "min1":
+                continue
+            words, printed = f"Umin1 and Umin2 {kv:g} kV", f"$U_{{min1,2}}$ {kv:g}"
         dash = parts.SOLID if name == "n" else parts.DASHED
         marks.append(parts.Mark(kv, words, printed, dash, STRONG_GREY))
     return marks

@@ -15,6 +15,7 @@ from tpss.report.drawings import network as _network
 from tpss.report.drawings import stations as _stations
 from tpss.report.drawings import storage as _storage
 from tpss.report.drawings import time_distance as _time_distance
+from tpss.report.drawings import unbalance as _unbalance
 from tpss.report.drawings import voltage as _voltage
 from tpss.report.figures.catalogue import FIGURES as FIGURES
 from tpss.report.figures.catalogue import draw as draw
@@ -32,5 +33,6 @@ station_loading = static(_stations.station_loading)
 station_powers = static(_stations.station_powers)
 storage = static(_storage.storage)
 time_distance = static(_time_distance.time_distance)
+unbalance = static(_unbalance.unbalance)
 voltage_along_line = static(_voltage.voltage_along_line)
 voltage_envelope = static(_voltage.voltage_envelope)

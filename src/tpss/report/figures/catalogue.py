@@ -14,10 +14,12 @@ from tpss.report.drawings.energy import energy_flow
 from tpss.report.drawings.journey import journey
 from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
+from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
 from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
+from tpss.report.drawings.unbalance import unbalance
 from tpss.report.drawings.voltage import voltage_along_line, voltage_envelope
 from tpss.report.palette import COLOURS
 from tpss.report.render.static import as_text, render
@@ -38,9 +40,11 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
+    "unbalance": ("run", lambda run, *_: unbalance({"": run})),
     "braking": ("run", lambda run, *_: braking({"": run})),
     "storage": ("run", lambda run, *_: storage({"": run})),
     "thermal": ("run", lambda run, *_: thermal({"": run})),
+    "rails": ("run", lambda run, *_: rail_voltage(run)),
     "energy": ("run", lambda run, *_: energy_flow(run)),
     "effort": ("train", lambda run, train, _: effort(run, train)),
 }
@@ -113,8 +117,11 @@ def draw(
 
 def applies(name: str, result: Result) -> bool:
     """Whether a figure shows something that the scenario of a result describes."""
+    if name == "unbalance":
+        return len(result.standards.unbalance) > 0
     tables = {
         "converter-losses": "converter_losses", "braking": "regeneration", "storage": "storage",
+        "rails": "rails",
     }  # fmt: skip
     return name not in tables or len(getattr(result, tables[name])) > 0
 

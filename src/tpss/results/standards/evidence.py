@@ -1,6 +1,6 @@
 """Key figures of a run by the definitions of the standards."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,6 +17,13 @@ from tpss.results.standards import (
     voltage_limits,
 )
 from tpss.results.standards.low_voltage import LowVoltagePlace, find_low_voltage_places
+from tpss.results.standards.neutral_sections import AcrossNeutral, across_neutral_sections
+from tpss.results.standards.unbalance import (
+    Unbalance,
+    unbalance_in_words,
+    unbalance_of,
+    unbalance_violations,
+)
 from tpss.results.standards.violations import Violation, find_violations, voltage_in_words
 from tpss.results.standards.voltage_limits import Excursion, find_excursions
 from tpss.results.standards.windows import WINDOWS_MIN, Floats, table_of
@@ -48,6 +55,10 @@ class Evidence:
         Beginnings and ends of the lines by their names, an empty one for a single line. [km]
     mass_t : array, shape (trains,)
         Mass of each whole train. [t]
+    busbars : sequence of Unbalance
+        Busbars of the grid whose transformer stations tell their phases.
+    across : sequence of AcrossNeutral
+        Neutral sections between phases that are told.
     """
 
     dataset: xr.Dataset
@@ -55,6 +66,8 @@ class Evidence:
     line_speed_kmh: float
     ends_km: useful_voltage.Ends
     mass_t: Floats
+    busbars: Sequence[Unbalance] = ()
+    across: Sequence[AcrossNeutral] = ()
 
     @cached_property
     def voltage(self) -> pd.DataFrame:
@@ -141,6 +154,21 @@ class Evidence:
         return network_load.current_table(self.dataset)
 
     @cached_property
+    def unbalance(self) -> pd.DataFrame:
+        """One row per busbar of the grid whose stations tell their phases: unbalance, phase currents."""
+        return table_of(self.busbars, Unbalance)
+
+    @cached_property
+    def neutral_sections(self) -> pd.DataFrame:
+        """One row per neutral section between two phases: the voltage across it."""
+        return table_of(self.across, AcrossNeutral)
+
+    @property
+    def unbalance_in_words(self) -> str:
+        """Unbalance of the busbar that is closest to its limit; empty if none is told."""
+        return unbalance_in_words(self.busbars)
+
+    @cached_property
     def violations(self) -> pd.DataFrame:
         """A row for each violation of a limit, in figures and in words, the worst first."""
         return table_of(self._violations, Violation)
@@ -225,12 +253,13 @@ class Evidence:
 
     @cached_property
     def _violations(self) -> list[Violation]:
-        return find_violations(
+        found = find_violations(
             self._excursions,
             self.useful_voltage_zones,
             self.useful_voltage_trains,
             self.standards.voltage_limits,
         )
+        return [*found, *unbalance_violations(self.busbars)]
 
     @property
     def _window(self) -> slice | None:
@@ -264,4 +293,6 @@ def gather(dataset: xr.Dataset, scenario: Scenario) -> Evidence:
             for name, line in lines.items()
         },
         mass_t=np.array([trains[name].mass_t for name in dataset.service.to_numpy()], dtype=float),
+        busbars=unbalance_of(dataset, scenario),
+        across=across_neutral_sections(dataset, scenario),
     )

@@ -13,17 +13,23 @@ from tpss.model.outages import layout_of
 from tpss.model.rated import rated_sections, rated_transformers
 from tpss.model.supply import CONTACT_LINE, NOTHING_PARTED, TRANSFORMER, SupplyPlan, layouts_of
 from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE
-from tpss.results.grid_side import powers_of_types
+from tpss.results.grid_side import characteristic_of, powers_of_types
 from tpss.results.standards.windows import Floats
 from tpss.results.thermal.body import Body, body_of
 from tpss.scenario.rating import Rating
 from tpss.scenario.scenario import Scenario
-from tpss.scenario.supply import ConverterStation, MixedStation, Supply, TransformerStation
+from tpss.scenario.supply import (
+    ConverterStation,
+    MixedStation,
+    RectifierStation,
+    Supply,
+    TransformerStation,
+)
 from tpss.scenario.supply.transformers import feeding_positions_km
 from tpss.units import si
 
-CONVERTER, MOTORS = "converter", "motors"
-KINDS = (CONTACT_LINE, TRANSFORMER, CONVERTER, MOTORS)
+CONVERTER, RECTIFIER, MOTORS = "converter", "rectifier", "motors"
+KINDS = (CONTACT_LINE, TRANSFORMER, CONVERTER, RECTIFIER, MOTORS)
 """Kinds of equipment."""
 
 
@@ -87,6 +93,7 @@ Loaded = tuple[Element, Floats]
 RATED_STATIONS: dict[type, tuple[str, Callable[[Any], Any]]] = {
     ConverterStation: (CONVERTER, lambda station: station.type.rating),
     TransformerStation: (TRANSFORMER, lambda station: station.transformer.rating),
+    RectifierStation: (RECTIFIER, lambda station: station.type.rating),
 }
 """What a station's units are, and where their rating stands, if it has units of one type."""
 
@@ -175,12 +182,25 @@ def _stations(readings: Readings, scenario: Scenario, where: _Feeding) -> Iterat
             found = _types(readings, s, station)
         else:
             kind, _ = RATED_STATIONS.get(type(station), ("", None))
-            found = [(f"{kind} of {station.name}", _rating_of_station(station), loading[:, s])]
+            load = loading[:, s]
+            if isinstance(station, RectifierStation):
+                load = _of_rectifiers(readings, s, station)
+            found = [(f"{kind} of {station.name}", _rating_of_station(station), load)]
         for name, rating, load in found:
             kind = name.partition(" ")[0]
             if rating is not None:
                 body, km = body_of(rating), station.position_km
                 yield Element(name, kind, home, km, body, reach), load
+
+
+def _of_rectifiers(readings: Readings, s: int, station: RectifierStation) -> Floats:
+    """Current of each group that runs, over its rated one. [1]"""
+    power_w, running = (
+        np.nan_to_num(readings.of(name)[:, s])
+        for name in ("station_active_power", "active_converters")
+    )
+    group = characteristic_of(station.type, station.type.rated_current_a)
+    return np.where(running > 0.0, group.loading(power_w / np.maximum(running, 1.0)), 0.0)
 
 
 def _types(

@@ -8,7 +8,14 @@ import numpy as np
 from tpss.model.outages import layout_of
 from tpss.model.supply import CONTACT_LINE, TRANSFORMER
 from tpss.results.standards.windows import Floats
-from tpss.results.thermal.elements import CONVERTER, MOTORS, Element, Readings, rated_elements
+from tpss.results.thermal.elements import (
+    CONVERTER,
+    MOTORS,
+    RECTIFIER,
+    Element,
+    Readings,
+    rated_elements,
+)
 from tpss.results.thermal.judge import ROUNDING, Thermal
 from tpss.run.run import Run
 from tpss.scenario.scenario import Scenario
@@ -17,6 +24,7 @@ USES = {
     "contact_line_use_percent": CONTACT_LINE,
     "transformer_use_percent": TRANSFORMER,
     "converter_use_percent": CONVERTER,
+    "rectifier_use_percent": RECTIFIER,
     "motor_use_percent": MOTORS,
 }
 """Figures that are the highest of a kind of equipment."""

@@ -1,6 +1,7 @@
 """The power supply, one file per noun."""
 
 from tpss.scenario.supply.catenary import Catenary
+from tpss.scenario.supply.conductors import Autotransformers, Conductors, LineMatrices
 from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transformer
@@ -10,16 +11,19 @@ from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierTy
 from tpss.scenario.supply.storage import Storage
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
-from tpss.scenario.supply.transformer_station import TransformerStation
+from tpss.scenario.supply.transformer_station import StationTransformer, TransformerStation
 
 __all__ = [
+    "Autotransformers",
     "Catenary",
+    "Conductors",
     "ContactLine",
     "ConverterLosses",
     "ConverterStation",
     "ConverterType",
     "ConverterUnits",
     "HighVoltageLine",
+    "LineMatrices",
     "LineType",
     "MixedStation",
     "NeutralSection",
@@ -28,6 +32,7 @@ __all__ = [
     "RectifierType",
     "SectionBreak",
     "Station",
+    "StationTransformer",
     "Storage",
     "Supply",
     "System",

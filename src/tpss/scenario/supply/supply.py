@@ -17,6 +17,8 @@ from tpss.scenario.fields import (
     unique,
 )
 from tpss.scenario.supply.catenary import Catenary, without_reactance
+from tpss.scenario.supply.conductor_faults import demand_conductors
+from tpss.scenario.supply.conductors import Autotransformers, Conductors
 from tpss.scenario.supply.contact_line import (
     ContactLine,
     NeutralSection,
@@ -30,8 +32,9 @@ from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
 from tpss.scenario.supply.storage import Storage
-from tpss.scenario.supply.system import DEFAULT_SYSTEM, SystemName, system_named
+from tpss.scenario.supply.system import DEFAULT_SYSTEM, System, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
+from tpss.units import kilometres
 
 Station = ConverterStation | TransformerStation | MixedStation | RectifierStation
 """A feeding station of any kind."""
@@ -95,6 +98,14 @@ class Supply(Part):
         description="Where the contact lines of several tracks are tied: `everywhere`, at `posts` "
         "(those below, feeding points, stations where lines meet), or `no` (there, but at no posts). "
         "Needed where a line has several tracks.",
+    )
+    conductors: Conductors | None = Field(
+        default=None,
+        description="Contact line, rails and feeder as conductors of their own; leave it out: they are "
+        "one, with the impedance of the catenary, and rails have no voltage.",
+    )
+    autotransformers: tuple[Autotransformers, ...] = Field(
+        default=(), description="Autotransformers, with `conductors`."
     )
     contact_lines: tuple[ContactLine, ...] = Field(
         default=(), description="Stretches of lines with another contact line, or other ties."
@@ -221,15 +232,53 @@ class Supply(Part):
         return system_named(self.system).is_direct
 
     @property
+    def system_values(self) -> System:
+        """Values of its system."""
+        return system_named(self.system)
+
+    @property
     def stations(self) -> tuple[Station, ...]:
-        """All feeding stations, in the order of the results."""
-        return tuple(station for key in STATIONS for station in getattr(self, key))
+        """All feeding stations, in the order of the results; one with a connection is two."""
+        return tuple(
+            part
+            for key in STATIONS
+            for station in getattr(self, key)
+            for part in self._parts_of(station)
+        )
+
+    def _parts_of(self, station: Station) -> tuple[Station, ...]:
+        """The stations that a station counts as."""
+        if not isinstance(station, TransformerStation) or station.connection is None:
+            return (station,)
+        here = self._neutral_section_of(station)
+        return (station,) if here is None else station.sides((here.from_km, here.to_km))
+
+    def _neutral_section_of(self, station: TransformerStation) -> NeutralSection | None:
+        """The neutral section at which a station stands."""
+        for each in self.neutral_sections:
+            on_its_line = None in (each.line, station.line) or each.line == station.line
+            if on_its_line and each.from_km <= station.position_km <= each.to_km:
+                return each
+        return None
 
     @property
     def converters_in_use(self) -> tuple[ConverterType, ...]:
         """Types of converters of all stations, each as often as a station has it."""
         mixed = (each.type for station in self.mixed_stations for each in station.units)
         return (*(station.type for station in self.converter_stations), *mixed)
+
+    @model_validator(mode="after")
+    def _connections_have_a_neutral_section(self) -> Self:
+        for station in self.transformer_stations:
+            if station.connection and self._neutral_section_of(station) is None:
+                raise fault(
+                    f"{station.name} feeds two sections by its {station.connection} connection, and "
+                    f"there is no neutral section at {kilometres(station.position_km)} km, where it "
+                    "stands",
+                    "add one to neutral_sections around that place, or place the station at one",
+                )
+        demand_unique(self.stations, "name")
+        return self
 
     @model_validator(mode="after")
     def _parts_fit_the_current(self) -> Self:
@@ -250,7 +299,17 @@ class Supply(Part):
             )
         if direct:
             self._demand_resistances_only()
+        elif any(each.contact_line is not None for each in self._catenaries):
+            raise fault(
+                f"contact_line and rails beside the system {self.system}, none of direct current",
+                "give r_ohm_per_km and x_ohm_per_km: tpss line-constants computes them from wires",
+            )
         return self
+
+    @property
+    def _catenaries(self) -> list[Catenary]:
+        """All contact lines that are given."""
+        return [self.catenary, *(each.catenary for each in self.contact_lines if each.catenary)]
 
     def _demand_resistances_only(self) -> None:
         """Raise a fault for what only an alternating current has."""
@@ -259,13 +318,25 @@ class Supply(Part):
                 f"a high-voltage line beside the system {self.system} of direct current",
                 "leave high_voltage_line out",
             )
-        lines = [self.catenary, *(each.catenary for each in self.contact_lines if each.catenary)]
-        if any(each.has_reactance for each in lines):
+        if any(each.has_reactance for each in self._catenaries):
             raise fault(
                 "the contact line has a reactance or a capacitance, of which the system "
                 f"{self.system} knows none",
                 "give resistances only",
             )
+
+    @model_validator(mode="after")
+    def _conductors_belong_together(self) -> Self:
+        stretches = [each.catenary for each in self.contact_lines if each.catenary is not None]
+        demand_conductors(
+            self.conductors,
+            [self.catenary, *stretches],
+            self.stations,
+            self.autotransformers,
+            self.is_direct,
+            self.high_voltage_line is not None,
+        )
+        return self
 
     @model_validator(mode="after")
     def _stations_feed_this_system(self) -> Self:

@@ -20,6 +20,11 @@ class System(Part):
     frequency_hz: Real = Field(ge=0, description="Frequency of the contact line.")
     lowest_pu: Real = Field(gt=0, description="Voltages of a healthy line are above this.")
     highest_pu: Real = Field(gt=0, description="And below this.")
+    knee_factor: Real = Field(
+        gt=0,
+        le=1,
+        description="Share of the nominal voltage from which trains may draw their whole current.",
+    )
 
     @property
     def is_direct(self) -> bool:
