@@ -188,8 +188,8 @@ AUTOTRANSFORMERS = {
     "highest_winding_a": "highest current of its windings",
     "highest_neutral_a": "highest current of its neutral, which leads to the rails",
     "peak_loading": "current of the neutral over that at rated power",
-    "loading_15_min": "highest r.m.s. value of that over 15 min",
-    "loading_60_min": "over 1 h; NaN where the run is shorter",
+    "rms_15_min_loading": "highest r.m.s. value of that over 15 min",
+    "rms_60_min_loading": "over 1 h; NaN where the run is shorter",
 }
 CONVERTER_LOSSES = {
     "station": "converter station",

@@ -55,7 +55,7 @@ def title(figure):
     return figure.get_suptitle()
 
 
-OF_CONVERTERS = [name for name in FIGURES if name != "unbalance"]
+OF_CONVERTERS = [name for name in FIGURES if name not in ("unbalance", "rails")]
 """Figures of a line that converter stations feed."""
 
 PHASES = {

@@ -57,3 +57,15 @@ def test_motors_with_a_rating_are_monitored_and_judged_once_a_run_has_ended():
     rated = said({"trains.freight.motor_rating": motor})
     assert "not monitored" not in rated
     assert "judged once a run has ended" in rated
+
+
+def test_grids_are_told_of_lines_whose_stations_know_their_phases():
+    station = {
+        "name": "Grid", "position_km": 15.0, "no_load_voltage_kv": 16.0,
+        "transformer": {"rated_mva": 10.0, "short_circuit_percent": 8.0},
+    }  # fmt: skip
+    with_phases = {**station, "grid_kv": 132.0, "phases": "RS"}
+    assert "three-phase grid" not in said({"supply.transformer_stations": [station]})
+    assert "one impedance for both sequences" in said(
+        {"supply.transformer_stations": [with_phases]}
+    )

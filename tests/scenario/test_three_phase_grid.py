@@ -2,8 +2,10 @@
 
 import pytest
 
-from tpss import ScenarioError, prepare
+from tpss import ScenarioError, load_scenario, prepare
+from tpss.model import build_model
 
+from conftest import EXAMPLES
 from scenarios import short_line
 
 STATION = {
@@ -129,3 +131,24 @@ def test_stations_of_one_phase_and_others_that_tell_none_may_share_a_line():
 def test_the_angle_between_sides_may_be_anything():
     """RS and SR are opposite: 32 kV stand across the neutral section; that is told, not refused."""
     prepare(short_line(changes([WEST, {**EAST, "phases": "SR"}])))
+
+
+def test_rails_that_are_conductors_know_one_angle_only():
+    """They go on where the neutral section parts the contact line."""
+    east = {
+        "name": "East", "position_km": 49.0, "no_load_voltage_kv": 27.5, "secondary": "2x",
+        "grid_kv": 220.0, "phases": "ST", "transformer": "ADIF-60MVA", "rail_earthing_ohm": 0.5,
+    }  # fmt: skip
+    changed = {
+        "supply.transformer_stations.+": east,
+        "supply.transformer_stations.Airport.grid_kv": 220.0,
+        "supply.transformer_stations.Airport.phases": "RS",
+        "supply.neutral_sections": [{"from_km": 29.0, "to_km": 29.2}],
+    }
+    scenario = load_scenario(EXAMPLES / "hs_2x25kv.toml", changed)
+    with pytest.raises(ScenarioError) as caught:
+        build_model(scenario)
+    (found,) = caught.value.findings
+    assert found.key == f"{KEY}.1.phases"
+    assert "rails, which are conductors here, go on to those of Airport at RS" in found.problem
+    assert "leave supply.conductors out" in found.remedy

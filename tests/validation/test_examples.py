@@ -146,8 +146,9 @@ def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
-        "both_ways", "emu_25kv", "freight_3kv", "line_320km", "line_320km_losses", "metro_750v",
-        "network", "overloaded", "own_trains", "thesis_original", "tram_750v",
+        "both_ways", "emu_25kv", "freight_3kv", "hs_2x25kv", "line_320km", "line_320km_losses",
+        "metro_750v", "network", "neutral_section_25kv", "overloaded", "own_trains", "thesis_original",
+        "tram_750v",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}
 

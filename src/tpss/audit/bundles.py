@@ -11,8 +11,7 @@ from tpss.audit.balances import Scratch, audit_demand, worst
 from tpss.kernel import inlined, kernel, where_any
 from tpss.numerics.pairs import magnitude, scaled
 from tpss.powerflow.bundles import EARTH, Bundles
-from tpss.powerflow.network import SHORTEST_PIECE_M, Network
-from tpss.powerflow.placing import is_unfed
+from tpss.powerflow.network import SHORTEST_PIECE_M, UNFED, Network
 from tpss.step.model import Model
 from tpss.step.recording import Recording
 
@@ -76,8 +75,10 @@ def _begin(g: int, network: Network, scratch: Scratch) -> int:
     own, bundles = scratch.bundles, network.bundles
     for c in range(bundles.size[g]):
         s = bundles.section[g, c]
-        own.next[c] = own.end[s] if is_unfed(s, network) else own.first[s]
-        own.before_v[c] = scratch.node_v[network.sections[s].start_node]
+        start_node = network.sections[s].start_node
+        is_dead = network.source_of_node[start_node] == UNFED
+        own.next[c] = own.end[s] if is_dead else own.first[s]
+        own.before_v[c] = scratch.node_v[start_node]
     return bundles.size[g]
 
 

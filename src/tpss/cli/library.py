@@ -131,7 +131,7 @@ KINDS = {
         ("permanent_v", "short_v", "stray_ma_per_m"),
         "[standards]",
         "rails",
-        "that of the current is taken; a table with any of its values changes these",
+        "which is taken by itself for the current; " + OWN_TABLE,
     ),
     "voltage_limits": Kind(
         "Limits of the voltage at the pantograph",

@@ -92,8 +92,8 @@ _AUTOTRANSFORMER_COLUMNS = (
     Column("highest_winding_a", "winding", "A", 0),
     Column("highest_neutral_a", "neutral", "A", 0),
     Column("peak_loading", "peak load", "%", 1, 100.0),
-    Column("loading_15_min", "15 min", "%", 1, 100.0),
-    Column("loading_60_min", "60 min", "%", 1, 100.0),
+    Column("rms_15_min_loading", "15 min", "%", 1, 100.0),
+    Column("rms_60_min_loading", "60 min", "%", 1, 100.0),
 )
 
 _RARE = ("to_grid_mwh", "burnt_mwh", "auxiliaries_mwh")

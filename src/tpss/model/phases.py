@@ -8,9 +8,21 @@ island needs to know the angle of another one; that is the angle of its phases, 
 from collections.abc import Iterator
 
 from tpss.errors import Finding, ScenarioError
+from tpss.model.conductors import KIND_OF
 from tpss.model.supply import SupplyPlan
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Station, Supply, TransformerStation
+
+SHORTED = "contact line that {} feeds with {}, which is a short circuit"
+PART_THEM = (
+    "add a neutral section between them to supply.neutral_sections, or give both the same phases"
+)
+BY_CONDUCTORS = "a line whose rails, which are conductors here, go on to those of {} at {}"
+ONE_ANGLE = (
+    "leave supply.conductors out, or phases: rails know currents of one angle only, not those of two "
+    "pairs of phases"
+)
+"""Of stations tied by the contact line, or by other conductors: what is wrong, and the remedy."""
 
 
 def phases_of(station: Station) -> str | None:
@@ -18,8 +30,14 @@ def phases_of(station: Station) -> str | None:
     return station.phases if isinstance(station, TransformerStation) else None
 
 
-def islands_of(plan: SupplyPlan) -> list[int]:
-    """A node of the island of each node, the same one for all of it; switches count as closed."""
+def islands_of(plan: SupplyPlan, by_conductors: bool = False) -> list[int]:
+    """A node of the island of each node, the same one for all of it; switches count as closed.
+
+    Rails and feeders that are conductors, which go on where neutral sections part the contact line, tie
+    islands only if asked for.
+    """
+    beside = () if by_conductors else KIND_OF.values()
+    apart = {node for node, kind in enumerate(plan.node_kinds) if kind in beside}
     first = list(range(len(plan.nodes)))
 
     def root(node: int) -> int:
@@ -28,7 +46,8 @@ def islands_of(plan: SupplyPlan) -> list[int]:
         return node
 
     for a, b in [*plan.edges, *plan.joints, *plan.guards]:
-        first[root(b)] = root(a)
+        if a not in apart and b not in apart:
+            first[root(b)] = root(a)
     return [root(node) for node in range(len(plan.nodes))]
 
 
@@ -47,14 +66,20 @@ def demand_one_angle(scenario: Scenario, plan: SupplyPlan) -> None:
     Raises
     ------
     ScenarioError
-        Two stations of different phases are tied by the contact line, which would short them.
+        Two stations of different phases are tied by the contact line, which would short them; or by
+        rails or feeders that are conductors, in which the currents of both have no angle in common.
     """
-    if findings := list(_findings(scenario, plan)):
+    shorted = list(_findings(scenario, plan, islands_of(plan), SHORTED, PART_THEM))
+    if findings := shorted or list(
+        _findings(scenario, plan, islands_of(plan, by_conductors=True), BY_CONDUCTORS, ONE_ANGLE)
+    ):
         raise ScenarioError(findings)
 
 
-def _findings(scenario: Scenario, plan: SupplyPlan) -> Iterator[Finding]:
-    supply, islands = scenario.supply, islands_of(plan)
+def _findings(
+    scenario: Scenario, plan: SupplyPlan, islands: list[int], words: str, remedy: str
+) -> Iterator[Finding]:
+    supply = scenario.supply
     first: dict[int, tuple[Station, str]] = {}
     for node, station in zip(plan.sources, supply.stations, strict=True):
         phases = phases_of(station)
@@ -62,13 +87,8 @@ def _findings(scenario: Scenario, plan: SupplyPlan) -> Iterator[Finding]:
             continue
         other, told = first.setdefault(islands[node], (station, phases))
         if told != phases:
-            problem = (
-                f"{station.name} feeds the phases {phases} into contact line that {other.name} feeds "
-                f"with {told}, which is a short circuit"
-            )
-            remedy = (
-                "add a neutral section between them to supply.neutral_sections, or give both the "
-                "same phases"
+            problem = f"{station.name} feeds the phases {phases} into {words}".format(
+                other.name, told
             )
             key = f"supply.transformer_stations.{_number(station, supply)}.phases"
             yield Finding(scenario.given_source, key, repr(phases), problem, remedy)

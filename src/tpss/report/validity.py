@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from tpss.model.phases import phases_of
 from tpss.results.thermal.elements import has_ratings
 from tpss.scenario.machine import EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
@@ -41,6 +42,13 @@ OF_RATINGS = (
 )
 
 
+OF_GRIDS = (
+    "A three-phase grid is an ideal source behind one impedance for both sequences: what others draw "
+    "from it, and the unbalance that it has already, are not described. The limit of unbalance is that "
+    "of the scenario, by default an estimate."
+)
+
+
 def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
     told = list(scenarios)
@@ -53,7 +61,9 @@ def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     ]
     sentences += [TRIPS if scenario.protection.trip else NOTHING_TRIPS for scenario in told]
     rated = [OF_RATINGS] if any(has_ratings(scenario) for scenario in told) else []
-    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *rated]
+    phased = any(phases_of(each) for scenario in told for each in scenario.supply.stations)
+    grids = [OF_GRIDS] if phased else []
+    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *grids, *rated]
 
 
 def _of_traffic(scenario: Scenario) -> str:

@@ -30,7 +30,7 @@ def autotransformers(dataset: xr.Dataset, scenario: Scenario) -> pd.DataFrame:
         for line in layouts_of(scenario.lines_by_name)
         for km, each in autotransformers_of(scenario.supply, line)
     ]
-    windows = [f"loading_{width:g}_min" for width in WINDOWS_MIN]
+    windows = [f"rms_{width:g}_min_loading" for width in WINDOWS_MIN]
     columns = (
         "line",
         "position_km",

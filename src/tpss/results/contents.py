@@ -50,8 +50,9 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "unbalance", "braking", "storage", "thermal",
-    "rails", "energy", "effort",
+    "stations", "converters", "converter-losses", "unbalance", "braking", "storage", "thermal", "rails",
+    "energy",
+    "effort",
 )  # fmt: skip
 
 

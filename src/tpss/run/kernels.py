@@ -34,10 +34,8 @@ from tpss.kernel import (
     switch,
 )
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.groups import NO_GROUPS
-from tpss.powerflow.network import Loads
+from tpss.powerflow.network import Loads, Network
 from tpss.powerflow.newton import MOST_PASSES, newton
-from tpss.powerflow.shared_grids import NO_SHARED_GRIDS
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
 from tpss.step.advance import advance, prepare_trains
@@ -53,11 +51,15 @@ Call = tuple[Any, tuple[Any, ...]]
 """A kernel, and arguments of the types with which the clock calls it."""
 
 
-_ready: set[tuple[Clock, bool, bool]] = set()
-"""Clocks all of whose kernels this process has compiled or loaded, and whether with coupled sections and
-with grids of several sources."""
+_ready: set[tuple[Clock, tuple[bool, ...]]] = set()
+"""Clocks all of whose kernels this process has compiled or loaded, and with which `optional_parts`."""
 
 _one_at_a_time = threading.Lock()
+
+
+def optional_parts(network: Network) -> tuple[bool, ...]:
+    """Which parts that most networks lack one has: kernels are compiled without or with them."""
+    return tuple(len(part) > 0 for part in network if isinstance(part, tuple))
 
 
 def make_ready(model: Model, clock: Clock = advance) -> None:
@@ -68,13 +70,12 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
     Parameters
     ----------
     model : Model
-        Any: all have the same types, but those with coupled sections or grids of several sources, see
+        Any: all have the same types, but for parts of the network that most lack, see
         `kernel.where_any`.
     clock : callable
         What runs the steps.
     """
-    network = model.network
-    kernels = clock, network.groups != NO_GROUPS, network.shared != NO_SHARED_GRIDS
+    kernels = clock, optional_parts(model.network)
     with _one_at_a_time:
         if kernels in _ready:
             return

@@ -5,7 +5,18 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from tpss import library
-from tpss.scenario.fields import Name, Part, Position, Real, entry_of, fault, name_of_line, unique
+from tpss.scenario.fields import (
+    FromLibrary,
+    Name,
+    Part,
+    Position,
+    Real,
+    entry_of,
+    fault,
+    name_of_line,
+    unique,
+)
+from tpss.scenario.rail_limits import KIND as RAIL_LIMITS
 from tpss.scenario.rail_limits import RailLimits
 
 KIND = "voltage_limits"
@@ -92,7 +103,7 @@ class Standards(Part):
         validate_default=True,
         description="Limits of the voltage at the pantograph.",
     )
-    rails: RailLimits = Field(
+    rails: Annotated[RailLimits, FromLibrary(RAIL_LIMITS)] = Field(
         default={},
         validate_default=True,
         description="Limits of rails that are conductors of their own, see `supply.conductors`.",

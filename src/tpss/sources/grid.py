@@ -6,7 +6,8 @@ E is the no-load voltage on the railway's side, J the current into the railway, 
 transformers in parallel.  A transformer between two phases of a grid with the short-circuit power S_k
 sees :math:`Z_{grid} = 2 E^2 / S_k`.  Without impedances the source is ideal.
 
-Limits of validity: the voltages of the grid's three phases stay balanced.
+Limits of validity: without load the grid's three phases are balanced.  What other sources draw from the
+same grid is not in this law, see `powerflow.shared_grids`.
 """
 
 import math

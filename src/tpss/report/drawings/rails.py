@@ -9,9 +9,12 @@ from tpss.report.drawings.parts import DASHED, DOTTED, POSITION, Curve, Drawing,
 from tpss.report.trains import NothingToDrawError
 from tpss.results.result import Result
 
+NEAR = 1.5
+"""Limits up to this many times what is drawn are drawn too."""
+
 
 def rail_voltage(result: Result) -> Drawing:
-    """Highest and lowest voltage of the rails at each place, highest mean over 300 s, and limits.
+    """Highest and lowest voltage of the rails at each place, highest mean over 300 s, and limits near.
 
     A panel is a line.
 
@@ -32,7 +35,7 @@ def rail_voltage(result: Result) -> Drawing:
         Panel(f"rails to earth{name and ', '}{name} [V]", list(_items(rows, result)))
         for name, rows in lines
     ]
-    return Drawing(POSITION, panels, panel_inch=3.0)
+    return Drawing(POSITION, panels, panel_inch=3.4)
 
 
 def _items(rows: pd.DataFrame, result: Result) -> Iterator[Item]:
@@ -42,10 +45,14 @@ def _items(rows: pd.DataFrame, result: Result) -> Iterator[Item]:
     if is_direct:
         yield Curve(km, rows.lowest_v.to_numpy(), "lowest", 1)
     if np.isfinite(rows.permanent_v).any():
-        yield Curve(km, rows.permanent_v.to_numpy(), "highest mean over 300 s", 2, DASHED)
+        yield Curve(
+            km, rows.permanent_v.to_numpy(), "highest mean of the magnitude over 300 s", 2, DASHED
+        )
     limits = result.scenario.standards.rails.completed(is_direct)
+    low_v, high_v = float(rows.lowest_v.min()), float(rows.highest_v.max())
     for value in (limits.permanent_v, limits.short_v):
-        if value is not None:
-            yield Mark(value, f"limit {value:g} V", dash=DOTTED)
-            if is_direct:
-                yield Mark(-value, f"limit {-value:g} V", dash=DOTTED)
+        # One that lies far beyond what is drawn would make that flat.
+        if value is not None and value < NEAR * high_v:
+            yield Mark(value, f"limit {value:g} V", f"limit {value:g}", dash=DOTTED)
+        if value is not None and is_direct and -value > NEAR * low_v:
+            yield Mark(-value, f"limit {-value:g} V", f"limit {-value:g}", dash=DOTTED)

@@ -5,11 +5,13 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tpss.model.conductors import TERMINALS
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import is_corridor, landmarks
 from tpss.report.drawings import parts
 from tpss.report.palette import STRONG_GREY
 from tpss.report.trains import chosen_train
+from tpss.results.rails import has_rails
 from tpss.results.result import Result
 from tpss.scenario.standards import VoltageLimits
 
@@ -127,7 +129,7 @@ def feeding_points(results: Iterable[Result], *, named: bool = False) -> list[pa
     names: dict[float, str] = {}
     for result in results:
         data = result.dataset
-        names = dict.fromkeys((data.node_position.to_numpy() / 1e3).tolist(), "") | names
+        names = dict.fromkeys(_places_km(result), "") | names
         if named:
             stations = data.station.to_numpy().astype(str).tolist()
             names |= zip((data.station_position.to_numpy() / 1e3).tolist(), stations, strict=True)
@@ -138,6 +140,16 @@ def feeding_points(results: Iterable[Result], *, named: bool = False) -> list[pa
                 if not names[km] and abs(km - at_km) < SAME_PLACE_KM
             }  # fmt: skip
     return [parts.Mark(km, names[km], dash=parts.DOTTED, upright=True) for km in sorted(names)]
+
+
+def _places_km(result: Result) -> list[float]:
+    """Places of nodes that feed or tie; where rails are conductors, there are others between them."""
+    data = result.dataset
+    km = data.node_position.to_numpy() / 1e3
+    if not has_rails(data):
+        return [float(place) for place in km]
+    feeds = km[data.node_kind.to_numpy() == TERMINALS]
+    return [*feeds.tolist(), *result.autotransformers.position_km.tolist(), km.min(), km.max()]
 
 
 def _span(*values: ArrayLike, margin: float) -> tuple[float, float]:
