@@ -15,6 +15,7 @@ from tpss.powerflow.network import (
 from tpss.powerflow.system import system
 from tpss.sources.kinds import Source, SourceKind
 from tpss.sources.rectifier import MOST_POINTS, RectifierLaw
+from tpss.storage.wayside import StoreLaw
 from tpss.vehicle.regeneration import Regeneration
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
@@ -72,12 +73,14 @@ def rectifiers(laws: Sequence[Mapping[str, Any]]) -> Any:
 
 def direct_line(
     nominal_v: float, ohm_per_km: float, stations: Sequence[tuple[float, Mapping[str, Any]]],
-    trains: Sequence[Braking | Drawing],
+    trains: Sequence[Braking | Drawing], stores: Sequence[tuple[float, Mapping[str, Any]]] = (),
 ) -> Case:  # fmt: skip
-    """A line of which every train lies between its ends, ready to be solved."""
+    """A line of which every train lies between its ends, ready to be solved; stores by their fields."""
     ends = [min(train.km for train in trains) - 1.0, max(train.km for train in trains) + 1.0]
     places = [km for km, _ in stations]
     nodes = {km: node for node, km in enumerate(places)}
+    for km, _ in stores:
+        nodes.setdefault(km, len(nodes))
     for end in ends:
         if not min(places) <= end <= max(places):
             nodes.setdefault(end, len(nodes))
@@ -90,8 +93,9 @@ def direct_line(
     own = system(nominal_v, nominal_v, BASE_W[nominal_v], 0.0, 0.5, 1.35)
     no_branches: list[BranchPart] = []
     network = assemble(
-        len(nodes), sections, no_branches, rectifiers([law for _, law in stations]), own
-    )
+        len(nodes), sections, no_branches, rectifiers([law for _, law in stations]), own,
+        stores=StoreLaw.array(StoreLaw.row(node=nodes[km], **law) for km, law in stores),
+    )  # fmt: skip
     return place(network, loads_of(trains))
 
 

@@ -48,6 +48,14 @@ def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
     for_motors = before["active_power"] * h - kind.auxiliary_power_w * present_s
     if outcome.recording.regeneration.size:
         for_motors = for_motors + outcome.recording.regeneration["regenerated_power"][:-1] * h
+    if outcome.recording.on_board.size:
+        taken = outcome.recording.on_board["train_storage_power"][:-1]
+        for_motors = for_motors - taken * h
+        used = 0.0
+        if outcome.recording.regeneration.size:
+            used = outcome.recording.regeneration["regenerated_power"][:-1]
+        unfed = (before["pantograph_real"] == 0.0) & (taken == 0.0) & (used == 0.0)
+        for_motors = for_motors + np.where(unfed, kind.auxiliary_power_w * present_s, 0.0)
     if outcome.recording.without_power_s.size:
         for_motors = for_motors + kind.auxiliary_power_w * outcome.recording.without_power_s[:-1]
     recorded = before["motor_power"] * h

@@ -94,15 +94,56 @@ def power_mismatch_va(outcome: Outcome, model: Model) -> float:
     fed[:, network.sources.node] = (
         stations["station_active_power"] + 1j * stations["station_reactive_power"]
     )
+    for m, law in enumerate(network.stores):
+        taken_w = outcome.recording.stores[rows]["store_power"][:, m]
+        fed[:, law.node] -= np.where(node_v[:, law.node] != 0.0, taken_w, 0.0)
     on_line = outcome.recording.train_state[rows] >= 0
     on_line &= outcome.recording.train_state[rows] != TrainState.ARRIVED
     drawn = trains["active_power"] + 1j * trains["reactive_power"]
     return max(
         largest(node_v * leaving_a.conj() - fed),
+        stores_off_w(outcome, model, node_v),
         largest((train_v * train_a.conj() - drawn)[on_line]),
         astray_va,
         key=nan_is_largest,
     )
+
+
+def stores_off_w(outcome: Outcome, model: Model, node_v: Complexes) -> float:
+    """Largest distance of a store's power from that of its law, and of its energy from its balance. [W]
+
+    By its efficiency, without the names of the sides: charging keeps eta_c of the power, and giving
+    takes 1/eta_d of it; no step passes full or empty, and none its current at its voltage.
+    """
+    rows, each_s, off = outcome.recording.stores, intervals_s(outcome, model), [0.0]
+    for m, law in enumerate(model.network.stores):
+        own, volts = law.store, np.abs(node_v[:, law.node])
+        energy = np.asarray(rows["stored_energy"][: outcome.steps + 1, m])
+        power, lost = (rows[name][: outcome.steps, m] for name in ("store_power", "store_losses"))
+        idle_j = np.minimum(own.standby_w * each_s, energy[:-1])
+        held = energy[:-1] - idle_j
+        highest = np.full_like(power, np.inf)
+        if own.capacitance_f:
+            highest = own.highest_current_a * np.sqrt(
+                2.0 * (energy[:-1] + own.empty_j) / own.capacitance_f
+            )
+        eta_c, eta_d = own.charge_efficiency, own.discharge_efficiency
+        into = np.minimum(own.charge_power_w, highest / eta_c)
+        into = np.minimum(into, (own.capacity_j - held) / (eta_c * each_s))
+        out = np.minimum(own.discharge_power_w, highest * eta_d)
+        out = np.minimum(out, held * eta_d / each_s)
+        up = np.clip(law.charge_w_per_v * (volts - law.charges_above_v), 0.0, into)
+        down = np.clip(law.discharge_w_per_v * (law.discharges_below_v - volts), 0.0, out)
+        asked = np.where(volts > 0.0, up - down, 0.0)
+        kept = np.where(power > 0.0, eta_c * power, power / eta_d) * each_s
+        passed = np.maximum(-energy[1:], energy[1:] - own.capacity_j)
+        off += [
+            largest(power - asked),
+            largest((held + kept - energy[1:]) / each_s),
+            largest((energy[:-1] + (power - lost) * each_s - energy[1:]) / each_s),
+            largest(np.maximum(passed, 0.0) / each_s),
+        ]
+    return max(off, key=nan_is_largest)
 
 
 def _contact_line_currents(
@@ -362,6 +403,7 @@ def network_balance(outcome: Outcome, model: Model) -> float:
     fed = np.nansum(recording.stations["station_active_power"][rows].sum(axis=1) * each_s)
     drawn = np.nansum(np.nansum(recording.trains["active_power"][rows], axis=1) * each_s)
     lost = np.nansum(recording.network_losses[rows] * each_s)
+    lost += np.nansum(recording.stores["store_power"][rows].sum(axis=1) * each_s)
     # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
     mismatch_w = TOLERANCE * model.network.system.base_power_va
     least = mismatch_w / ALLOWED_BALANCE * step_s * max(outcome.steps, 1)

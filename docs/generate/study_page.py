@@ -136,8 +136,10 @@ MEANINGS = {
     "brakes do",
     "braking.rheostat_mwh": "part of it: likewise, and burnt in rheostats of trains",
     "braking.own_use_mwh": "part of it: auxiliaries and motors of the train itself",
+    "braking.own_storage_mwh": "of that, what trains put into their own stores",
     "braking.fed_back_mwh": "part of it: what trains feed back into the line",
     "braking.used_by_others_mwh": "of that, what other trains use, and losses of the line",
+    "braking.to_stores_mwh": "of that, what stores at the line take",
     "braking.to_grid_mwh": "of that, what stations take back, on the railway's side",
     "braking.burnt_in_stations_mwh": "of that, what resistors of stations burn",
     "thermal.contact_line_use_percent": "highest use of what contact lines bear: thermal state, or "

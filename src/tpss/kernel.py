@@ -38,7 +38,8 @@ _OPTIONS: dict[str, Any] = {
 }
 
 KERNEL_PACKAGES = (
-    "numerics", "physics", "vehicle", "sources", "track", "powerflow", "driving", "step", "audit",
+    "numerics", "physics", "storage", "vehicle", "sources", "track", "powerflow", "driving", "step",
+    "audit",
 )  # fmt: skip
 """Packages that hold kernels."""
 

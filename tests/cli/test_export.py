@@ -22,7 +22,8 @@ def test_tables_are_written_beside_the_result(tpss_command, demo):
     assert (said.code, said.err) == (0, "")
     assert said.out.startswith(
         "Wrote into demo/tables: trips.csv, stops.csv, waits.csv, stations.csv, regeneration.csv, "
-        "converter_losses.csv, transformer_losses.csv, violations.csv"
+        "converter_losses.csv, rails.csv, stray_current.csv, autotransformers.csv, "
+        "transformer_losses.csv, storage.csv, violations.csv"
     )
     assert {file.name for file in (demo / "tables").iterdir()} == {f"{name}.csv" for name in TABLES}
 
@@ -38,7 +39,7 @@ def test_existing_files_need_force(tpss_command, demo):
     tpss_command("export", "demo")
     said = tpss_command("export", "demo")
     assert (said.code, said.out) == (2, "")
-    assert "demo/tables/trips.csv (and 24 more) exists already" in said.err
+    assert "demo/tables/trips.csv (and 28 more) exists already" in said.err
     assert tpss_command("export", "demo", "--force").code == 0
 
 

@@ -5,7 +5,7 @@ import pytest
 from tpss.report.figures import FIGURES
 
 SHORT = ("--set", "simulation.duration_min=3", "--out", "demo", "--quiet")
-UNTOLD = ("converter-losses", "unbalance", "braking", "thermal", "rails")
+UNTOLD = ("converter-losses", "unbalance", "braking", "storage", "thermal", "rails")
 BEGINS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
 
 

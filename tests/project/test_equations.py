@@ -98,6 +98,7 @@ COMPUTE_NO_EQUATION = {
         # Of several types of converters each is asked.
         "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",
     },
+    "storage": set(),
     "vehicle": {
         # Which law holds, and what is evaluated when.
         "update_effort", "highest_force", "_described_force", "effort_extrapolates", "motors_force",
@@ -108,7 +109,7 @@ COMPUTE_NO_EQUATION = {
         "lay_out_bands", "band_above", "band_below",
         # Questions about the state of a train, and what keeps it.
         "is_on_line", "brakes_within_step", "current_limits", "find_breaches", "copy_motion",
-        "regenerates",
+        "regenerates", "gives_or_stores", "has_store", "begin_own_store",
     },
 }  # fmt: skip
 """Functions of each room that compute no equation of their own: they choose, keep or ask."""

@@ -92,6 +92,90 @@ def trains(draw: Draw, nominal_kv: float, feeds_back: bool) -> Document:
     return train
 
 
+@st.composite
+def stores(draw: Draw, place: Document, nominal_kv: float, lowest_kv: float) -> Document:
+    """A store of energy at a place, small ones too, which a step makes full or empty."""
+    found: Document = {**place, **draw(energy_stores())}
+    return found | {
+        "charges_above_kv": nominal_kv * draw(numbers(1.205, 1.245)),
+        "discharges_below_kv": lowest_kv * draw(numbers(0.85, 0.999)),
+        "charge_kw_per_v": draw(numbers(0.0, 200.0)),
+        "discharge_kw_per_v": draw(numbers(0.0, 200.0)),
+    }
+
+
+@st.composite
+def energy_stores(draw: Draw) -> Document:
+    """What every store says of itself."""
+    kind = draw(st.sampled_from(["supercapacitor", "battery", "flywheel"]))
+    found: Document = {"kind": kind, "power_kw": draw(numbers(1.0, 4_000.0))}
+    found["soc_start"] = draw(numbers(0.0, 1.0))
+    if kind == "supercapacitor":
+        full_v = draw(numbers(100.0, 1_000.0))
+        found |= {
+            "capacitance_f": draw(numbers(1.0, 300.0)),
+            "max_voltage_v": full_v,
+            "min_voltage_v": full_v * draw(numbers(0.2, 0.8)),
+            "max_current_a": draw(numbers(100.0, 4_000.0)),
+        }
+    else:
+        found["capacity_kwh"] = draw(numbers(0.05, 50.0))
+        found["standby_kw"] = draw(st.sampled_from([0.0, 2.0, 200.0]))
+    if draw(st.booleans()):
+        found["efficiency"] = draw(numbers(0.5, 1.0))
+    else:
+        found["charge_efficiency"] = draw(numbers(0.5, 1.0))
+        found["discharge_efficiency"] = draw(numbers(0.5, 1.0))
+    return found
+
+
+@st.composite
+def on_board(draw: Draw) -> Document:
+    """A store of a train, which may help beyond a cap, and charge at stops."""
+    found: Document = draw(energy_stores())
+    if draw(st.booleans()):
+        found["line_power_cap_kw"] = draw(numbers(50.0, 3_000.0))
+    if draw(st.booleans()):
+        found["standing_current_a"] = draw(numbers(10.0, 1_000.0))
+    return found
+
+
+def _without_contact_line(draw: Draw, document: Document) -> None:
+    """Take the contact line away along a part of a line, perhaps where it is fed: then it is a fault."""
+    lines = {"": document["line"]} if "line" in document else document["lines"]
+    name = draw(st.sampled_from(list(lines)))
+    line = lines[name]
+    length_km = min(line["length_km"] / 4.0, draw(st.sampled_from([0.2, 0.8, 3.0])))
+    begin_km = line.get("begins_at_km", 0.0)
+    from_km = draw(numbers(begin_km, begin_km + line["length_km"] - length_km))
+    stretch = {"from_km": from_km, "to_km": from_km + length_km}
+    document["supply"]["without_contact_line"] = [stretch | ({"line": name} if name else {})]
+
+
+def _unloaded_kv(kind: Document) -> float:
+    """Voltage of a type of rectifiers without load, or a little less. [kV]"""
+    if "controlled" in kind:
+        return float(kind["controlled"]["voltage_kv"])
+    if "curve" in kind:
+        return float(kind["curve"][0]["voltage_kv"])
+    transformer_kv = 1.35 * kind.get("transformer", {}).get("secondary_v", 0.0) / 1e3
+    return float(kind.get("no_load_voltage_kv", transformer_kv))
+
+
+def _add_stores(draw: Draw, supply: Document, nominal_kv: float) -> None:
+    """Give a supply stores of energy, at its stations or beside them, or none."""
+    stations = supply["rectifier_stations"]
+    lowest_kv = min(_unloaded_kv(station["type"]) for station in stations)
+    chosen = draw(st.lists(st.sampled_from(range(len(stations))), max_size=2, unique=True))
+    placed = []
+    for k in chosen:
+        place = {key: stations[k][key] for key in ("line", "position_km") if key in stations[k]}
+        place["name"] = f"store {k}"
+        placed.append(draw(stores(place, nominal_kv, lowest_kv)))
+    if placed:
+        supply["storage"] = placed
+
+
 def into_direct_current(draw: Draw, document: Document) -> None:
     """Give a scenario the supply and the trains of a railway of direct current."""
     supply = document["supply"]
@@ -113,6 +197,7 @@ def into_direct_current(draw: Draw, document: Document) -> None:
         }
         for station in former
     ]
+    _add_stores(draw, supply, nominal_kv)
     for stretch in supply.get("contact_lines", ()):
         if "catenary" in stretch:
             stretch["catenary"] = dict(catenary)
@@ -122,5 +207,9 @@ def into_direct_current(draw: Draw, document: Document) -> None:
     for name in document["trains"]:
         feeds_back = continuous and draw(st.booleans())
         document["trains"][name] = draw(trains(nominal_kv, feeds_back))
+        if continuous and draw(st.integers(0, 2)) == 2:
+            document["trains"][name]["storage"] = draw(on_board())
         if not continuous and isinstance(document["trains"][name]["max_retardation_m_s2"], dict):
             document["trains"][name]["max_retardation_m_s2"] = 0.7
+    if continuous and "neutral_sections" not in supply and draw(st.integers(0, 4)) == 4:
+        _without_contact_line(draw, document)

@@ -41,7 +41,7 @@ FINEST = 2e-4
 
 MOST_TRAINS = 200
 """On more, another load flow's paths are not followed: its matrices are dense.  Nor does it know nodes
-without a source, or that follow others, or conductors beside the contact line."""
+without a source, or that follow others, conductors beside the contact line, or stores of energy."""
 
 
 class Replay:
@@ -143,7 +143,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
     standing = state.flow.standing[: state.flow.sections.end[-1]]
     if standing.size > MOST_TRAINS or (model.network.source_of_node <= UNFED).any():
         return math.nan
-    if model.network.bundles != NO_BUNDLES:
+    if model.network.bundles != NO_BUNDLES or model.network.stores.size:
         return math.nan
     loads = loads_of(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)

@@ -10,6 +10,7 @@ import pytest
 from tpss import Result, Scenario
 from tpss.results.passing import stand_before
 from tpss.results.places import train_tracks
+from tpss.results.stranded import feed_themselves
 from tpss.run.delays import Delays
 from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.traffic import Traffic
@@ -40,6 +41,10 @@ def keep_the_rules(result: Result) -> None:
         Journey(result, str(train)).judge()
 
 
+STATES = ("position", "route_position", "speed", "train_stored_energy")
+"""Variables of trains that hold at instants."""
+
+
 def judge_values(result: Result) -> None:
     """Finite values where there is a train, a node, a station; none where there is no train."""
     data = result.dataset
@@ -52,7 +57,7 @@ def judge_values(result: Result) -> None:
     for name in set(data.data_vars) - codes:
         values = data[name].to_numpy()[:steps]
         if data[name].dims == ("time", "train"):
-            expected = present if name in ("position", "route_position", "speed") else driven
+            expected = present if name in STATES else driven
             if name == "motor_current":
                 expected = driven & knows_its_current(result)
             assert (np.isfinite(values) == expected).all(), f"{name} is not where the trains are"
@@ -212,7 +217,7 @@ def judge_converters(result: Result) -> None:
 def judge_outage(result: Result) -> None:
     """What is out of service feeds nothing and carries nothing, and all that is not runs."""
     data, supply, outage = result.dataset, result.scenario.supply, result.scenario.outage
-    unfed = data.pantograph_voltage.to_numpy()[:-1] == 0.0
+    unfed = (data.pantograph_voltage.to_numpy()[:-1] == 0.0) & ~feed_themselves(data)
     for name in ("tractive_force", "active_power", "reactive_power", "motor_power"):
         assert (data[name].to_numpy()[:-1][unfed] == 0.0).all(), f"{name} without power"
     fed = np.hypot(data.station_active_power, data.station_reactive_power).to_numpy()[:-1]

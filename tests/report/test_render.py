@@ -28,14 +28,18 @@ GRID = {
 
 @pytest.fixture(scope="module")
 def described():
-    """The short line with converters that say what they lose, and a catenary with a rating."""
+    """The short line with converters that say what they lose, a rated catenary, trains with stores."""
     rating = {"continuous_a": 467.0, "time_constant_min": 4.7}
+    store = {"kind": "battery", "capacity_kwh": 50.0, "power_kw": 500.0, "efficiency": 0.9}
     return run(
         {
             "traffic.0.headway_min": 10.0,
             "supply.converter_stations.*.type": "Q48/Q49 with losses (estimate)",
             "supply.catenary": {"r_ohm_per_km": 0.21, "x_ohm_per_km": 0.2, "rating": rating},
             "supply.transformer_stations": [GRID],
+            "trains.freight.storage": store,
+            "simulation.motion": None,
+            "simulation.braking": None,
         }
     )
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tpss
+from tpss.results.stranded import stranded_trains
 
 from conftest import EXAMPLE_SCENARIOS, EXAMPLES
 
@@ -127,12 +128,27 @@ def test_freight_over_a_hill_at_3_kv_needs_the_station_at_its_summit():
     assert burnt[1] < 0.7 * burnt[0]
 
 
+def test_trams_run_through_the_old_town_from_their_stores():
+    """Where there is no contact line they draw nothing; no store falls below a third, nobody strands."""
+    result = tpss.simulate(tpss.load_scenario(EXAMPLES / "tram_750v.toml"))
+    assert (result.status, result.audit["passed"]) == ("finished", True)
+    assert result.standards.violations.empty
+    data = result.dataset.isel(time=slice(None, -1))
+    bare = ((data.position > 2_570.0) & (data.position < 3_230.0)).to_numpy()
+    assert (data.active_power.to_numpy()[bare] == 0.0).all()
+    assert data.tractive_force.to_numpy()[bare].max() > 50e3
+    assert result.storage.lowest_soc.min() > 0.33
+    assert not stranded_trains(result.dataset)
+    assert result.trips.trip_min.notna().sum() >= 9
+
+
 def test_every_example_is_one_of_the_above():
     """`thesis_original` has tests of its own, and lines of 320 km as those of plans."""
     names = {file.stem for file in EXAMPLE_SCENARIOS}
     others = {
         "both_ways", "emu_25kv", "freight_3kv", "hs_2x25kv", "line_320km", "line_320km_losses",
         "metro_750v", "network", "neutral_section_25kv", "overloaded", "own_trains", "thesis_original",
+        "tram_750v",
     }  # fmt: skip
     assert names == {*REFERENCE, *others}
 

@@ -12,6 +12,8 @@ import numpy.typing as npt
 from tpss.audit.balances import ALLOWED_BALANCE, Scratch, new_scratch
 from tpss.audit.motion import audit_train
 from tpss.audit.network import audit_network, audit_sources, draws_power
+from tpss.audit.on_board import audit_own_store
+from tpss.audit.stores import audit_stores
 from tpss.kernel import inlined, kernel
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.network import TOLERANCE
@@ -315,10 +317,15 @@ def _audit(
         duration = h if step + 1 < steps else last_step_s
         audit_network(step, trains, model, recording, scratch)
         audit_sources(step, duration, model, recording, scratch)
+        if model.network.stores.size > 0:
+            audit_stores(step, duration, model.network, recording.stores, scratch, figures)
         figures.lost_j += recording.network_losses[step] * duration
         for i in range(scratch.order.size):
             if draws_power(recording.train_state[step, i]):
                 audit_train(step, i, duration, trains[i], model, recording, figures)
+                if recording.on_board.shape[0] > 0:
+                    kind = model.types[trains[i].train_type]
+                    audit_own_store(step, i, duration, kind, recording, scratch.stored[0], figures)
 
 
 @inlined
@@ -326,7 +333,7 @@ def _conclude_audit(steps: int, model: Model, scratch: Scratch) -> None:
     """Find the balances of a whole recording."""
     figures, h = scratch.balances[0], model.options.step_s
     least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)
-    gap = abs(figures.fed_j - figures.drawn_j - figures.lost_j)
+    gap = abs(figures.fed_j - figures.drawn_j - figures.stored_j - figures.lost_j)
     figures.network_balance = gap / max(abs(figures.fed_j), least)
     gap = abs(figures.work_j - figures.moving_j - figures.kinetic_j)
     turned_over = figures.work_j + figures.fallen_j + figures.slowed_j

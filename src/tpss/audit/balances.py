@@ -16,6 +16,7 @@ from tpss.powerflow.groups import NO_GROUPS
 from tpss.powerflow.network import Network
 from tpss.record import Record, Records
 from tpss.step.recording import Recording
+from tpss.storage.store import Stored
 
 ALLOWED_BALANCE = 1e-9
 """Energy that may be missing from the network's balance, relative to what the stations feed. [1]"""
@@ -29,7 +30,7 @@ class Balances(Record):
     converter_residual: float
     """Largest residual of a source's law. [p.u.]"""
     network_balance: float
-    """Energy of the stations less that of trains and losses, relative to the first. [1]"""
+    """Energy of the stations less that of trains, stores and losses, relative to the first. [1]"""
     traction_balance: float
     """Work of the motors less where it went, relative. [1]"""
     force_balance: float
@@ -52,6 +53,8 @@ class Balances(Record):
     """Work of gravity downhill. [J]"""
     slowed_j: float
     """Loss of kinetic energy where there is one. [J]"""
+    stored_j: float
+    """Energy that stores at the line take. [J]"""
 
 
 class Conductor(Record):
@@ -139,6 +142,8 @@ class Scratch(NamedTuple):
     """Its place on the line. [m]"""
     groups: GroupScratch
     bundles: BundleScratch
+    stored: Records[Stored]
+    """One record."""
 
 
 def new_scratch(network: Network, trains: int) -> Scratch:
@@ -153,6 +158,7 @@ def new_scratch(network: Network, trains: int) -> Scratch:
         place_m=np.zeros(trains),
         groups=_group_scratch(network, trains),
         bundles=_bundle_scratch(network),
+        stored=Stored.blank(1),
     )
 
 

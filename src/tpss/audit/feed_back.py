@@ -5,6 +5,7 @@ from tpss.kernel import inlined
 from tpss.numerics.curve import Points, extremes
 from tpss.numerics.pairs import magnitude
 from tpss.step.recording import Recording
+from tpss.vehicle.on_board import has_store
 from tpss.vehicle.regeneration import taken_share
 from tpss.vehicle.train_type import TrainType
 
@@ -35,7 +36,9 @@ def audit_feed_back(
     low, high = extremes(own.efficiency, points)
     off = offered - min(max(offered, low * electric), high * electric)
     figures.power_mismatch_va = worst(figures.power_mismatch_va, off)
-    # 3. What the line takes of it.
+    # 3. What the line takes of it; beside a store that is a matter of `audit.on_board`.
+    if has_store(kind):
+        return
     voltage = magnitude(complex(braked.pantograph_real, braked.pantograph_imag))
     share, slope = taken_share(voltage, own)
     off = abs(row.regenerated_power - share * offered) + slope * offered * CLOSED_V

@@ -3,7 +3,7 @@
 from tpss.audit.balances import Balances, worst
 from tpss.audit.feed_back import audit_feed_back
 from tpss.driving.data import Braking, Driver, MotionModel
-from tpss.kernel import at, inlined
+from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import curve_at, extremes
 from tpss.numerics.staircase import index_at
 from tpss.physics.constants import GRAVITY_M_S2
@@ -52,8 +52,12 @@ def _audit_continuous(
     if recording.without_power_s.shape[0] > 0:
         present_s -= recording.without_power_s[step, i]
     fed = before.pantograph_real != 0.0 or before.pantograph_imag != 0.0
+    stored_j = 0.0
+    if recording.on_board.shape[0] > 0:
+        stored_j = recording.on_board[step, i].train_storage_power * h
+        fed = fed or feeds_itself(step, i, recording)
     auxiliary_w = kind.auxiliary_power_w if fed else 0.0
-    for_motors_j = before.active_power * h - auxiliary_w * present_s
+    for_motors_j = before.active_power * h - stored_j - auxiliary_w * present_s
     if recording.regeneration.shape[0] > 0:
         for_motors_j += recording.regeneration[step, i].regenerated_power * h
         audit_feed_back(step, i, kind, model.points, recording, figures)
@@ -78,6 +82,15 @@ def _audit_continuous(
     over = after.speed - min(limits.value[row][j - 1], kind.highest_speed_m_s)
     if before.speed <= after.speed:
         figures.motion_error_m = worst(figures.motion_error_m, max(0.0, over) * h)
+
+
+@kernel
+def feeds_itself(step: int, i: int, recording: Recording) -> bool:
+    """Whether a train's store gives it power, or takes what its brakes give."""
+    gives = recording.on_board[step, i].train_storage_power != 0.0
+    if recording.regeneration.shape[0] > 0:
+        return gives or recording.regeneration[step, i].regenerated_power > 0.0
+    return gives
 
 
 @inlined

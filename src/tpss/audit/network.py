@@ -14,6 +14,7 @@ from tpss.audit.bundles import audit_bundles, pass_bundled
 from tpss.audit.coupled import audit_groups, pass_trains
 from tpss.audit.links import audit_links
 from tpss.audit.sharing import drop_by_others
+from tpss.audit.stores import join_stores
 from tpss.kernel import inlined
 from tpss.numerics.pairs import magnitude, scaled, squared
 from tpss.powerflow.bundle_points import is_bundled
@@ -72,6 +73,8 @@ def audit_network(
             k = _audit_section(step, s, k, count, model, recording, scratch)
     audit_groups(network.groups, step, count, model, recording, scratch)
     audit_bundles(network.bundles, step, model, recording, scratch)
+    if network.stores.size > 0:
+        join_stores(step, network, recording.stores, scratch, figures)
     for n in range(scratch.node_v.size):
         power = scratch.node_v[n] * scratch.leaving_a[n].conjugate()
         s = network.source_of_node[n]

@@ -49,7 +49,7 @@ class Audit:
     converter_residual : float
         Largest residual of a station's law. [p.u.]
     network_balance : float
-        Energy of the stations less that of the trains and losses, relative to the first. [1]
+        Energy of the stations less that of trains, stores and losses, relative to the first. [1]
     traction_balance : float
         Work of the motors less resistance, climb, kinetic energy and brakes, relative. [1]
     force_balance : float

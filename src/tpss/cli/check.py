@@ -142,6 +142,11 @@ def _supply(supply: Supply) -> Iterator[tuple[str, str]]:
         places = ", ".join(kilometres(km) for km in each.positions_km)
         where = on_line(each.line or "", f"{places} km")
         yield "autotransf.", f"{where}: {each.rated_mva:g} MVA, {each.short_circuit_percent:g} %"
+    for store in supply.storage:
+        place = on_line(store.line or "", f"{kilometres(store.position_km)} km")
+        yield "storage", f"{store.name} {place}: {store.in_words}"
+    for stretch in supply.without_contact_line:
+        yield "no line", stretch.in_words
     if supply.tracks_tied is not None:
         yield "tracks tied", supply.tracks_tied
     for kind, switches in (("posts", supply.posts), ("breaks", supply.section_breaks)):

@@ -11,7 +11,7 @@ from tpss.kernel import plain
 from tpss.model.effort_curve import adhesion
 from tpss.model.neutral import strands
 from tpss.model.routes import Route, index_of, routes_of, running_trains
-from tpss.model.unfed import unfed_in_words
+from tpss.model.unfed import bare_in_words, unfed_in_words
 from tpss.physics.running_resistance import gradient_force
 from tpss.scenario import Scenario
 from tpss.scenario.fields import LINE
@@ -41,7 +41,7 @@ def notes(scenario: Scenario) -> list[str]:
             for note in (*_profile(*each), *_dead_stretches(*each))
         ),
         *_supply(scenario),
-        *filter(None, [unfed_in_words(scenario)]),
+        *filter(None, [unfed_in_words(scenario), bare_in_words(scenario)]),
         *_voltage_limits(scenario),
         *_trains(scenario),
         *(note for i, entry in enumerate(scenario.traffic) for note in _times(scenario, i, entry)),

@@ -18,6 +18,7 @@ from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import THERMAL, Result
 from tpss.results.step_words import step_lines
 from tpss.results.stops import punctuality
+from tpss.results.storage import in_words as storage_in_words
 from tpss.results.tables import train_steps
 from tpss.results.thermal.words import thermal_in_words
 from tpss.results.waits import waits_in_words
@@ -46,6 +47,8 @@ def print_result(result: Result, console: Console) -> None:
     if len(result.autotransformers):
         _print_autotransformers(result.autotransformers, console)
     _print_grid(result, console)
+    if len(result.storage):
+        _print_storage(result.storage, console)
     for line in key_figures(result):
         say(console, line)
     print_violations(result, console)
@@ -109,6 +112,21 @@ _LOSS_COLUMNS = (
     Column("peak_from_grid_mw", "peak", "MW", 2),
 )
 
+_STORAGE_COLUMNS = (
+    Column("line", "on", "", 0),
+    Column("position_km", "at", "km", 1),
+    Column("capacity_kwh", "holds", "kWh", 2),
+    Column("start_kwh", "start", "kWh", 2),
+    Column("end_kwh", "end", "kWh", 2),
+    Column("charged_kwh", "took", "kWh", 2),
+    Column("discharged_kwh", "gave", "kWh", 2),
+    Column("losses_kwh", "lost", "kWh", 2),
+    Column("peak_charge_kw", "peak in", "kW", 0),
+    Column("peak_discharge_kw", "peak out", "kW", 0),
+    Column("lowest_soc", "lowest", "%", 0, 100.0),
+    Column("highest_soc", "highest", "%", 0, 100.0),
+)
+
 _TRANSFORMER_COLUMNS = (
     Column("from_grid_mwh", "taken", "MWh", 3),
     Column("to_grid_mwh", "given", "MWh", 3),
@@ -158,6 +176,14 @@ def _print_losses(found: pd.DataFrame, console: Console) -> None:
     occurs = [each for each in _LOSS_COLUMNS if each.key not in _RARE or found[each.key].any()]
     title = "50 Hz side of converter stations"
     print_table(title, "station", occurs, named_rows(found, "station"), console)
+
+
+def _print_storage(found: pd.DataFrame, console: Console) -> None:
+    """Print what stores of energy did, of many on board the first ones."""
+    rows = named_rows(found.head(MOST_TRAINS), "store")
+    print_table("Stores of energy", "store", _STORAGE_COLUMNS, rows, console)
+    if len(found) > MOST_TRAINS:
+        say(console, f"... and {len(found) - MOST_TRAINS} more stores, in the saved result")
 
 
 def _print_autotransformers(found: pd.DataFrame, console: Console) -> None:
@@ -230,6 +256,7 @@ def key_figures(result: Result) -> list[str]:
     )
     if (totals := fed_back(result.dataset, result.scenario)) is not None:
         lines.append(in_words(totals))
+    lines += storage_in_words(result.storage)
     if (lost := summary.get("converter_losses")) is not None:
         lines.append(losses_in_words(lost))
     lowest = summary["lowest_voltage"]

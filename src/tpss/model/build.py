@@ -18,6 +18,7 @@ from tpss.model.outages import layout_of, service_of
 from tpss.model.phases import demand_one_angle
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
+from tpss.model.stores import demand_thresholds_in_order
 from tpss.model.supply import SupplyPlan
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
@@ -49,11 +50,17 @@ class Layout:
     legs: Records[Leg]
     most_tracks: int
     """Number of tracks where a line has most."""
+    stores: tuple[str, ...] = ()
+    """Stores of energy at the line."""
+    store_m: tuple[float, ...] = ()
+    store_line: tuple[int, ...] = ()
+    """Index of the line of each."""
 
 
 def build_model(scenario: Scenario) -> tuple[Model, Layout]:
     """Model of a scenario in SI units, coupled and without a studied train, and its layout."""
     demand_room_to_feed_back(scenario)
+    demand_thresholds_in_order(scenario)
     lines = scenario.lines_by_name
     plan = layout_of(scenario, scenario.outage).plan
     demand_one_angle(scenario, plan)
@@ -88,6 +95,9 @@ def build_model(scenario: Scenario) -> tuple[Model, Layout]:
         routes=tuple(routes),
         legs=model.legs,
         most_tracks=max(line.most_tracks for line in lines.values()),
+        stores=tuple(store.name for store in scenario.supply.storage),
+        store_m=tuple(si(store, "position_km") for store in scenario.supply.storage),
+        store_line=tuple(list(lines).index(scenario.line_of(s)) for s in scenario.supply.storage),
     )
 
 

@@ -18,10 +18,14 @@ from tpss.powerflow.network import SectionPart
 from tpss.scenario.line import DECIMALS
 from tpss.scenario.outages import OutSection
 from tpss.scenario.supply import Catenary, Conductors, Post, Supply
+from tpss.scenario.supply.contact_line import WithoutContactLine
 from tpss.units import kilometres, si
 
 OUT = ", out"
 """Ends the words of nodes of sections that are out."""
+
+BARE = ", without contact line"
+"""Ends the words of nodes of stretches that have none."""
 
 
 class LineLayout(NamedTuple):
@@ -185,14 +189,15 @@ def lay_contact_line(
         words, parted = _words_at(km, sides, marks)
         tied = len({each for side in words for each in side}) == 1
         guarded: list[tuple[str, str]] = []
-        if marks.out or marks.guarded:
+        if marks.out or marks.guarded or marks.bare:
             apart = [[marks.words_of(each, k) for k in range(each.conductors)] for each in sides]
             words, more = set_apart(words, apart, km in feeding_km)
             parted += [pair for pair in more if pair[0].endswith(OUT)]
-            guarded = [(other, own) for own, other in more if not own.endswith(OUT)]
+            guarded = [(other, own) for own, other in more if not own.endswith((OUT, BARE))]
         # In the order of the words: what is drawn along the line goes from one to the next.
         known = [each for side in words for each in side]
         known += [each for pair in (*parted, *guarded) for each in pair]
+        known += [""] * tied
         named = {each: make_node(km, each) for each in dict.fromkeys(known)}
         if tied:
             node[km] = named[""]
@@ -224,11 +229,15 @@ class _Marks(NamedTuple):
     """Sections that are out."""
     guarded: bool
     """Whether pieces may trip."""
+    bare: list[WithoutContactLine]
+    """Stretches without contact line."""
 
     def words_of(self, piece: "_Piece", conductor: int) -> str:
         """What tells the nodes of a conductor of a piece that is out, or may trip; otherwise nothing."""
         stretch = piece.stretch
         track = None if stretch.conductors < stretch.tracks else conductor + 1
+        if any(s.from_km <= piece.begin_km and piece.end_km <= s.to_km for s in self.bare):
+            return BARE
         if any(each.covers(piece.begin_km, piece.end_km, track) for each in self.out):
             return OUT
         if not (self.guarded and bears_overloads(stretch.catenary)):
@@ -260,9 +269,13 @@ def _marks_of(
     out = [each for each in parting.sections if line.holds(each.line)]
     ends_km = {km for each in stretches for km in (each.begin_km, each.end_km)}
     ends_km |= {km for each in out for km in each.ends_km(line.begin_km, line.end_km)}
+    bare = [each for each in supply.without_contact_line if line.holds(each.line)]
+    ends_km |= {km for each in bare for km in (each.from_km, each.to_km)}
     points_km = sorted({*ends_km, *ties_km, *posts_km, *breaks})
     points_km = sorted({*points_km, *nodes_between_km(points_km, supply.conductors)})
-    return _Marks(points_km, ties_km, posts_km, breaks, parting.switches, out, parting.guarded)
+    return _Marks(
+        points_km, ties_km, posts_km, breaks, parting.switches, out, parting.guarded, bare
+    )
 
 
 def nodes_between_km(points_km: Sequence[float], conductors: Conductors | None) -> list[float]:

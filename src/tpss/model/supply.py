@@ -29,6 +29,7 @@ from tpss.model.parting import (
 )
 from tpss.model.shared_grids import mutual_impedances_ohm
 from tpss.model.sources import build_sources
+from tpss.model.stores import build_stores
 from tpss.powerflow.bundles import BundlePart, edges_of_bundles
 from tpss.powerflow.groups import edges_within
 from tpss.powerflow.in_service import mark_unfed
@@ -68,6 +69,8 @@ class SupplyPlan:
     """Sections side by side that have an impedance in common."""
     branch_level: list[float] = field(default_factory=list)
     sources: list[int] = field(default_factory=list)
+    stores: list[int] = field(default_factory=list)
+    """Nodes of the stores of energy."""
     runs: list[list[Run]] = field(default_factory=list)
     """Of each line."""
     feeding: list[dict[float, int]] = field(default_factory=list)
@@ -204,6 +207,7 @@ def build_supply(
     network = assemble(
         *parts, room=plan.room(), groups=plan.coupled, links=plan.links, bundles=plan.bundles,
         flat_pu=plan.flat_pu, inner_ohm=plan.inner_ohm, mutual_ohm=mutual_impedances_ohm(supply),
+        stores=build_stores(plan.stores, supply.storage),
     )  # fmt: skip
     return mark_unfed(network), plan
 
@@ -246,6 +250,7 @@ def joined_network(
         flat_pu=plan.flat_pu,
         inner_ohm=plan.inner_ohm,
         mutual_ohm=mutual_impedances_ohm(supply),
+        stores=build_stores([node[n] for n in plan.stores], supply.storage),
     )
     return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
 
@@ -303,6 +308,7 @@ def plan_supply(
     ]
     _join_busbars(plan, lines, feedings, feeding)
     node_of: dict[str, int] = {}
+    store_node: dict[str, int] = {}
     for line, here, node in zip(lines, fed, feeding, strict=True):
         for km, station in sorted(here.stations.items()):
             connection = _connection_impedance(catenary_at(km, line, supply))
@@ -312,8 +318,11 @@ def plan_supply(
         if here.has_high_voltage:
             _lay_high_voltage_line(plan, line, here, node, supply)
         node_of |= {station.name: node[km] for km, station in here.stations.items()}
+        own = (each for each in supply.storage if line.holds(each.line))
+        store_node |= {each.name: node[each.position_km] for each in own}
     plan.sources = [node_of[station.name] for station in supply.stations]
     add_conductors(plan, supply, lines)
+    plan.stores = [store_node[each.name] for each in supply.storage]
     return plan
 
 
@@ -343,7 +352,7 @@ class _OnLine(NamedTuple):
     junctions: dict[float, str]
     """Places where it is tied to other lines, and the names of the stations there."""
     feeding_km: set[float]
-    """Places where it is fed or tied to others. [km]"""
+    """Places where it is fed, joined to a store, or tied to others. [km]"""
 
     @classmethod
     def of(cls, supply: Supply, line: LineLayout, feedings: Sequence[Feeding]) -> "_OnLine":
@@ -358,13 +367,14 @@ class _OnLine(NamedTuple):
             if (line.name in busbars[name] if name in busbars else supply.junctions_tied)
         }
         autotransformers = (km for km, _ in autotransformers_of(supply, line))
+        stores_km = {each.position_km for each in supply.storage if line.holds(each.line)}
         fed_km = {each.places_km[line.name] for each in feedings if line.name in each.places_km}
         return cls(
             stations={s.position_km: s for s in supply.stations if line.holds(s.line)},
             transformers_km=transformers,
             has_high_voltage=beside,
             junctions=junctions,
-            feeding_km={*fed_km, *transformers, *junctions, *autotransformers},
+            feeding_km={*fed_km, *transformers, *junctions, *autotransformers, *stores_km},
         )
 
 

@@ -11,6 +11,7 @@ from tpss.kernel import plain
 from tpss.model.curves import CurveBook, interpolate
 from tpss.model.profiles import row_seen, rows_seen
 from tpss.model.routes import Running
+from tpss.model.stores import store_of
 from tpss.numerics.curve import Curve as CurvePlace
 from tpss.numerics.curve import Points
 from tpss.numerics.neural_network import FeedForwardNetwork, build_network
@@ -23,6 +24,7 @@ from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationB
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.standards import VoltageLimits, limits_of_system
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, system_named
+from tpss.storage.on_board import OnBoard
 from tpss.units import si, si_list
 from tpss.vehicle.braking import lay_out_bands
 from tpss.vehicle.effort.kinds import EffortKind, TractiveEffort
@@ -103,6 +105,7 @@ def _train_type(train: Train, profile: int, book: CurveBook, limits: VoltageLimi
         regeneration=_regeneration(train, book, limits),
         pulls_at_any_voltage=_pulls_at_any_voltage(train),
         spared=_spared_motors(train),
+        on_board=_on_board(train),
         **_electric(train, book),
     )
 
@@ -204,6 +207,19 @@ def _spared_motors(train: Train) -> Any:
         short_time_load=load,
         time_constant_s=time_to_rated_s(load, si(rating, "short_time_min")),
         initial_state=si(rating, "preload_percent") ** 2,
+    )
+
+
+def _on_board(train: Train) -> Any:
+    """A row of `OnBoard`."""
+    own = train.storage
+    if own is None:
+        return OnBoard.row()
+    return OnBoard.row(
+        store=store_of(own),
+        start_j=own.soc_start * own.capacity_j,
+        line_cap_w=_si_or(own, "line_power_cap_kw", math.inf),
+        standing_current_a=_si_or(own, "standing_current_a", 0.0),
     )
 
 

@@ -32,7 +32,10 @@ class UnfedStretch(NamedTuple):
 
 
 def unfed_stretches(scenario: Scenario) -> list[UnfedStretch]:
-    """Stretches that are without a feeding station at some time of a run, in the order of the lines."""
+    """Stretches that are without a feeding station at some time of a run, in the order of the lines.
+
+    Those that are said to have no contact line are left out.
+    """
     plan = layout_of(scenario, scenario.outage).plan
     service = service_of(scenario)
     networks = [service.network, *(each.network for each in service.switchings)]
@@ -40,7 +43,15 @@ def unfed_stretches(scenario: Scenario) -> list[UnfedStretch]:
     names = list(scenario.lines_by_name)
     found: list[UnfedStretch] = []
     for name, runs in zip(names, plan.runs, strict=True):
-        spans = (span for run in runs for span in _spans(run, plan, dark))
+        bare = [
+            each for each in scenario.supply.without_contact_line if scenario.line_of(each) == name
+        ]
+        spans = (
+            span
+            for run in runs
+            for span in _spans(run, plan, dark)
+            if not any(each.from_km <= span[0] and span[1] <= each.to_km for each in bare)
+        )
         shown = name if len(names) > 1 else ""
         found += _joined(
             UnfedStretch(shown, *span) for span in sorted(spans, key=lambda x: x[::-1])
@@ -74,6 +85,20 @@ def _joined(stretches: Iterator[UnfedStretch]) -> list[UnfedStretch]:
             each = joined.pop()._replace(to_km=each.to_km)
         joined.append(each)
     return sorted(joined, key=lambda each: (each.from_km, each.track))
+
+
+def bare_in_words(scenario: Scenario) -> str:
+    """A sentence on trains without a store that run where there is no contact line, if there are any."""
+    stretches = scenario.supply.without_contact_line
+    running = dict.fromkeys(entry.train for entry in scenario.traffic)
+    without = [name for name in running if scenario.trains[name].storage is None]
+    if not stretches or not without:
+        return ""
+    listed = "; ".join(each.in_words for each in stretches)
+    return (
+        f"there is no contact line along {listed}, and {', '.join(without)} has no store of energy: "
+        "where such trains come there, they coast and brake; give them storage"
+    )
 
 
 def unfed_in_words(scenario: Scenario) -> str:

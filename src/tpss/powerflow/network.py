@@ -48,6 +48,8 @@ from tpss.powerflow.shared_grids import (
 from tpss.powerflow.system import System, gap_weight, resolution_va
 from tpss.record import Record, Records, copy_of_records
 from tpss.sources.kinds import Source
+from tpss.storage.store import Stored
+from tpss.storage.wayside import StoreLaw
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -266,6 +268,8 @@ class Network(NamedTuple):
     """Of sections that are conductors side by side."""
     shared: SharedGrids
     """Grids of several sources."""
+    stores: Records[StoreLaw]
+    """Stores of energy at its nodes."""
 
 
 class Flow(NamedTuple):
@@ -285,6 +289,7 @@ class Flow(NamedTuple):
     """One record."""
     groups: GroupFlow
     bundles: BundleFlow
+    stores: Records[Stored]
 
 
 class Loads(NamedTuple):
@@ -364,6 +369,7 @@ def assemble(
     flat_pu: Sequence[float] = (),
     inner_ohm: Sequence[float] = (),
     mutual_ohm: Complexes | None = None,
+    stores: Records[StoreLaw] | None = None,
 ) -> Network:
     """Network from its parts.
 
@@ -386,6 +392,7 @@ def assemble(
         Of nodes and sources, where there are bundles: see `Bundles`.
     mutual_ohm : array of complex, shape (sources, sources), optional
         What sources that share a grid do to each other, see `shared_grids`. [Ω]
+    stores : records of StoreLaw, optional
     """
     ends = [(part.start_node, part.end_node) for part in sections]
     edges = ends + edges_within(groups, ends)
@@ -428,6 +435,7 @@ def assemble(
         links=linked,
         bundles=bundles_of(bundles, ends, place, np.array(flat_pu), np.array(inner_ohm)),
         shared=shared,
+        stores=StoreLaw.blank(0) if stores is None else stores,
     )
 
 
@@ -444,7 +452,9 @@ def new_flow(network: Network, n_trains: int) -> Flow:
         search=Search.blank(1),
         groups=new_group_flow(network.groups),
         bundles=new_bundle_flow(network.bundles, n_trains),
+        stores=Stored.blank(network.stores.size),
     )
+    flow.stores.energy_j[:] = network.stores["start_j"]
     flow.sources.running[:] = network.sources["installed"]
     flow.standing.train[:] = np.arange(n_trains)
     return flow

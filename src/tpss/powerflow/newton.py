@@ -75,6 +75,7 @@ from tpss.powerflow.links import leave_by_links
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
 from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
 from tpss.powerflow.sharing import balance_of_sharing, shares_its_grid
+from tpss.powerflow.stores import add_stores
 from tpss.sources.kinds import residual
 
 CLOSE = 1e-4
@@ -208,10 +209,12 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
 
 @inlined
 def begin_pass(derivatives: bool, network: Network, flow: Flow) -> None:
-    """Start the leaving currents, and the linear system, with the lumped branches."""
+    """Start the leaving currents, and the linear system, with the lumped branches and the stores."""
     _leave_by_branches(network, flow)
     if derivatives:
         _stamp_branches(network, flow)
+    if network.stores.size > 0:
+        add_stores(derivatives, network, flow)
 
 
 @inlined

@@ -237,6 +237,7 @@ def solve_on_way(
         network.links,
         network.bundles,
         network.shared,
+        network.stores,
     )
     if steps == LINKED:
         return newton_linked(scale, between, flow, loads)

@@ -203,12 +203,14 @@ def search(
 
 @inlined
 def drawn_power(flow: Flow, loads: Loads) -> float:
-    """Powers that the trains on the line draw, active and reactive ones summed without sign. [VA]"""
+    """Powers of the trains on the line and of stores, active and reactive ones without sign. [VA]"""
     drawn_va = 0.0
     for s in range(flow.sections.size):
         for k in range(flow.sections[at(s)].first, flow.sections[at(s)].end):
             demand = loads.trains[at(flow.standing[at(k)].train)].demand
             drawn_va += abs(demand.active_power_w) + abs(demand.reactive_power_var)
+    for m in range(flow.stores.size):
+        drawn_va += abs(flow.stores[at(m)].power_w)
     return drawn_va
 
 

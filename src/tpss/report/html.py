@@ -24,6 +24,7 @@ from tpss.report.drawings.network import network, rows_of
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.unbalance import unbalance
@@ -54,6 +55,7 @@ OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "losses": (losses, 260),
     "converter-losses": (converter_losses, 440),
     "unbalance": (unbalance, 760),
+    "storage": (storage, 440),
     "thermal": (thermal, 440),
 }
 """Plots of one run or several over time, by the names of their elements, and their heights. [px]"""
@@ -142,6 +144,7 @@ def report(
         *tables.of_transformer_losses(result),
         *tables.of_regeneration(result),
         *tables.of_conductors(result),
+        *tables.of_storage(result),
         *(
             [tables.of_frame("thermal", "Thermal state of equipment", result.thermal)]
             if len(result.thermal)
@@ -213,7 +216,10 @@ def _over_time(runs: Mapping[str, Result]) -> dict[str, Figure]:
     rated = {label: run for label, run in runs.items() if run.equipment.elements}
     lossy = {label: run for label, run in runs.items() if len(run.converter_losses)}
     at_grid = {label: run for label, run in runs.items() if len(run.standards.unbalance)}
-    shown = {"thermal": rated, "converter-losses": lossy, "unbalance": at_grid}
+    storing = {label: run for label, run in runs.items() if len(run.storage)}
+    shown = {
+        "thermal": rated, "converter-losses": lossy, "unbalance": at_grid, "storage": storing,
+    }  # fmt: skip
     drawn = {
         key: render(describe(own), height)
         for key, (describe, height) in OVER_TIME.items()

@@ -12,6 +12,7 @@ from tpss.results.places import LINE
 from tpss.results.regeneration import fed_back
 from tpss.results.result import Result
 from tpss.results.standards.unbalance import GRID
+from tpss.results.storage import totals
 from tpss.scenario.differences import differences
 from tpss.units import on_line
 
@@ -130,6 +131,12 @@ def of_regeneration(result: Result) -> list[Table]:
     return [of_frame("regeneration", "Braked", found)] if len(found) else []
 
 
+def of_storage(result: Result) -> list[Table]:
+    """What stores of energy took and gave, where there are any."""
+    found = result.storage
+    return [of_frame("storage", "Stores of energy", found)] if len(found) else []
+
+
 def of_figures(results: Mapping[str, Result]) -> Table:
     """Key figures of runs, one row per figure and one column per run, with differences to the first."""
     columns = [
@@ -168,6 +175,7 @@ def key_figures(result: Result) -> list[tuple[str, str, Any]]:
         ("share of losses", "%", 100.0 * lost / total if total else None),
         *_grid_side(summary.get("converter_losses")),
         *_braking(fed_back(result.dataset, result.scenario)),
+        *_stored(totals(result.storage)),
         ("lowest voltage", "kV", lowest.get("voltage_kv")),
         ("train with lowest voltage", "", lowest.get("train")),
         _place("place of lowest voltage", lowest),
@@ -218,17 +226,44 @@ BRAKED = {
     "refused_mwh": "refused by the line",
     "rheostat_mwh": "burnt in rheostats of trains",
     "own_use_mwh": "own use of trains that brake",
+    "own_storage_mwh": "taken by stores of their own",
     "fed_back_mwh": "fed back by trains",
     "used_by_others_mwh": "of it used by other trains and the line",
+    "to_stores_mwh": "of it taken by stores at the line",
     "to_grid_mwh": "of it taken back by stations",
     "burnt_in_stations_mwh": "of it burnt in resistors of stations",
 }
 """Words for where braked energy goes."""
 
+OF_STORES = ("own_storage_mwh", "to_stores_mwh")
+"""Those that are left out where nothing goes there."""
+
 
 def _braking(found: Mapping[str, float] | None) -> list[tuple[str, str, Any]]:
     """Where braked energy goes; empty without electric brakes."""
-    return [] if found is None else [(words, "MWh", found[key]) for key, words in BRAKED.items()]
+    if found is None:
+        return []
+    shown = [key for key in BRAKED if found[key] or key not in OF_STORES]
+    return [(BRAKED[key], "MWh", found[key]) for key in shown]
+
+
+def _stored(found: Mapping[str, Mapping[str, float]]) -> list[tuple[str, str, Any]]:
+    """What stores of energy took, gave, lost and held; empty without any."""
+    return [
+        (f"{words} stores {place}", "kWh", sums[key])
+        for place, sums in found.items()
+        for key, words in STORED.items()
+    ]
+
+
+STORED = {
+    "charged_kwh": "taken by",
+    "discharged_kwh": "given by",
+    "losses_kwh": "lost in",
+    "start_kwh": "at the beginning in",
+    "end_kwh": "at the end in",
+}
+"""Words for what stores of energy do, before their place."""
 
 
 def _place(name: str, found: Mapping[str, Any]) -> tuple[str, str, Any]:

@@ -35,6 +35,7 @@ TABLE_PLACES = {
     "stray_current": "stray_current",
     "autotransformers": "autotransformers",
     "transformer_losses": "transformer_losses",
+    "storage": "storage",
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
     "thermal_windows": "thermal_windows",
@@ -49,7 +50,8 @@ FIGURES = "figures"
 
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
-    "stations", "converters", "converter-losses", "unbalance", "braking", "thermal", "rails", "energy",
+    "stations", "converters", "converter-losses", "unbalance", "braking", "storage", "thermal", "rails",
+    "energy",
     "effort",
 )  # fmt: skip
 

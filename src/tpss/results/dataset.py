@@ -16,7 +16,15 @@ from tpss.results.places import WAITS_FOR, WITHOUT_POWER
 from tpss.run.run import Outcome
 from tpss.run.services import ScheduledTrain
 from tpss.step.model import Model
-from tpss.step.recorded import LINKED, RECORDED, REGENERATED, RETURNED, Recorded
+from tpss.step.recorded import (
+    LINKED,
+    ON_BOARD,
+    RECORDED,
+    REGENERATED,
+    RETURNED,
+    STORED,
+    Recorded,
+)
 from tpss.step.recording import ROUNDING
 from tpss.step.state import Floats, TrainState
 from tpss.vehicle.train import Phase
@@ -59,6 +67,18 @@ def build_dataset(outcome: Outcome, model: Model, layout: Layout) -> xr.Dataset:
         variables |= {
             each.name: xr.Variable(each.dimensions, values, described(each))
             for each, values in zip(RETURNED, polar, strict=True)
+        }
+    if outcome.recording.stores.size:
+        rows = np.asarray(outcome.recording.stores)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
+            for each in STORED
+        }
+    if outcome.recording.on_board.size:
+        rows = np.asarray(outcome.recording.on_board)
+        variables |= {
+            each.name: xr.Variable(each.dimensions, rows[each.name], described(each))
+            for each in ON_BOARD
         }
     if (off_s := outcome.recording.without_power_s).size:
         words = {"units": "s", "long_name": "time with the power off, because of neutral sections"}
@@ -230,9 +250,17 @@ def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, ob
         "link": ("link", plan.link_names, of("", "transformer between several nodes")),
         "link_kind": ("link", plan.link_kinds, of("", "what it is")),
     }
+    stores = {
+        "store": ("store", list(layout.stores), of("", "store of energy at the line")),
+        "store_position": ("store", np.array(layout.store_m), of("m", "position")),
+    }
+    if len(layout.lines) > 1:
+        words = of("1", "index of its line")
+        stores["store_line"] = ("store", np.array(layout.store_line), words)
     return {
         **(lines if len(layout.lines) > 1 else {}),
         **(links if plan.links else {}),
+        **(stores if layout.stores else {}),
         "time": ("time", outcome.instants_s, of("s", "time from the start")),
         "train": ("train", [train.name for train in trains], of("", "train")),
         "service": ("train", [train.service for train in trains], of("", "service of the train")),

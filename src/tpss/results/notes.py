@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tpss.model.relays import station_relays
-from tpss.model.unfed import unfed_in_words
+from tpss.model.unfed import bare_in_words, unfed_in_words
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.results.explain import warnings
 from tpss.results.extrapolation import EFFORT, extrapolations
@@ -15,6 +15,7 @@ from tpss.results.places import line_names, lines_of, train_lines
 from tpss.results.result import Result
 from tpss.results.standards.windows import Floats, step_values
 from tpss.results.step_words import step_warnings
+from tpss.results.storage import storage_notes
 from tpss.results.stranded import stranded_trains
 from tpss.results.tables import J_PER_MWH, step_s
 from tpss.units import kilometres, on_line
@@ -59,6 +60,7 @@ def notes(result: Result) -> list[str]:
         *_wide_angles(result),
         *_stranded(result),
         *_current_limits(result),
+        *storage_notes(result.dataset, result.scenario),
         *_overloads(result),
         *_circulation(result),
         *extrapolations(result),
@@ -97,9 +99,9 @@ def _outage(result: Result) -> Iterator[str]:
 
 def _unfed(result: Result) -> Iterator[str]:
     """Stretches of contact line without a source."""
-    words = unfed_in_words(result.scenario)
-    if words:
-        yield words
+    for words in (unfed_in_words(result.scenario), bare_in_words(result.scenario)):
+        if words:
+            yield words
 
 
 def _wide_angles(result: Result) -> Iterator[str]:

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.results.grid_side import StationSide, powers_of
-from tpss.results.regeneration import RECORDED_POWERS
+from tpss.results.regeneration import OWN_STORAGE, RECORDED_POWERS
 from tpss.results.regeneration import powers_of as braking_powers
 from tpss.results.standards.windows import Floats
 from tpss.results.tables import J_PER_MWH
@@ -63,7 +63,10 @@ def braking_mwh(
     recorded = {name: (rows if name in own else trains)[name] for name in RECORDED_POWERS}
     stations = np.asarray(run.recording.stations)[: run.step]
     of_trains = rheostats[[train.route for train in run.trains]]
-    powers = braking_powers(recorded, stations["station_active_power"], sides, of_trains)
+    if run.recording.on_board.size:
+        recorded[OWN_STORAGE] = np.asarray(run.recording.on_board)[OWN_STORAGE][: run.step]
+    stored_w = np.asarray(run.recording.stores)[: run.step]["store_power"]
+    powers = braking_powers(recorded, stations["station_active_power"], sides, of_trains, stored_w)
     duration_s = _duration_s(run)
     return {name: float((duration_s @ w).sum()) / J_PER_MWH for name, w in powers.items()}
 

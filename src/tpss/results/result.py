@@ -16,6 +16,7 @@ from tpss.results.rails import rails, stray_current
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
+from tpss.results.storage import storage
 from tpss.results.thermal.judge import Thermal, thermal_of
 from tpss.results.transformer_losses import transformer_losses
 from tpss.results.waits import waits
@@ -117,6 +118,11 @@ class Result:
     def transformer_losses(self) -> pd.DataFrame:
         """One row per transformer station that tells its losses without load; otherwise empty."""
         return transformer_losses(self.dataset, self.scenario)
+
+    @cached_property
+    def storage(self) -> pd.DataFrame:
+        """One row per store of energy: what it took, gave and lost; empty without any."""
+        return storage(self.dataset, self.scenario)
 
     @cached_property
     def equipment(self) -> Thermal:

@@ -98,7 +98,9 @@ class Run:
         self.status = Status.RUNNING
         if records is None:
             records = train_records(trains, model.network.system.nominal_voltage_v)
-        self.state = new_state(model, copy_of_records(records), turns)
+        records = copy_of_records(records)
+        _fill_stores(records, model)
+        self.state = new_state(model, records, turns)
         self.recording = new_recording(model, capacity, len(trains), memory)
         self.networks = [(0, model.network)]
         """Steps from which networks hold, and these."""
@@ -167,6 +169,7 @@ class Run:
         before, state = self.recording, self.state
         self.trains = [*self.trains, *departing]
         records = train_records(self.trains, self.model.network.system.nominal_voltage_v)
+        _fill_stores(records, self.model)
         records[: state.trains.size] = state.trains
         self.state = new_state(self.model, records)
         flow, turns = self.state.flow, self.state.turns
@@ -174,6 +177,7 @@ class Run:
             (state.flow.nodes, flow.nodes),
             (state.flow.sections, flow.sections),
             (state.flow.sources, flow.sources),
+            (state.flow.stores, flow.stores),
             (state.clock, self.state.clock),
             (state.turns.holdings, turns.holdings[: state.trains.size]),
             (state.turns.uses, turns.uses),
@@ -184,6 +188,13 @@ class Run:
         for name, kept in before._asdict().items():
             getattr(self.recording, name)[tuple(slice(n) for n in kept.shape)] = kept
         self.capacity = capacity
+
+
+def _fill_stores(records: Records[Train], model: Model) -> None:
+    """Give the stores of trains the energy with which they enter the line."""
+    if model.control.has_stores:
+        start_j = model.types["on_board"]["start_j"]
+        records["stored"]["energy_j"] = start_j[records["train_type"]]
 
 
 def run_of(start: Start, clock: Clock = advance, memory: Memory = np.empty) -> Run:
@@ -242,7 +253,9 @@ def _is_stranded(run: Run) -> bool:
     row = run.recording.trains[step, studied]
     is_fed = row.pantograph_real != 0.0 or row.pantograph_imag != 0.0
     lacks = plain(lacks_power)(step, studied, run.model.options.step_s, run.recording)
-    return bool(row.speed == 0.0 and (lacks or not is_fed))
+    on_board = run.recording.on_board
+    feeds_itself = on_board.size > 0 and on_board[step, studied].train_storage_power < 0.0
+    return bool(row.speed == 0.0 and (lacks or not (is_fed or feeds_itself)))
 
 
 def switch(run: Run, switchings: Sequence[Switching], last: int) -> int:
@@ -300,6 +313,8 @@ def outcome_of(run: Run, status: str, studied: int) -> Outcome:
         links=kept.links[:rows],
         conductors=kept.conductors[:rows, :count],
         rails=kept.rails[:rows, :count],
+        stores=kept.stores[:rows],
+        on_board=kept.on_board[:rows, :count],
     )
     return Outcome(
         status=status,

@@ -97,7 +97,11 @@ def begin(
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
     spares_motors = bool((model.types["spared"]["continuous_a"] < math.inf).any())
-    control = RunControl(studied_train=ends_with, spares_motors=spares_motors)
+    control = RunControl(
+        studied_train=ends_with,
+        spares_motors=spares_motors,
+        has_stores=bool((model.types["on_board"]["store"]["capacity_j"] > 0.0).any()),
+    )
     model = model._replace(control=control)
     records = train_records(trains, model.network.system.nominal_voltage_v)
     return Start(model, services, steps, capacity, trains, records, studied, switchings)

@@ -13,7 +13,6 @@ import numpy as np
 
 from tpss.run.run import INTERRUPTED, Progress, Run, advance_to_end, arrivals_s, run_of
 from tpss.run.start import Start
-from tpss.step.model import RunControl
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,7 @@ def lost_by_train(
     """
     if run.step == 0 or not np.isfinite(arrivals_s(run)).any():
         return {}
-    spares_motors = start.model.control.spares_motors
-    control = RunControl(fixed_voltage_v=voltage_v, spares_motors=spares_motors)
+    control = start.model.control._replace(fixed_voltage_v=voltage_v, studied_train=-1)
     model = start.model._replace(control=control)
     stiff = replace(start, model=model, steps=run.step, switchings=())
     other = run_of(stiff)

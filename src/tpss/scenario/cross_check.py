@@ -19,6 +19,7 @@ from tpss.scenario.of_the_system import check_systems, under_its_system
 from tpss.scenario.positions import check_positions, check_stations_named
 from tpss.scenario.raw import Fault, number, table
 from tpss.scenario.stepped_motion import check_stepped_motion
+from tpss.scenario.storage_faults import check_storage
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 from tpss.scenario.wiring import check_wiring
 
@@ -37,7 +38,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += _planned_order(document, simulation)
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
-    findings += check_direct_current(document)
+    findings += [*check_direct_current(document), *check_storage(document)]
     return [Finding(file, *finding) for finding in findings]
 
 

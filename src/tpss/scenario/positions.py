@@ -22,7 +22,7 @@ from tpss.scenario.raw import (
     places_of,
     table,
 )
-from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.supply.supply import STATIONS, STORAGE
 from tpss.units import kilometres
 
 ROUNDING = 1e-9
@@ -115,9 +115,15 @@ def _named_lines(document: Mapping[str, Any], names: list[str]) -> Iterator[Faul
 def _parts_on_lines(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Key paths and tables of all that names its line."""
     supply = table(document, "supply")
-    for kind in STATIONS:
+    for kind in (*STATIONS, STORAGE):
         yield from ((f"supply.{kind}.{i}", each) for i, each in items(supply, kind))
-    for kind in ("contact_lines", "posts", "section_breaks", "neutral_sections"):
+    for kind in (
+        "contact_lines",
+        "posts",
+        "section_breaks",
+        "neutral_sections",
+        "without_contact_line",
+    ):
         yield from ((f"supply.{kind}.{i}", each) for i, each in items(supply, kind))
     if "high_voltage_line" in supply:
         yield "supply.high_voltage_line", table(supply, "high_voltage_line")

@@ -15,6 +15,7 @@ from tpss.scenario.machine import (
     RetardationOverSpeed,
     TractiveEffort,
 )
+from tpss.scenario.on_board import OnBoardStorage
 from tpss.scenario.rating import MotorRating
 from tpss.scenario.regeneration import Regeneration
 from tpss.scenario.supply.system import SystemName
@@ -186,6 +187,11 @@ class Train(Part):
     regeneration: Regeneration | None = Field(
         default=None,
         description="Electric brakes that feed back, with continuous motion; leave it out: none.",
+    )
+
+    storage: OnBoardStorage | None = Field(
+        default=None,
+        description="Store of energy on board, with continuous motion; leave it out: none.",
     )
 
     motor_rating: MotorRating | None = Field(

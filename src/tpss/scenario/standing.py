@@ -5,7 +5,7 @@ from typing import Any
 
 from tpss.scenario.override import copy_of
 from tpss.scenario.raw import items, lines_of, places_of, table
-from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.supply.supply import STATIONS, STORAGE
 
 
 def stand_at_stations(document: dict[str, Any]) -> dict[str, Any]:
@@ -32,5 +32,5 @@ def stand_at_stations(document: dict[str, Any]) -> dict[str, Any]:
 def _parts(document: Mapping[str, Any]) -> Iterator[Any]:
     """Tables of all that may stand at a station."""
     supply = table(document, "supply")
-    for kind in (*STATIONS, "posts"):
+    for kind in (*STATIONS, "posts", STORAGE):
         yield from (part for _, part in items(supply, kind))

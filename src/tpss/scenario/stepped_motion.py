@@ -48,6 +48,20 @@ def _electric_brakes(document: Mapping[str, Any]) -> Iterator[Asked]:
             yield f"trains.{name}.regeneration", "", "does not go with {}", ""
 
 
+def _own_stores(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Trains with stores on board: their limits are those of a whole step's means."""
+    for name, train in _trains(document):
+        if table(train, "storage"):
+            yield f"trains.{name}.storage", "", "does not go with {}", ""
+
+
+def _without_contact_line(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Stretches without contact line: trains may stand anywhere there."""
+    if table(document, "supply").get("without_contact_line"):
+        problem = "trains may come to stand there, within a step, which {} does not know"
+        yield "supply.without_contact_line", "", problem, ""
+
+
 def _neutral_sections(document: Mapping[str, Any]) -> Iterator[Asked]:
     """Neutral sections: a train has power in whole steps."""
     if table(document, "supply").get("neutral_sections"):
@@ -83,6 +97,8 @@ UNKNOWN: tuple[Callable[[Mapping[str, Any]], Iterator[Asked]], ...] = (
     _separation,
     _neutral_sections,
     _electric_brakes,
+    _own_stores,
+    _without_contact_line,
     _coasting,
     _protection,
 )

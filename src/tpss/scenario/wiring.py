@@ -19,8 +19,11 @@ from tpss.scenario.raw import (
     table,
     tracks_by_stretch,
 )
-from tpss.scenario.supply.supply import STATIONS
+from tpss.scenario.supply.supply import STATIONS, STORAGE
 from tpss.units import kilometres
+
+NEUTRAL, BARE = "neutral_sections", "without_contact_line"
+"""Keys of the supply that list stretches which overlap no other of their kind."""
 
 
 class _Stretch(NamedTuple):
@@ -51,7 +54,10 @@ def check_wiring(document: Mapping[str, Any]) -> Iterator[Fault]:
         yield from _break_at_a_node(f"supply.section_breaks.{i}", each, document)
     for i, each in items(supply, "neutral_sections"):
         yield from _neutral_at_a_node(f"supply.neutral_sections.{i}", each, document)
-        yield from _meets_another(i, each, supply)
+        yield from _meets_another(NEUTRAL, i, each, supply)
+    for i, each in items(supply, BARE):
+        yield from _bare_at_a_node(f"supply.{BARE}.{i}", each, document)
+        yield from _meets_another(BARE, i, each, supply)
 
 
 def _overlaps(i: int, here: Mapping[str, Any], supply: Mapping[str, Any]) -> Iterator[Fault]:
@@ -156,13 +162,48 @@ def _neutral_at_a_node(
         yield f"{key}.from_km", kilometres(begin), problem, "place it beside"
 
 
-def _meets_another(i: int, here: Mapping[str, Any], supply: Mapping[str, Any]) -> Iterator[Fault]:
-    """A neutral section that overlaps one before it in the file."""
-    for k, other in items(supply, "neutral_sections"):
+def _bare_at_a_node(
+    key: str, stretch: Mapping[str, Any], document: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """A stretch without contact line in which that is fed, tied, broken or neutral; a hair of one."""
+    begin, end = number(stretch, "from_km"), number(stretch, "to_km")
+    if begin is None or end is None or end <= begin:
+        return
+    if end - begin < CLOSEST_KM:
+        problem, remedy = "shorter than a metre", "give it a metre or more, or leave it out"
+        yield f"{key}.to_km", kilometres(end), problem, remedy
+        return
+    ends = ends_of(lines_of(document).get(str(stretch.get("line")), ("", {}))[1]) or ()
+    lines = lines_of(document)
+    if len(lines) == 1:
+        ends = ends_of(next(iter(lines.values()))[1]) or ()
+    places = [km for km in _nodes(stretch, document) if km not in ends]
+    places += _breaks(stretch, document)
+    inside = [km for km in places if begin + CLOSEST_KM < km < end - CLOSEST_KM]
+    if inside:
+        problem = f"what is fed, tied or broken at {kilometres(inside[0])} km would have no line"
+        yield (
+            f"{key}.from_km",
+            kilometres(begin),
+            problem,
+            "place it beside, or end the stretch there",
+        )
+    for k, other in items(table(document, "supply"), NEUTRAL):
+        first, last = _span(other)
+        if _on_one_line(stretch, other, document) and first < end and begin < last:
+            problem = f"overlaps supply.{NEUTRAL}.{k}"
+            yield key, "", problem, "leave the neutral section out: there is no contact line"
+
+
+def _meets_another(
+    kind: str, i: int, here: Mapping[str, Any], supply: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """A neutral section, or a stretch without contact line, that overlaps one before it in the file."""
+    for k, other in items(supply, kind):
         (first, last), (begin, end) = (_span(each) for each in (here, other))
         if k < i and here.get("line") == other.get("line") and first < end and begin < last:
-            problem = f"overlaps supply.neutral_sections.{k}"
-            yield f"supply.neutral_sections.{i}", "", problem, "make one of both"
+            problem = f"overlaps supply.{kind}.{k}"
+            yield f"supply.{kind}.{i}", "", problem, "make one of both"
 
 
 def _breaks(part: Mapping[str, Any], document: Mapping[str, Any]) -> list[float]:
@@ -194,7 +235,7 @@ def _nodes(
         return []
     fed = [
         number(each, "position_km")
-        for kind in (*STATIONS, "posts")
+        for kind in (*STATIONS, "posts", STORAGE)
         for _, each in items(supply, kind)
         if len(lines) == 1 or each.get("line") == line
         if not (but_connections and each.get("connection"))

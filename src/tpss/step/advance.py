@@ -9,20 +9,29 @@ from tpss.powerflow.bundle_points import order_points
 from tpss.powerflow.network import Request, Standing
 from tpss.powerflow.placing import locate_trains, measure_pieces, set_unfed_aside
 from tpss.powerflow.solve import ASKS, answer_in_turn, predict, remember
+from tpss.powerflow.stores import begin_stores
 from tpss.record import Records
 from tpss.step.converter_control import control_converters, note_loading
 from tpss.step.coupling import solve_step
 from tpss.step.deadlock import find_deadlock
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.precedence import let_pass
-from tpss.step.record import record_instant, record_network, record_trains
+from tpss.step.record import (
+    record_instant,
+    record_network,
+    record_trains,
+    settle_own_stores,
+    settle_stores,
+)
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
 from tpss.step.sparing import allow_currents, heat_motors
 from tpss.step.state import Counter, State, Status, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.track.gate import Precedence
+from tpss.vehicle.on_board import begin_own_store
 from tpss.vehicle.train import Course, Phase, Train
+from tpss.vehicle.train_type import TrainType
 
 ARRIVAL_S = 1e-6
 """A run ends with the arrival of its studied train, or so soon after it. [s]"""
@@ -121,11 +130,31 @@ def prepare_trains(
         prepare(trains[at(standing[at(k)].train)], data, points, scratch)
 
 
+@kernel
+def begin_own_stores(
+    count: int,
+    step_s: float,
+    kinds: Records[TrainType],
+    standing: Records[Standing],
+    trains: Records[Train],
+) -> None:
+    """Find the limits of the stores of the first `count` trains in a step of this length. [s]"""
+    for k in range(count):
+        train = trains[at(standing[at(k)].train)]
+        begin_own_store(step_s, train, kinds[at(train.train_type)])
+
+
 @inlined
 def prepare_step(count: int, model: Model, state: State) -> None:
     """`prepare_trains` of this step."""
     data = driving_data(model)
     prepare_trains(count, state.flow.standing, state.trains, data, model.points, state.scratch)
+    if model.network.stores.size > 0:
+        begin_stores(model.options.step_s, model.network, state.flow)
+    if model.control.has_stores:
+        begin_own_stores(
+            count, model.options.step_s, model.types, state.flow.standing, state.trains
+        )
 
 
 @inlined
@@ -167,9 +196,16 @@ def end_step(
         state.flow.standing, state.trains, recording.trains, recording.train_state, recording.calls,
         recording.counters, recording.without_power_s, recording.regeneration,
     )  # fmt: skip
+    if model.control.has_stores:
+        settle_own_stores(
+            step, count, model.options.step_s, model.types, state.flow.standing, state.trains,
+            recording.on_board,
+        )  # fmt: skip
     if model.control.fixed_voltage_v <= 0.0:
         record_network(step, model.network, state.flow, recording)
         note_loading(model, state)
+        if model.network.stores.size > 0:
+            settle_stores(step, model.options.step_s, model.network, state.flow, recording.stores)
     data = loads_of(model, state).driving
     for k in range(count):
         train = state.trains[at(state.flow.standing[at(k)].train)]

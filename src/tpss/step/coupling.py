@@ -12,7 +12,7 @@ from tpss.driving.manners import apply_solution, must_replan, replan
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.pairs import magnitude
-from tpss.powerflow.load import WITHOUT_SLOPES, find_demand
+from tpss.powerflow.load import WITHOUT_SLOPES, find_demand, runs_on_store
 from tpss.powerflow.network import Loads, Standing
 from tpss.powerflow.placing import is_unfed
 from tpss.powerflow.solve import ASKS, solve_or_ask
@@ -67,16 +67,17 @@ def prepare_unfed(count: int, model: Model, state: State) -> None:
 
 @kernel
 def pass_unfed(count: int, model: Model, state: State) -> None:
-    """Find the ways of the trains that no station reaches, at no voltage.
+    """Find the ways of the trains that no station reaches, at no voltage, or on their own stores.
 
     What is kept as their voltage for the next step, where they may be fed again, is the nominal one.
     """
-    nominal_v = model.network.system.nominal_voltage_v
+    nominal_v, loads = model.network.system.nominal_voltage_v, loads_of(model, state)
     for k in range(count):
         place = state.flow.standing[at(k)]
         if is_unfed(place.section, model.network):
             train = state.trains[at(place.train)]
-            find_demand(0.0, WITHOUT_SLOPES, train, loads_of(model, state))
+            if not runs_on_store(nominal_v, train, loads):
+                find_demand(0.0, WITHOUT_SLOPES, train, loads)
             train.line_voltage_v = nominal_v
             train.demand.voltage_v = nominal_v
 

@@ -23,6 +23,8 @@ class RunControl(NamedTuple):
     """The run ends with its arrival; -1: it does not."""
     spares_motors: bool = False
     """Whether there are drivers who spare hot motors."""
+    has_stores: bool = False
+    """Whether trains have stores of energy on board."""
 
 
 class Model(NamedTuple):

@@ -21,11 +21,13 @@ from tpss.powerflow.sharing import losses_by_others
 from tpss.record import Records
 from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
-from tpss.step.recorded import RegenerationRow, TrainRow
+from tpss.step.recorded import OnBoardRow, RegenerationRow, StoreRow, TrainRow
 from tpss.step.recording import Call, Indices, Recording
 from tpss.step.state import Floats, TrainState
+from tpss.storage.store import energy_after, lost_power
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand
+from tpss.vehicle.on_board import has_store
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train import (
     MOST_CALLS,
@@ -154,7 +156,10 @@ def record_step(
     if kind.voltage_model != MotorModel.NEW:
         current /= line_voltage_factor(demand.voltage_v, kind.voltage_model)
     row.motor_current = motor_current(current, kind.current_model)
-    row.motor_power = (demand.active_power_w - kind.auxiliary_power_w) / demand.per_efficiency
+    asked_w = demand.active_power_w
+    if has_store(kind):  # beside the line it gives and takes
+        asked_w += demand.regenerated_power_w - train.stored.power_w
+    row.motor_power = (asked_w - kind.auxiliary_power_w) / demand.per_efficiency
     if demand.offered_power_w > 0.0:  # in such a step the motors do nothing else
         row.motor_power = 0.0
     traction_w, braking_w, running_w, gradient_w = mean_powers(train, step_s)
@@ -260,6 +265,37 @@ def record_conductors(bundles: Bundles, step: int, flow: Flow, recording: Record
                 rails_v = own.voltage_v[at(i), at(returns)]
                 recording.rails[at(step), at(i)].rail_real = rails_v.real
                 recording.rails[at(step), at(i)].rail_imag = rails_v.imag
+
+
+@kernel
+def settle_stores(
+    step: int, step_s: float, network: Network, flow: Flow, rows: Records[StoreRow]
+) -> None:
+    """Record what the stores at the line do in a step of this length, and take them to its end. [s]"""
+    for m in range(network.stores.size):
+        store, state, row = network.stores[at(m)].store, flow.stores[at(m)], rows[at(step), at(m)]
+        row.stored_energy = state.energy_j
+        row.store_power = state.power_w
+        row.store_losses = lost_power(state.power_w, step_s, store, state)
+        state.energy_j = energy_after(state.power_w, step_s, store, state)
+        rows[at(step + 1), at(m)].stored_energy = state.energy_j
+
+
+@kernel
+def settle_own_stores(
+    step: int, count: int, step_s: float, kinds: Records[TrainType], standing: Records[Standing],
+    trains: Records[Train], rows: Records[OnBoardRow],
+) -> None:  # fmt: skip
+    """Record what the stores on board of the first `count` trains do in a step, and end it. [s]"""
+    for k in range(count):
+        i = standing[at(k)].train
+        train, row = trains[at(i)], rows[at(step), at(i)]
+        store, state = kinds[at(train.train_type)].on_board.store, train.stored
+        row.train_stored_energy = state.energy_j
+        row.train_storage_power = state.power_w
+        row.train_storage_losses = lost_power(state.power_w, step_s, store, state)
+        state.energy_j = energy_after(state.power_w, step_s, store, state)
+        rows[at(step + 1), at(i)].train_stored_energy = state.energy_j
 
 
 @inlined

@@ -146,6 +146,22 @@ LINKED = (
     Recorded("link_angle", "link", "rad", "angle of that current", phasor="link"),
 )  # fmt: skip
 """What is recorded besides where transformers stand between several nodes."""
+STORED = (
+    Recorded("stored_energy", "store", "J", "energy in a store at the line", "E", at_instant=True),
+    Recorded("store_power", "store", "W", "power that a store takes from the line", "P",
+             "negative where it gives"),
+    Recorded("store_losses", "store", "W", "losses of a store"),
+)  # fmt: skip
+"""What is recorded of stores of energy at the line."""
+
+ON_BOARD = (
+    Recorded("train_stored_energy", "train", "J", "energy in the store on board", "E",
+             "0 of a train without one", at_instant=True),
+    Recorded("train_storage_power", "train", "W", "power that the store on board takes", "S",
+             "negative where it gives"),
+    Recorded("train_storage_losses", "train", "W", "losses of the store on board"),
+)  # fmt: skip
+"""What is recorded besides where trains have stores of energy on board."""
 
 
 RETURNED = (
@@ -196,3 +212,11 @@ class LinkRow(Row, of="link", table=LINKED):
 
 class RailRow(Row, of="train", table=RETURNED):
     """What the rails do at a train."""
+
+
+class StoreRow(Row, of="store", table=STORED):
+    """Row of a store of energy at the line."""
+
+
+class OnBoardRow(Row, of="train", table=ON_BOARD):
+    """What the store of a train does."""

@@ -11,7 +11,16 @@ from tpss.powerflow.bundles import Complexes, widest_of
 from tpss.powerflow.links import count_links
 from tpss.record import Record, Records
 from tpss.step.model import Model
-from tpss.step.recorded import LinkRow, NodeRow, RailRow, RegenerationRow, StationRow, TrainRow
+from tpss.step.recorded import (
+    LinkRow,
+    NodeRow,
+    OnBoardRow,
+    RailRow,
+    RegenerationRow,
+    StationRow,
+    StoreRow,
+    TrainRow,
+)
 from tpss.step.separation import Separation
 from tpss.step.state import Counter, Floats, TrainState
 
@@ -64,6 +73,10 @@ class Recording(NamedTuple):
     instants unless there are bundles of them. [V]"""
     rails: Records[RailRow]
     """Shape (instants, trains).  Empty unless there are such bundles."""
+    stores: Records[StoreRow]
+    """Shape (instants, stores at the line)."""
+    on_board: Records[OnBoardRow]
+    """Shape (instants, trains).  Empty unless trains have stores of energy."""
 
 
 def is_kept_apart(model: Model) -> bool:
@@ -89,11 +102,17 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
     row += count_links(network.links) * LinkRow.dtype.itemsize
     row += 16 * trains * (widest_of(network.bundles) + (widest_of(network.bundles) > 0))
     row += trains * RegenerationRow.dtype.itemsize * _regenerates(model)
+    row += network.stores.size * StoreRow.dtype.itemsize
+    row += trains * OnBoardRow.dtype.itemsize * _stores_on_board(model)
     return (steps + 1) * row
 
 
 def _regenerates(model: Model) -> bool:
     return bool((model.types["regeneration"]["highest_force_n"] > 0.0).any())
+
+
+def _stores_on_board(model: Model) -> bool:
+    return bool((model.types["on_board"]["store"]["capacity_j"] > 0.0).any())
 
 
 def _has_neutral(model: Model) -> bool:
@@ -152,4 +171,6 @@ def new_recording(model: Model, steps: int, trains: int, memory: Memory = np.emp
         links=blank(count_links(network.links), LinkRow),
         conductors=conductors_of_trains(),
         rails=blank(trains, RailRow, rows if widest_of(network.bundles) else 0),
+        stores=blank(network.stores.size, StoreRow),
+        on_board=blank(trains, OnBoardRow, rows if _stores_on_board(model) else 0),
     )

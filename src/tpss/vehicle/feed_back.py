@@ -13,6 +13,12 @@ def regenerates(kind: TrainType) -> bool:
     return kind.regeneration.highest_force_n > 0.0
 
 
+@inlined
+def gives_or_stores(kind: TrainType) -> bool:
+    """Whether trains of a type have electric brakes, or a store."""
+    return kind.regeneration.highest_force_n > 0.0 or kind.on_board.store.capacity_j > 0.0
+
+
 @kernel
 def offer(
     braking_n: float, speed_m_s: float, kind: TrainType, demand: Demand, points: Points

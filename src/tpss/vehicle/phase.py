@@ -25,6 +25,7 @@ from tpss.vehicle.demand import (
 )
 from tpss.vehicle.effort.kinds import effort_at, follows_voltage
 from tpss.vehicle.line_current import within_line_current
+from tpss.vehicle.on_board import within_own_power
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train_type import TrainType
 
@@ -68,6 +69,8 @@ def force_of_phase(
     if kind.line_current.highest_current_a < math.inf:
         update_power_terms(speed_m_s, kind, demand, points, scratch)
         force, _ = within_line_current(voltage_v, force, 0.0, kind, demand, scratch)
+    if demand.store_only_w > 0.0:
+        force = within_own_power(force, speed_m_s, kind, demand, points, scratch)
     limit = machine_force(max(0.0, force), resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
     return min(cap_n, max(0.0, limit))
 

@@ -64,3 +64,5 @@ class Demand(Record):
     """What they offer the line, auxiliaries included. [W]"""
     regenerated_power_w: float
     """What of that the line takes, at the voltage last tried. [W]"""
+    store_only_w: float
+    """Power that its own store gives where nothing else feeds it; 0: the line does. [W]"""

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from tpss.kernel import inlined, kernel
 from tpss.record import Record
+from tpss.storage.store import Stored
 from tpss.vehicle.terms import Demand
 
 Floats = npt.NDArray[np.float64]
@@ -237,6 +238,10 @@ class Train(Record):
     """Armature current that its driver allows its motors in this step; infinite: any. [A]"""
     motor_state: float
     """Thermal state of its motors, if its driver spares them. [1]"""
+    stored: Stored
+    """Its store of energy."""
+    stands: bool
+    """Whether it stands at a stop all through the present step, and may charge its store."""
 
 
 @kernel

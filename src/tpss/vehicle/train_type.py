@@ -8,6 +8,7 @@ from tpss.physics.motor import MotorModel
 from tpss.physics.reactive_power import ReactiveModel
 from tpss.physics.running_resistance import DavisCoefficients
 from tpss.record import Record
+from tpss.storage.on_board import OnBoard
 from tpss.vehicle.braking import BrakingBands
 from tpss.vehicle.effort.kinds import TractiveEffort
 from tpss.vehicle.regeneration import Regeneration
@@ -106,3 +107,5 @@ class TrainType(Record):
     """Networks of the machine; zero where nothing asks for them."""
     spared: SparedMotors = SparedMotors.row()
     """Its motors, if its driver spares them."""
+    on_board: OnBoard = OnBoard.row()
+    """Its store of energy."""

@@ -12,8 +12,10 @@ from tpss.results.result import Result
 
 PARTS = {
     "used_by_others_mwh": ("other trains and the line", COLOURS[2]),
+    "to_stores_mwh": ("stores at the line", "#F0E442"),
     "to_grid_mwh": ("to the grid", COLOURS[0]),
     "own_use_mwh": ("own use", "#56B4E9"),
+    "own_storage_mwh": ("own stores", "#DDCC77"),
     "burnt_in_stations_mwh": ("burnt in stations", COLOURS[3]),
     "machine_losses_mwh": ("lost in machines", COLOURS[1]),
     "rheostat_mwh": ("burnt in rheostats", "#882255"),
@@ -24,6 +26,9 @@ PARTS = {
 
 NARROWEST = 0.06
 """Share of the whole width from which a part of a bar is wide enough for its figure."""
+
+OF_A_LETTER = 0.014
+"""Share of the whole width that a letter of such a figure takes."""
 
 SMALLEST = 0.0005
 """Share of the whole width below which a part is not visible, and left out."""
@@ -67,7 +72,9 @@ def braking(runs: Mapping[str, Result]) -> Drawing:
             mwh = float(each[column])
             if mwh < SMALLEST * width:
                 continue
-            words = f"{mwh:.3g}" if mwh > NARROWEST * width else ""
+            words = f"{mwh:.3g}"
+            if mwh <= max(NARROWEST, OF_A_LETTER * len(words)) * width:
+                words = ""
             bars.append(Bar(row, start, mwh, "" if name in named else name, words, colour))
             named.add(name)
             start += mwh

@@ -7,6 +7,7 @@ import numpy as np
 from tpss.report.drawings.parts import Bar, Drawing, Panel
 from tpss.report.palette import COLOURS, tint
 from tpss.report.sampling import Floats
+from tpss.results.regeneration import OWN_STORAGE, STORED
 from tpss.results.result import Result
 from tpss.results.tables import J_PER_MWH, over_time
 
@@ -29,15 +30,21 @@ USES = {
     "climb": "#56B4E9",
     "brakes": "#444444",
     "kinetic energy": "#F0E442",
+    "stores on board": "#DDCC77",
 }
 """Colours of the uses by trains; with those of stations and losses, the palette of Okabe and Ito."""
+
+
+AT_THE_LINE = ("stores at the line", "#997700")
+"""Name and colour of what stores at the line take."""
 
 
 def energy_flow(result: Result) -> Drawing:
     """Three bars of equal length: energy fed, network losses and trains, and use by the trains.
 
     A use that is negative in total, such as the climb of trains that run downhill, is a part of the
-    first bar.  Parts that are too small to be visible are left out.
+    first bar, and so is what stores give beyond what they take.  Parts that are too small to be visible
+    are left out.
 
     Parameters
     ----------
@@ -49,6 +56,10 @@ def energy_flow(result: Result) -> Drawing:
     drawn = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
     kinds = [f"{kind} losses" for kind in losses.branch_kind]
     network = _tinted(kinds, losses.energy_mwh, COLOURS[1])
+    name, colour = AT_THE_LINE
+    stored = _taken_mwh(result, STORED)
+    if stored != 0.0:
+        (network if stored > 0.0 else fed)[name] = (abs(stored), colour)
     lost, to_trains = (sum(mwh for mwh, _ in each.values()) for each in (network, drawn))
     network["trains"] = (to_trains, "#AAAAAA")
     width = max(lost + to_trains, 1e-9)
@@ -81,15 +92,25 @@ def used_by_trains(result: Result) -> dict[str, float]:
         float(over_time(data[f"{name}_power"].to_numpy()[:-1], data).sum())
         for name in ("active", "traction", "resistance", "gradient", "braking")
     )
+    stored = J_PER_MWH * _taken_mwh(result, OWN_STORAGE)
     joules = {
         "auxiliaries": auxiliaries,
-        "motors and gears": drawn - auxiliaries - wheel,
+        "motors and gears": drawn - stored - auxiliaries - wheel,
         "running resistance": running,
         "climb": climb,
         "brakes": brakes,
         "kinetic energy": wheel - running - climb - brakes,
+        **({"stores on board": stored} if stored else {}),
     }
     return {name: value / J_PER_MWH for name, value in joules.items()}
+
+
+def _taken_mwh(result: Result, name: str) -> float:
+    """What stores take, less what they give, by the variable of their power; 0 without any. [MWh]"""
+    if name not in result.dataset:
+        return 0.0
+    power_w = result.dataset[name].to_numpy()[:-1]
+    return float(over_time(power_w, result.dataset).sum()) / J_PER_MWH
 
 
 def _supplied_s(result: Result) -> Floats:

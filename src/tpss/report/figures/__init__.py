@@ -13,6 +13,7 @@ from tpss.report.drawings import journey as _journey
 from tpss.report.drawings import measured as _measured
 from tpss.report.drawings import network as _network
 from tpss.report.drawings import stations as _stations
+from tpss.report.drawings import storage as _storage
 from tpss.report.drawings import time_distance as _time_distance
 from tpss.report.drawings import unbalance as _unbalance
 from tpss.report.drawings import voltage as _voltage
@@ -30,6 +31,7 @@ measured_over_time = static(_measured.measured_over_time)
 network = static(_network.network)
 station_loading = static(_stations.station_loading)
 station_powers = static(_stations.station_powers)
+storage = static(_storage.storage)
 time_distance = static(_time_distance.time_distance)
 unbalance = static(_unbalance.unbalance)
 voltage_along_line = static(_voltage.voltage_along_line)

@@ -16,6 +16,7 @@ from tpss.report.drawings.network import network
 from tpss.report.drawings.parts import Drawing
 from tpss.report.drawings.rails import rail_voltage
 from tpss.report.drawings.stations import station_loading, station_powers
+from tpss.report.drawings.storage import storage
 from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.unbalance import unbalance
@@ -41,6 +42,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
     "unbalance": ("run", lambda run, *_: unbalance({"": run})),
     "braking": ("run", lambda run, *_: braking({"": run})),
+    "storage": ("run", lambda run, *_: storage({"": run})),
     "thermal": ("run", lambda run, *_: thermal({"": run})),
     "rails": ("run", lambda run, *_: rail_voltage(run)),
     "energy": ("run", lambda run, *_: energy_flow(run)),
@@ -117,7 +119,10 @@ def applies(name: str, result: Result) -> bool:
     """Whether a figure shows something that the scenario of a result describes."""
     if name == "unbalance":
         return len(result.standards.unbalance) > 0
-    tables = {"converter-losses": "converter_losses", "braking": "regeneration", "rails": "rails"}
+    tables = {
+        "converter-losses": "converter_losses", "braking": "regeneration", "storage": "storage",
+        "rails": "rails",
+    }  # fmt: skip
     return name not in tables or len(getattr(result, tables[name])) > 0
 
 

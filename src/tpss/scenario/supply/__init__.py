@@ -8,6 +8,7 @@ from tpss.scenario.supply.high_voltage import HighVoltageLine, LineType, Transfo
 from tpss.scenario.supply.losses import ConverterLosses
 from tpss.scenario.supply.mixed_station import ConverterUnits, MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
+from tpss.scenario.supply.storage import Storage
 from tpss.scenario.supply.supply import Station, Supply
 from tpss.scenario.supply.system import System
 from tpss.scenario.supply.transformer_station import StationTransformer, TransformerStation
@@ -32,6 +33,7 @@ __all__ = [
     "SectionBreak",
     "Station",
     "StationTransformer",
+    "Storage",
     "Supply",
     "System",
     "Transformer",

@@ -99,6 +99,28 @@ class NeutralSection(Part):
         return self
 
 
+class WithoutContactLine(Part):
+    """A stretch of a line without contact line, along which trains run from their own stores."""
+
+    line: Name | None = name_of_line()
+    from_km: Position = Field(description="Where the contact line ends, from lower kilometres.")
+    to_km: Position = Field(description="Where it begins again, at a higher position.")
+
+    @property
+    def in_words(self) -> str:
+        """Where it is."""
+        return on_line(self.line or "", f"{kilometres(self.from_km)}-{kilometres(self.to_km)} km")
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_beginning(self) -> Self:
+        if self.to_km <= self.from_km:
+            raise fault(
+                f"the stretch ends at {self.to_km:g} km, and begins at {self.from_km:g} km",
+                "give the lower position as from_km",
+            )
+        return self
+
+
 class SectionBreak(Part):
     """A break of the contact line with a switch; open, it parts the line there, on all tracks."""
 

@@ -2,17 +2,14 @@
 
 from pydantic import Field
 
-from tpss.scenario.fields import Name, Part, Position, Real, name_of_line, station_at
+from tpss.scenario.fields import Real
 from tpss.scenario.supply.feeds import Feeds, feeds
+from tpss.scenario.supply.placed import Placed
 
 
-class FeedingStation(Part):
+class FeedingStation(Placed):
     """A station that feeds the contact line."""
 
-    name: Name = Field(description="Name, shown in the results.")
-    line: Name | None = name_of_line()
-    at: Name | None = station_at()
-    position_km: Position = Field(description="Position on its line.")
     feeds: Feeds | None = feeds()
     rail_earthing_ohm: Real | None = Field(
         default=None,

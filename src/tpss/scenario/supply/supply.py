@@ -19,11 +19,19 @@ from tpss.scenario.fields import (
 from tpss.scenario.supply.catenary import Catenary, without_reactance
 from tpss.scenario.supply.conductor_faults import demand_conductors
 from tpss.scenario.supply.conductors import Autotransformers, Conductors
-from tpss.scenario.supply.contact_line import ContactLine, NeutralSection, Post, SectionBreak, Tied
+from tpss.scenario.supply.contact_line import (
+    ContactLine,
+    NeutralSection,
+    Post,
+    SectionBreak,
+    Tied,
+    WithoutContactLine,
+)
 from tpss.scenario.supply.converter_station import ConverterStation, ConverterType
 from tpss.scenario.supply.high_voltage import HighVoltageLine
 from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.rectifier_station import RectifierStation, RectifierType
+from tpss.scenario.supply.storage import Storage
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, System, SystemName, system_named
 from tpss.scenario.supply.transformer_station import TransformerStation
 from tpss.units import kilometres
@@ -33,6 +41,9 @@ Station = ConverterStation | TransformerStation | MixedStation | RectifierStatio
 
 STATIONS = ("converter_stations", "transformer_stations", "mixed_stations", "rectifier_stations")
 """Keys of the supply that list feeding stations, in the order of the results."""
+
+STORAGE = "storage"
+"""Key of the supply that lists stores of energy."""
 
 LOWEST_HZ = 10.0
 """Lowest frequency of an alternating current. [Hz]"""
@@ -108,6 +119,9 @@ class Supply(Part):
     neutral_sections: tuple[NeutralSection, ...] = Field(
         default=(), description="Neutral sections, which part the contact line between phases."
     )
+    without_contact_line: tuple[WithoutContactLine, ...] = Field(
+        default=(), description="Stretches without contact line: trains run from their own stores."
+    )
     junctions_tied: Flag = Field(
         default=True,
         description="Whether the contact lines of lines that meet at a station are tied there, where no "
@@ -137,6 +151,9 @@ class Supply(Part):
         default=(),
         validate_default=True,
         description="Converter stations; there is at least one feeding station.",
+    )
+    storage: Annotated[tuple[Storage, ...], unique("name")] = Field(
+        default=(), description="Stores of energy at a direct-current line."
     )
 
     @field_validator("frequency_hz", mode="before")
