@@ -407,4 +407,6 @@ def network_balance(outcome: Outcome, model: Model) -> float:
     # Relative to at least a megawatt on average: of that, the solver's tolerance is the limit.
     mismatch_w = TOLERANCE * model.network.system.base_power_va
     least = mismatch_w / ALLOWED_BALANCE * step_s * max(outcome.steps, 1)
+    if model.network.bundles != NO_BUNDLES:  # each train has a balance of its own
+        least *= max(len(outcome.trains), 1)
     return float(abs(fed - drawn - lost) / max(abs(fed), least))

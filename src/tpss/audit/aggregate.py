@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.audit.balances import ALLOWED_BALANCE, Scratch, new_scratch
+from tpss.audit.bundles import balances_apart
 from tpss.audit.motion import audit_train
 from tpss.audit.network import audit_network, audit_sources, draws_power
 from tpss.audit.on_board import audit_own_store
@@ -333,6 +334,7 @@ def _conclude_audit(steps: int, model: Model, scratch: Scratch) -> None:
     """Find the balances of a whole recording."""
     figures, h = scratch.balances[0], model.options.step_s
     least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)
+    least *= balances_apart(model.network.bundles, scratch.order.size)
     gap = abs(figures.fed_j - figures.drawn_j - figures.stored_j - figures.lost_j)
     figures.network_balance = gap / max(abs(figures.fed_j), least)
     gap = abs(figures.work_j - figures.moving_j - figures.kinetic_j)

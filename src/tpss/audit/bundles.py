@@ -31,6 +31,17 @@ def pass_bundled(_bundles: Bundles, s: int, first: int, count: int, scratch: Scr
     return k
 
 
+def _together(_bundles: Bundles, _trains: int) -> float:
+    """`balances_apart` where there are no bundles: a section's trains are balanced with its ends."""
+    return 1.0
+
+
+@where_any(without=_together)
+def balances_apart(_bundles: Bundles, trains: int) -> float:
+    """How many balances the solver holds to its tolerance apart: each train under a bundle has one."""
+    return float(max(trains, 1))
+
+
 def _audit_nothing(*_: Any) -> None:
     """`audit_bundles` of no bundles."""
 
