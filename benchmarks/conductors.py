@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.bundles import BundlePart
 from tpss.powerflow.links import LinkPart
-from tpss.powerflow.network import SectionPart, assemble, loads_alone
+from tpss.powerflow.network import loads_alone
 from tpss.powerflow.solve import solve
 from tpss.powerflow.system import system
 from tpss.sources.grid import GridLaw

@@ -5,13 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tpss.powerflow.network import (
-    BranchPart,
-    Loads,
-    SectionPart,
-    assemble,
-    loads_alone,
-)
+from tpss.powerflow.assembly import BranchPart, SectionPart, assemble
+from tpss.powerflow.network import Loads, loads_alone
 from tpss.powerflow.system import system
 from tpss.sources.kinds import Source, SourceKind
 from tpss.sources.rectifier import MOST_POINTS, RectifierLaw

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tpss.powerflow.assembly import new_flow
 from tpss.powerflow.bundle_points import order_points
-from tpss.powerflow.network import Flow, Loads, Network, new_flow
+from tpss.powerflow.network import Flow, Loads, Network
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.record import Records
 from tpss.track.leg import Leg, along_one_line

@@ -11,16 +11,8 @@ from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail, adhesion_limit
-from tpss.powerflow.network import (
-    BranchPart,
-    Flow,
-    Loads,
-    Network,
-    SectionPart,
-    assemble,
-    loads_alone,
-    new_flow,
-)
+from tpss.powerflow.assembly import BranchPart, SectionPart, assemble, new_flow
+from tpss.powerflow.network import Flow, Loads, Network, loads_alone
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.system import system
 from tpss.scenario.rolling_stock import Train

@@ -5,14 +5,8 @@ import math
 import numpy as np
 from scipy.optimize import fsolve
 
-from tpss.powerflow.network import (
-    BranchPart,
-    Loads,
-    Network,
-    SectionPart,
-    assemble,
-    loads_alone,
-)
+from tpss.powerflow.assembly import BranchPart, SectionPart, assemble
+from tpss.powerflow.network import Loads, Network, loads_alone
 from tpss.powerflow.system import system
 from tpss.record import Records
 from tpss.sources.converter import ConverterLaw, terminal_voltage

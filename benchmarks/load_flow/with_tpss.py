@@ -10,8 +10,9 @@ import numpy as np
 
 from tpss.kernel import kernel
 from tpss.physics.reactive_power import ReactiveModel
+from tpss.powerflow.assembly import new_flow
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.network import Flow, Loads, Network, loads_alone, new_flow
+from tpss.powerflow.network import Flow, Loads, Network, loads_alone
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 from tpss.powerflow.placing import locate_trains, measure_pieces
 from tpss.powerflow.raising import start_flat

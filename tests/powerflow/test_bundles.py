@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.bundles import BundlePart
 from tpss.powerflow.links import LinkPart
-from tpss.powerflow.network import SectionPart, assemble
 from tpss.powerflow.solve import solve
 from tpss.powerflow.system import system
 from tpss.sources.grid import GridLaw

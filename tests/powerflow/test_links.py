@@ -5,9 +5,9 @@ autotransformer shares out.
 import numpy as np
 import pytest
 
+from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.in_service import in_service, places_of_blocks, unfed_nodes
 from tpss.powerflow.links import LinkPart
-from tpss.powerflow.network import SectionPart, assemble
 from tpss.powerflow.solve import solve
 
 from networks import BT, STIFF, SYSTEM, constant_loads, highest_root, place, sources

@@ -173,3 +173,56 @@ def test_rails_of_direct_current_that_leak_to_earth(variant):
         assert rail_v == pytest.approx(each["rail_to_earth_v"], abs=V)
         source = found.flow.nodes[plan.sources[k]]
         assert source.leaving_current_a.real == pytest.approx(each["i_a"], abs=A)
+
+
+def leaking_rails(nodes_every_km):
+    """A station at km 0 feeds 60 km of 25 kV line, whose rails leak 1 S/km: exp(γ L) is 2e14 there."""
+    r, x = [[0.15, 0.05], [0.05, 0.1]], [[0.6, 0.35], [0.35, 0.5]]
+    catenary = {"names": ["contact", "rails"], "r_ohm_per_km": r, "x_ohm_per_km": x}
+    station = {
+        "name": "A", "position_km": 0.0, "no_load_voltage_kv": 27.5,
+        "transformer": {"rated_mva": 30.0, "short_circuit_percent": 10.0},
+    }  # fmt: skip
+    return Supply(
+        system="25kV-50Hz",
+        catenary={"r_ohm_per_km": 0.15, "x_ohm_per_km": 0.4, "conductors": catenary},
+        conductors={"leakage_s_per_km": 1.0, "nodes_every_km": nodes_every_km},
+        transformer_stations=[station],
+    )
+
+
+def test_nothing_grows_along_rails_that_leak():
+    """Trains without load every kilometre cut a piece of 60 km as 59 nodes do, between its two ends."""
+    places_km = np.arange(1.0, 60.0)
+    powers = np.where(places_km == 47.0, 4e6 + 1e6j, 0j)
+    one, _ = solved(leaking_rails(100.0), 60.0, constant_loads((1e3 * places_km).tolist(), powers))
+    cut, plan = solved(leaking_rails(1.0), 60.0, constant_loads([47e3], [4e6 + 1e6j]))
+    for k, km in enumerate(places_km):
+        rails = plan.nodes.index(f"rails at {km:g} km")
+        contact = plan.nodes.index(f"contact line at {km:g} km")
+        at_train = one.flow.bundles.voltage_v[k]
+        # The train at km 47 stands a metre beside the node there.
+        assert cut.flow.nodes[contact].voltage_v == pytest.approx(at_train[0], abs=1.0)
+        assert cut.flow.nodes[rails].voltage_v == pytest.approx(at_train[1], abs=0.5)
+    assert one.train_voltage[46] == pytest.approx(cut.train_voltage[0], abs=1.0)
+
+
+def test_a_line_the_other_way_round_has_the_same_voltages():
+    """Both rails' and contact line's, with stations and trains mirrored in the middle of 4.6 km."""
+    stations = [
+        {"name": "A", "km": 0.0, "law": {"u0_v": 800.0, "r_ohm": 0.016}, "earthing_ohm": 0.5},
+        {"name": "B", "km": 4.6, "law": {"u0_v": 795.0, "r_ohm": 0.02}},
+    ]
+    turned = [{**each, "km": 4.6 - each["km"]} for each in stations]
+    conductors = {"leakage_s_per_km": 0.1, "nodes_every_km": 100.0}
+    trains = [(1.4, 2.0e6), (3.1, 1.2e6)]
+    found = []
+    for those, kms in (
+        (stations, [km for km, _ in trains]),
+        (turned, [4.6 - km for km, _ in trains]),
+    ):
+        loads = loads_of([Drawing(km, power) for km, (_, power) in zip(kms, trains, strict=True)])
+        supply = direct_supply(conductors, those, 0.0082, 0.015)
+        case, _ = solved(supply, 4.6, loads)
+        found.append(case.flow.bundles.voltage_v.copy())
+    np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-9)

@@ -19,9 +19,9 @@ import pytest
 from tpss.model.contact_line import LineLayout
 from tpss.model.supply import build_supply
 from tpss.physics.three_phase import angle_of, impedance_between, sequences, winding_of
+from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.in_service import in_service
 from tpss.powerflow.links import LinkPart
-from tpss.powerflow.network import SectionPart, assemble
 from tpss.powerflow.solve import solve
 from tpss.results.three_phase import busbar_of
 from tpss.scenario.supply import Supply

@@ -62,6 +62,17 @@ def test_limits_are_data(leaking):
     assert [", beyond it" in line for line in rails_in_words(strict)] == [False, True, True]
 
 
+def test_autotransformers_outside_of_the_line_are_told_with_their_place():
+    document = direct_document()
+    unit = {"positions_km": [2.0, 9.0], "rated_mva": 10.0, "short_circuit_percent": 1.0}
+    document["supply"]["autotransformers"] = [unit]
+    with pytest.raises(tpss.ScenarioError) as caught:
+        tpss.Scenario.from_document(document)
+    (found,) = [each for each in caught.value.findings if "positions_km" in each.key]
+    assert found.key == "supply.autotransformers.0.positions_km.1"
+    assert found.problem == "outside the line, which runs from 0 to 6 km"
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -207,6 +207,7 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.section_breaks.*.position_km",
         "supply.neutral_sections.*.from_km",
         "supply.neutral_sections.*.to_km",
+        "supply.autotransformers.*.positions_km.*",
         "outages.*.transformers_km.*",
         "outages.*.sections.*.from_km",
         "outages.*.sections.*.to_km",

@@ -19,7 +19,7 @@ from tpss.model.phases import demand_one_angle
 from tpss.model.profiles import build_profiles, rows_seen
 from tpss.model.routes import Route, routes_of, running_trains
 from tpss.model.stores import demand_thresholds_in_order
-from tpss.model.supply import SupplyPlan
+from tpss.model.supply_plan import SupplyPlan
 from tpss.model.trains import build_train_types
 from tpss.physics.adhesion import Rail
 from tpss.record import Records

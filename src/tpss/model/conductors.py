@@ -6,24 +6,19 @@ of its own, whose voltage a link of next to no resistance puts between them.
 """
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, Stretch, stretches_of
 from tpss.model.line_matrices import CONTACT, FEEDER, RAILS, Described, matrices_of
+from tpss.model.supply_plan import FEEDER_KIND, RAILS_KIND, SupplyPlan
+from tpss.powerflow.assembly import SectionPart
 from tpss.powerflow.bundles import EARTH, BundlePart
 from tpss.powerflow.links import LinkPart
-from tpss.powerflow.network import SectionPart
 from tpss.scenario.supply import Autotransformers, Station, Supply, TransformerStation
 from tpss.units import kilometres, si
 
-if TYPE_CHECKING:
-    from tpss.model.supply import SupplyPlan
-
-RAILS_KIND, FEEDER_KIND, TERMINALS = "rails", "feeder", "station"
+TERMINALS = "station"
 KIND_OF = {RAILS: RAILS_KIND, FEEDER: FEEDER_KIND}
-FLAT_PU = {RAILS_KIND: 0.0, FEEDER_KIND: -1.0}
-"""Voltage of nodes without load, where it is another one than that of the contact line. [1]"""
-
 AUTOTRANSFORMER, MAGNETISING = "autotransformer", "autotransformer, magnetising"
 STATION_WINDING, EARTHING = "station winding", "earthing"
 
@@ -44,7 +39,7 @@ def autotransformers_of(
 class _Places:
     """Nodes of rails and feeders by place; one for all lines that meet there."""
 
-    def __init__(self, plan: "SupplyPlan", lines: Sequence[LineLayout]) -> None:
+    def __init__(self, plan: SupplyPlan, lines: Sequence[LineLayout]) -> None:
         self.plan, self.lines = plan, lines
         self.meet = {(line.number, km): name for line in lines for km, name in line.junctions}
         self.found: dict[tuple[str, object], int] = {}
@@ -68,7 +63,7 @@ class _Piece(NamedTuple):
     line: LineLayout
 
 
-def add_conductors(plan: "SupplyPlan", supply: Supply, lines: Sequence[LineLayout]) -> None:
+def add_conductors(plan: SupplyPlan, supply: Supply, lines: Sequence[LineLayout]) -> None:
     """Add rails and feeders to a plan of the contact line and its stations."""
     if supply.conductors is None:
         return
@@ -84,7 +79,7 @@ def add_conductors(plan: "SupplyPlan", supply: Supply, lines: Sequence[LineLayou
             _add_autotransformer(km, line, each, supply, places)
 
 
-def _pieces(plan: "SupplyPlan", supply: Supply, lines: Sequence[LineLayout]) -> Iterator[_Piece]:
+def _pieces(plan: SupplyPlan, supply: Supply, lines: Sequence[LineLayout]) -> Iterator[_Piece]:
     """Pieces of all lines."""
     for line in lines:
         stretches = stretches_of(line, supply)

@@ -14,7 +14,7 @@ from itertools import groupby, pairwise
 from typing import NamedTuple
 
 from tpss.model.parting import Joint, Parting, joined_over, set_apart
-from tpss.powerflow.network import SectionPart
+from tpss.powerflow.assembly import SectionPart
 from tpss.scenario.line import DECIMALS
 from tpss.scenario.outages import OutSection
 from tpss.scenario.supply import Catenary, Conductors, Post, Supply

@@ -6,13 +6,8 @@ from typing import NamedTuple
 
 from tpss.errors import Finding, ScenarioError
 from tpss.model.parting import parting_of
-from tpss.model.supply import (
-    TRANSFORMER,
-    SupplyPlan,
-    build_supply,
-    joined_network,
-    layouts_of,
-)
+from tpss.model.supply import build_supply, joined_network, layouts_of
+from tpss.model.supply_plan import TRANSFORMER, SupplyPlan
 from tpss.powerflow.following import following
 from tpss.powerflow.in_service import in_service
 from tpss.powerflow.network import UNFED, Network

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from itertools import product
 from typing import NamedTuple, TypeVar
 
-from tpss.powerflow.network import BranchPart, SectionPart
+from tpss.powerflow.assembly import BranchPart, SectionPart
 from tpss.scenario.outages import Outage, OutSection
 from tpss.scenario.supply import Supply
 

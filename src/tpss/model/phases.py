@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from tpss.errors import Finding, ScenarioError
 from tpss.model.conductors import KIND_OF
-from tpss.model.supply import SupplyPlan
+from tpss.model.supply_plan import SupplyPlan
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import Station, Supply, TransformerStation
 

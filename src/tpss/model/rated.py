@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tpss.model.contact_line import LineLayout, stretches_of
-from tpss.model.supply import TRANSFORMER, SupplyPlan, system_of
+from tpss.model.supply import system_of
+from tpss.model.supply_plan import TRANSFORMER, SupplyPlan
 from tpss.scenario.rating import CatenaryRating, LineTransformerRating
 from tpss.scenario.supply import Supply
 from tpss.scenario.supply.transformers import stations_beside_km

@@ -6,189 +6,40 @@ impedance; with a high-voltage line it has a node on that line too.  The ends of
 lines meet, there is one node for all of them.
 """
 
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from tpss.model.conductors import FLAT_PU, add_conductors, autotransformers_of
-from tpss.model.contact_line import LineLayout, Run, catenary_at, lay_contact_line
+from tpss.model.conductors import add_conductors, autotransformers_of
+from tpss.model.contact_line import LineLayout, catenary_at, lay_contact_line
 from tpss.model.feeding import Feeding, feedings_of
 from tpss.model.parting import (
     Joint,
     Parting,
-    edges_of_any,
-    edges_of_both,
     renamed,
-    representatives,
 )
 from tpss.model.shared_grids import mutual_impedances_ohm
 from tpss.model.sources import build_sources
 from tpss.model.stores import build_stores
-from tpss.powerflow.bundles import BundlePart, edges_of_bundles
-from tpss.powerflow.groups import edges_within
+from tpss.model.supply_plan import (
+    BUSBAR,
+    CONNECTION,
+    CONTACT_LINE,
+    FEEDER,
+    HIGH_VOLTAGE_LINE,
+    TRANSFORMER,
+    SupplyPlan,
+)
+from tpss.powerflow.assembly import assemble
 from tpss.powerflow.in_service import mark_unfed
-from tpss.powerflow.links import LinkPart, edges_of_links
-from tpss.powerflow.network import BranchPart, Network, SectionPart, assemble
+from tpss.powerflow.network import Network
 from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
 from tpss.scenario.supply import Catenary, HighVoltageLine, Station, Supply
 from tpss.scenario.supply.system import system_named
 from tpss.scenario.supply.transformers import transformer_positions_km
 from tpss.units import kilometres, si
-
-CONTACT_LINE = "contact line"
-HIGH_VOLTAGE_LINE = "high-voltage line"
-TRANSFORMER = "transformer"
-CONNECTION = "connection"
-FEEDER = "AT feeder"
-BUSBAR = "busbar"
-
-
-@dataclass
-class SupplyPlan:
-    """Nodes, branches and sections by name, before they become arrays."""
-
-    nodes: list[str] = field(default_factory=list)
-    node_kinds: list[str] = field(default_factory=list)
-    node_km: list[float] = field(default_factory=list)
-    node_level: list[float] = field(default_factory=list)
-    """Own voltage of the node over that of the contact line."""
-    branches: list[BranchPart] = field(default_factory=list)
-    branch_names: list[str] = field(default_factory=list)
-    branch_kinds: list[str] = field(default_factory=list)
-    sections: list[SectionPart] = field(default_factory=list)
-    section_names: list[str] = field(default_factory=list)
-    section_kinds: list[str] = field(default_factory=list)
-    coupled: list[tuple[int, ...]] = field(default_factory=list)
-    """Sections side by side that have an impedance in common."""
-    branch_level: list[float] = field(default_factory=list)
-    sources: list[int] = field(default_factory=list)
-    stores: list[int] = field(default_factory=list)
-    """Nodes of the stores of energy."""
-    runs: list[list[Run]] = field(default_factory=list)
-    """Of each line."""
-    feeding: list[dict[float, int]] = field(default_factory=list)
-    """Nodes of the contact line of each line where its tracks are tied, by their places. [km]"""
-    node_line: list[int] = field(default_factory=list)
-    """Index of the line of each node."""
-    joints: list[Joint] = field(default_factory=list)
-    """Pairs of nodes that are one in the whole state, see `model.parting`."""
-    guards: list[Joint] = field(default_factory=list)
-    """Pairs of nodes, the second one at the end of a section, that are one until that trips."""
-    links: list[LinkPart] = field(default_factory=list)
-    link_names: list[str] = field(default_factory=list)
-    link_kinds: list[str] = field(default_factory=list)
-    station_links: dict[int, list[int]] = field(default_factory=dict)
-    """Links that are windings of a station, by its number: they are out when it is."""
-    bundles: list[BundlePart] = field(default_factory=list)
-    """Sections that are conductors side by side."""
-    rails_beside: dict[int, int] = field(default_factory=dict)
-    """Nodes of the contact line, and those of the rails there, where these are conductors."""
-    inner_ohm: list[float] = field(default_factory=list)
-    """Resistance between the node of each source and its terminals, where there are bundles. [Ω]"""
-
-    kinds_of_contact_line: ClassVar = (CONTACT_LINE, FEEDER, BUSBAR)
-    """Kinds of nodes that have the voltage of the contact line."""
-
-    @property
-    def edges(self) -> list[tuple[int, int]]:
-        """Nodes that branches and sections couple."""
-        ends = [(section.start_node, section.end_node) for section in self.sections]
-        within = edges_within(self.coupled, ends)
-        lumped = [(branch.start_node, branch.end_node) for branch in self.branches]
-        joined = edges_of_links(self.links) + edges_of_bundles(self.bundles, ends)
-        return ends + within + lumped + joined
-
-    @property
-    def at_line_level(self) -> npt.NDArray[np.bool_]:
-        """Whether each node has a voltage at which trains could run; not one to earth beside rails."""
-        levels = zip(self.node_level, self.node_kinds, strict=True)
-        apart = (*FLAT_PU, *self.kinds_of_contact_line) if self.bundles else ()
-        return np.array([level == 1.0 and kind not in apart for level, kind in levels])
-
-    @property
-    def flat_pu(self) -> list[float]:
-        """Voltage of each node without load, over that of the contact line. [1]"""
-        return [FLAT_PU.get(kind, 1.0) for kind in self.node_kinds]
-
-    def contact_node(self, line: LineLayout, position_km: float) -> int:
-        """Node of the contact line of a line at a place where all its tracks are tied."""
-        return self.feeding[line.number][position_km]
-
-    def one_with(self, joints: Sequence[Joint]) -> list[int]:
-        """The node that each node is one with where some pairs are joined."""
-        return representatives(len(self.nodes), joints, self.sources)
-
-    def room(self) -> list[tuple[int, int]]:
-        """Pairs of nodes that are coupled in any state."""
-        whole = self.one_with([*self.joints, *self.guards])
-        if not self.guards:
-            return edges_of_both(self.edges, whole)
-        return edges_of_any(self.edges, [whole, self.one_with(self.guards)])
-
-    def add_node(
-        self, kind: str, line: LineLayout, position_km: float, level: float = 1.0, words: str = ""
-    ) -> int:
-        """Add a node and return its index; its name begins with its kind and may end in words."""
-        self.nodes.append(f"{kind} at {line.prefix}{kilometres(position_km)} km{words}")
-        self.node_line.append(line.number)
-        self.node_kinds.append(kind)
-        self.node_km.append(position_km)
-        self.node_level.append(level)
-        return len(self.nodes) - 1
-
-    def add_branch(
-        self, kind: str, name: str, start: int, end: int, impedance_ohm: complex, level: float = 1.0
-    ) -> None:
-        """Add a lumped branch; its label begins with its kind."""
-        self.branches.append(BranchPart(start, end, impedance_ohm))
-        self.branch_names.append(f"{kind} {name}")
-        self.branch_kinds.append(kind)
-        self.branch_level.append(level)
-
-    def add_link(
-        self,
-        kind: str,
-        name: str,
-        nodes: tuple[int, ...],
-        weights: tuple[float, ...],
-        impedance_ohm: complex,
-    ) -> None:
-        """Add a lumped element between several nodes; its label begins with its kind."""
-        self.links.append(LinkPart(nodes, weights, impedance_ohm))
-        self.link_names.append(f"{kind} {name}")
-        self.link_kinds.append(kind)
-
-    def branch_labels(self) -> list[str]:
-        """Names of what `Recording.branch_current` holds."""
-        ends = [f"{name}, {end}" for name in self.section_names for end in ("start", "end")]
-        return [*self.branch_names, *ends]
-
-    def branch_levels(self) -> list[float]:
-        """Own voltage of each of them over that of the contact line."""
-        return [*self.branch_level, *(1.0 for _ in self._section_ends())]
-
-    def branch_kind_of_each(self) -> list[str]:
-        """Kind of each of them."""
-        return [*self.branch_kinds, *(kind for kind in self.section_kinds for _ in range(2))]
-
-    def branch_resistance_ohm(self) -> list[float]:
-        """Resistance of each of them at its own level; NaN for the ends of sections. [ohm]"""
-        lumped = [
-            branch.impedance_ohm.real * level**2
-            for branch, level in zip(self.branches, self.branch_level, strict=True)
-        ]
-        return [*lumped, *(math.nan for _ in self._section_ends())]
-
-    def _section_ends(self) -> range:
-        return range(2 * len(self.section_names))
-
 
 NOTHING_PARTED = Parting()
 

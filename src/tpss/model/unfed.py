@@ -7,7 +7,7 @@ import numpy as np
 
 from tpss.model.contact_line import Run
 from tpss.model.outages import layout_of, service_of
-from tpss.model.supply import SupplyPlan
+from tpss.model.supply_plan import SupplyPlan
 from tpss.powerflow.network import UNFED, Network
 from tpss.scenario.line import CLOSEST_KM
 from tpss.scenario.scenario import Scenario

@@ -102,3 +102,11 @@ def voltage_at(p: int, g: int, c: int, network: Network, flow: Flow) -> complex:
         return flow.bundles.voltage_v[at(i), at(c)]
     s = network.bundles.section[at(g), at(c)]
     return flow.nodes[at(network.sections[at(s)].end_node)].voltage_v
+
+
+@kernel
+def piece_after_m(p: int, g: int, flow: Flow) -> float:
+    """Length of the piece behind point `p` of bundle `g`. [m]"""
+    if p + 1 < flow.bundles.first[at(g + 1)]:
+        return flow.bundles.points[at(p + 1)].piece_m
+    return flow.bundles.closing_m[at(g)]

@@ -25,7 +25,7 @@ EARTH = -1
 
 
 class BundlePart(NamedTuple):
-    """A bundle as it is given to `network.assemble`."""
+    """A bundle as it is given to `assembly.assemble`."""
 
     sections: tuple[int, ...]
     """Number of the section of each conductor."""

@@ -34,7 +34,7 @@ Indices = npt.NDArray[np.int64]
 
 
 class LinkPart(NamedTuple):
-    """A link as it is given to `network.assemble`."""
+    """A link as it is given to `assembly.assemble`."""
 
     nodes: tuple[int, ...]
     weights: tuple[float, ...]

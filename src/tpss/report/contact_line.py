@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from tpss.model.supply import CONTACT_LINE
+from tpss.model.supply_plan import CONTACT_LINE
 from tpss.report.sampling import Floats
 from tpss.results.places import WITHOUT_POWER
 

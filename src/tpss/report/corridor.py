@@ -13,7 +13,8 @@ import xarray as xr
 
 from tpss.errors import ResultError, suggest
 from tpss.model.contact_line import stretches_of
-from tpss.model.supply import CONTACT_LINE, layouts_of
+from tpss.model.supply import layouts_of
+from tpss.model.supply_plan import CONTACT_LINE
 from tpss.report.contact_line import phasors_at
 from tpss.report.sampling import Floats
 from tpss.results.places import LINE, lines_of, train_lines, train_tracks

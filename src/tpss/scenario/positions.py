@@ -123,6 +123,7 @@ def _parts_on_lines(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[
         "section_breaks",
         "neutral_sections",
         "without_contact_line",
+        "autotransformers",
     ):
         yield from ((f"supply.{kind}.{i}", each) for i, each in items(supply, kind))
     if "high_voltage_line" in supply:
@@ -150,12 +151,21 @@ def _positions(
         if ".initial_trains." not in key:
             line_of_it = part.get("line", only)
             yield from _standing(key, part, ["position_km", "from_km", "to_km"], line_of_it)
-    high_voltage = table(table(document, "supply"), "high_voltage_line")
-    placed = high_voltage.get("transformers_km")
+    supply = table(document, "supply")
+    high_voltage = table(supply, "high_voltage_line")
+    line_of_it = high_voltage.get("line", only)
+    yield from _listed("supply.high_voltage_line", high_voltage, "transformers_km", line_of_it)
+    for k, each in items(supply, "autotransformers"):
+        line_of_it = each.get("line", only)
+        yield from _listed(f"supply.autotransformers.{k}", each, "positions_km", line_of_it)
+
+
+def _listed(key: str, part: Mapping[str, Any], name: str, line: str) -> Iterator[Standing]:
+    """What stands at each place of a list."""
+    placed = part.get(name)
     for i, position in enumerate(placed if isinstance(placed, list | tuple) else []):
         if (km := number({"": position}, "")) is not None:
-            key = f"supply.high_voltage_line.transformers_km.{i}"
-            yield Standing(key, km, high_voltage.get("line", only))
+            yield Standing(f"{key}.{name}.{i}", km, line)
 
 
 def _standing(key: str, part: Mapping[str, Any], names: list[str], line: str) -> Iterator[Standing]:

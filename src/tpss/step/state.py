@@ -8,7 +8,8 @@ import numpy.typing as npt
 
 from tpss.kernel import inlined
 from tpss.numerics.series import SCRATCH_SHAPE
-from tpss.powerflow.network import Flow, Indices, Loads, new_flow
+from tpss.powerflow.assembly import new_flow
+from tpss.powerflow.network import Flow, Indices, Loads
 from tpss.record import Record, Records
 from tpss.step.model import Model, driving_data
 from tpss.step.separation import Occupancy, tracks_of

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.chain import FLAT
 from tpss.powerflow.following import FOLLOWS, following
 from tpss.powerflow.in_service import mark_unfed
-from tpss.powerflow.network import UNFED, SectionPart, assemble
+from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 
 from networks import BT, STIFF, SYSTEM, constant_loads, place, sources

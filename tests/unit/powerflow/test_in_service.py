@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from tpss.powerflow.assembly import BranchPart, SectionPart, assemble
 from tpss.powerflow.in_service import in_service, unfed_nodes
-from tpss.powerflow.network import UNFED, BranchPart, SectionPart, assemble
+from tpss.powerflow.network import UNFED
 from tpss.sources.converter import ConverterLaw
 from tpss.sources.kinds import Source, SourceKind
 

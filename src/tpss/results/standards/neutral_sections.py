@@ -9,7 +9,7 @@ import xarray as xr
 
 from tpss.model.outages import layout_of
 from tpss.model.phases import phases_of_nodes
-from tpss.model.supply import SupplyPlan
+from tpss.model.supply_plan import SupplyPlan
 from tpss.physics.three_phase import angle_of
 from tpss.results.standards.windows import Floats
 from tpss.scenario.line import CLOSEST_KM

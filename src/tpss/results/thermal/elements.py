@@ -11,7 +11,8 @@ from tpss.model.contact_line import LineLayout
 from tpss.model.feeding import feedings_of
 from tpss.model.outages import layout_of
 from tpss.model.rated import rated_sections, rated_transformers
-from tpss.model.supply import CONTACT_LINE, NOTHING_PARTED, TRANSFORMER, SupplyPlan, layouts_of
+from tpss.model.supply import NOTHING_PARTED, layouts_of
+from tpss.model.supply_plan import CONTACT_LINE, TRANSFORMER, SupplyPlan
 from tpss.physics.motor import MOTORS_OF_LOCOMOTIVE
 from tpss.results.grid_side import characteristic_of, powers_of_types
 from tpss.results.standards.windows import Floats

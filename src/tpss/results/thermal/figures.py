@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from tpss.model.outages import layout_of
-from tpss.model.supply import CONTACT_LINE, TRANSFORMER
+from tpss.model.supply_plan import CONTACT_LINE, TRANSFORMER
 from tpss.results.standards.windows import Floats
 from tpss.results.thermal.elements import (
     CONVERTER,

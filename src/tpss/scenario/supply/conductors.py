@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import Field, model_validator
 
-from tpss.scenario.fields import Part, Real, fault
+from tpss.scenario.fields import Name, Part, Position, Real, ascending, fault, name_of_line
 
 ConductorName = Literal[
     "contact", "feeder", "rails",
@@ -119,12 +119,9 @@ class Conductors(Part):
 class Autotransformers(Part):
     """Autotransformers between contact line, rails and feeder, at one place or several."""
 
-    line: str | None = Field(
-        default=None,
-        description="Name of the line on which they are; needed where there are several.",
-    )
-    positions_km: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(
-        description="Where they stand."
+    line: Name | None = name_of_line()
+    positions_km: Annotated[tuple[Position, ...], Field(min_length=1), ascending("position")] = (
+        Field(description="Where they stand, in ascending order.")
     )
     rated_mva: Real = Field(gt=0, le=1_000, description="Rated power of one.")
     short_circuit_percent: Real = Field(
