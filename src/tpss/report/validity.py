@@ -49,6 +49,13 @@ OF_GRIDS = (
 )
 
 
+OF_RAILS = (
+    "Rails of all tracks are joined at each node and leak to an earth at zero voltage, in lumps; their "
+    "voltage is the highest that can be touched, not what a person bridges. Its limits, and that of "
+    "stray current, are those of the scenario, by default estimates."
+)
+
+
 def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     """Sentences on the method, on the trains that ran, and on the supply, each once."""
     told = list(scenarios)
@@ -63,7 +70,8 @@ def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     rated = [OF_RATINGS] if any(has_ratings(scenario) for scenario in told) else []
     phased = any(phases_of(each) for scenario in told for each in scenario.supply.stations)
     grids = [OF_GRIDS] if phased else []
-    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *grids, *rated]
+    rails = [OF_RAILS] if any(scenario.supply.conductors for scenario in told) else []
+    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *rails, *grids, *rated]
 
 
 def _of_traffic(scenario: Scenario) -> str:

@@ -51,8 +51,7 @@ FIGURES = "figures"
 FIGURE_NAMES = (
     "network", "time-distance", "journey", "voltage", "train-voltage",
     "stations", "converters", "converter-losses", "unbalance", "braking", "storage", "thermal", "rails",
-    "energy",
-    "effort",
+    "energy", "effort",
 )  # fmt: skip
 
 

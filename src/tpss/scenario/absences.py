@@ -107,10 +107,17 @@ ABSENCES = (
         "make a catenary of them: tpss line-constants FILE --out catenary.toml, then supply.catenary = "
         '"catenary.toml"',
     ),
-    Absence(r"storage|battery|accumulator", "stores of energy"),
     Absence(
-        r"harmonics?|earth|rail_potential|return_(current|line)", "harmonics and the return circuit"
+        r"storage|battery|accumulator",
+        "stores of energy at this place",
+        "list them in [[supply.storage]], or write storage of a train",
     ),
+    Absence(
+        r"earth|rail_(potential|voltage|leakage)|return_(current|line)|leakage|stray",
+        "the return circuit at this place",
+        "write [supply.conductors], and rail_earthing_ohm of a station",
+    ),
+    Absence(r"harmonics?", "harmonics"),
 )
 """Everything that unknown keys are held against, the first that matches first."""
 

@@ -43,6 +43,7 @@ PLACES: tuple[tuple[str, ...], ...] = (
     ("supply", "rectifier_stations", "*", "type"),
     ("supply", "rectifier_types", "*"),
     ("trains", "*", "model"),
+    ("standards", "rails"),
     ("conductors", "*", "wire"),
 )
 """Where a file may be named, the last one in a geometry; ``*`` is any item or key."""

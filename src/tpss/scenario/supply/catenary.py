@@ -114,6 +114,17 @@ class Catenary(Part):
         description="Its conductors, for `supply.conductors`; without that the impedance above counts.",
     )
 
+    @field_validator("conductors", mode="before")
+    @classmethod
+    def _not_those_of_a_geometry(cls, given: Any) -> Any:
+        if isinstance(given, list):
+            raise fault(
+                "conductors as a geometry lists them",
+                "make a catenary of them: tpss line-constants FILE --out catenary.toml, then "
+                'supply.catenary = "catenary.toml"',
+            )
+        return given
+
     @field_validator("r_ohm_per_km", mode="before")
     @classmethod
     def _resistance_of_the_conductors(cls, given: Any, info: ValidationInfo) -> Any:
