@@ -91,3 +91,32 @@ def test_two_transformers_halve_the_impedance_of_one():
     node, law = case.flow.nodes[0], case.network.sources[0].grid
     drop = (law.grid_impedance_ohm + law.transformer_impedance_ohm / 2.0) * node.leaving_current_a
     assert 27_500.0 - node.voltage_v == pytest.approx(drop, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("capacitance_nf_per_km", "station", "trains"),
+    [(12.0, 27402.63283 - 327.5464736j, [27023.70734 - 830.9485363j, 27400.44198 + 103.3659456j]),
+     (0.0, 27387.94458 - 327.279259j, [26988.13864 - 822.7363666j, 27351.69413 + 118.5990109j])],
+)  # fmt: skip
+def test_a_train_that_brakes_feeds_the_other_one(capacitance_nf_per_km, station, trains):
+    """Train 2 gives 3.5 MW; the same two programs."""
+    case = solved(capacitance_nf_per_km, [POWERS[0], -3.5e6 + 0j])
+    assert case.flow.nodes[0].voltage_v == pytest.approx(station, abs=1e-5)
+    assert list(case.train_voltage) == [pytest.approx(each, abs=1e-5) for each in trains]
+
+
+def test_a_single_train_has_the_upper_root_of_its_equation():
+    """U² = (b + sqrt(b² - 4 |Z|² |S|²)) / 2, b = E² - 2 (R P + X Q): 7 MW and 1 Mvar at km 20.
+
+    Z = 3.464027778 + j12.16776581 ohm; 25913.32551 V.
+    """
+    supply = Supply(
+        system="25kV-50Hz",
+        catenary={**LINE, "capacitance_nf_per_km": 0.0},
+        transformer_stations=[STATION],
+    )
+    line = LineLayout("line", 0, 0.0, 40.0, (), ((0.0, 40.0, 1),), True)
+    network, _ = build_supply(supply, (line,))
+    case = place(network, constant_loads([20e3], [7e6 + 1e6j]))
+    assert solve(False, case.network, case.flow, case.loads)[0] == 1.0
+    assert abs(case.train_voltage[0]) == pytest.approx(25913.32551, abs=1e-5)

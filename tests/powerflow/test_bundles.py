@@ -229,3 +229,28 @@ def test_rails_that_leak_to_earth(variant):
             each["rail_to_earth_v"], abs=V
         )
         assert found.flow.nodes[4 + k].leaving_current_a.real == pytest.approx(each["i_a"], abs=A)
+
+
+@pytest.mark.parametrize("km", [1.0, 2.5, 5.0, 7.5, 11.0, 15.0, 19.0, 29.0])
+def test_the_impedance_up_to_a_train_is_a_saw_tooth_between_ideal_autotransformers(km):
+    """Z(x) = zL x + zs x' (D - x') / D, x' from the post before the train, cells of D = 10 km.
+
+    zL = (zc + zf - 2 zcf) / 4 and zs = zc + zr - 2 zcr - zL, for a contact line like the feeder and
+    rails without leakage.  Here the autotransformers have 0.1 mΩ in each half.
+    """
+    zc, zr, zcr, zcf = 0.2 + 0.55j, 0.09 + 0.47j, 0.06 + 0.25j, 0.055 + 0.24j
+    z = np.array([[zc, zcr, zcf], [zcr, zr, zcr], [zcf, zcr, zc]])
+    along, within = (zc + zc - 2 * zcf) / 4, zc + zr - 2 * zcr - (zc + zc - 2 * zcf) / 4
+    inputs = {
+        "posts_km": [0.0, 10.0, 20.0, 30.0],
+        "substation": {"e_v": 27.5e3, "zp_ohm": [0.0, 0.0], "zh_ohm": [1e-4, 0.0]},
+        "autotransformer": {"zw_ohm": [1e-4, 0.0], "ym_s": [0.0, -1e-9]},
+    }
+    train = {"km": km, "p_w": 3e6, "q_var": 0.5e6}
+    no_shunt = np.zeros((3, 3), dtype=complex)
+    found = with_autotransformers(inputs, no_shunt, z, [(0, 1)], [train])
+    voltage = found.train_voltage[0]
+    current = np.conj((3e6 + 0.5e6j) / voltage)
+    part_km = km % 10.0
+    expected = along * km + within * part_km * (10.0 - part_km) / 10.0
+    assert (27.5e3 - voltage) / current == pytest.approx(expected, abs=3e-4)
