@@ -16,7 +16,7 @@ from tpss.results.converter_losses import converter_losses, totals
 from tpss.results.dataset import attributes, build_dataset
 from tpss.results.key_figures import Frame, KeyFigures, frame_of, key_figures_of
 from tpss.results.result import Result
-from tpss.results.storage import storage
+from tpss.results.storage import has_stores, storage
 from tpss.results.storage import totals as totals_of_stores
 from tpss.results.summary import provenance, summarise
 from tpss.run.clocks import clock_of
@@ -170,8 +170,8 @@ class Prepared:
         losses = totals(converter_losses(dataset, self.scenario), dataset, self.scenario)
         if losses is not None:
             figures["converter_losses"] = losses
-        if stored := totals_of_stores(storage(dataset, self.scenario)):
-            figures["storage"] = stored
+        if has_stores(dataset):  # a table of none takes as long as a run
+            figures["storage"] = totals_of_stores(storage(dataset, self.scenario))
         return Result(self.scenario, dataset, figures)
 
     def find_lost_time(

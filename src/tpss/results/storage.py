@@ -63,6 +63,11 @@ class Store(NamedTuple):
         return float(np.nanmax(moved_j, initial=0.0)) / self.given.capacity_j
 
 
+def has_stores(dataset: xr.Dataset) -> bool:
+    """Whether a run had stores, at the line or on board."""
+    return "store" in dataset.coords or OWN_STORAGE in dataset
+
+
 def stores_of(dataset: xr.Dataset, scenario: Scenario) -> Iterator[Store]:
     """All stores of a run, those at the line first."""
     if "store" in dataset.coords:
