@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from tpss.model.contact_line import LineLayout
 from tpss.model.supply import build_supply
@@ -87,6 +88,14 @@ def test_a_train_between_autotransformers(leaks):
             node = plan.nodes.index(f"{kind} at {km} km")
             volts = complex(*post[f"{name}_v"])
             assert found.flow.nodes[node].voltage_v == pytest.approx(volts, abs=V)
+
+
+def test_a_secondary_of_two_windings_needs_an_impedance():
+    supply = autotransformer_line(0.1).model_dump(exclude_none=True)
+    (station,) = supply["transformer_stations"]
+    station["transformer"] |= {"short_circuit_percent": 0.0, "load_loss_kw": 0.0}
+    with pytest.raises(ValidationError, match="no impedance to lie in the halves"):
+        Supply.model_validate(supply)
 
 
 def direct_supply(conductors, stations, contact_ohm_per_km, rails_ohm_per_km):

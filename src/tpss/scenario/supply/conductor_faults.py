@@ -49,6 +49,12 @@ def demand_conductors(
             "nothing ties the rails to earth, so that their voltage is unknown",
             "give leakage_s_per_km of supply.conductors, or rail_earthing_ohm of a station",
         )
+    for each in stations:
+        if each.name in halved and each.transformer.short_circuit_percent == 0.0:
+            raise fault(
+                f"the transformer of {each.name} has no impedance to lie in the halves of its secondary",
+                "give short_circuit_percent of the transformer",
+            )
     feeders = ["feeder" in _kinds(each) for each in catenaries]
     if (halved or autotransformers) and not all(feeders):
         raise fault(
