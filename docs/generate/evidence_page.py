@@ -54,9 +54,9 @@ WINDOW = {
 
 TABLES: dict[str, dict[str, str]] = {
     "violations": {
-        "standard": "EN 50163 or EN 50388; `grid` for the unbalance of one",
+        "standard": "EN 50163 or EN 50388; EN 50122 for rails; `grid` for the unbalance of one",
         "rule": "what was broken",
-        "subject": "train, zone or busbar",
+        "subject": "train, zone, rails or busbar",
         "limit_kv": "the limit",
         "value_kv": "the voltage farthest beyond it, or the mean useful voltage",
         "duration_min": "time beyond the limit at a stretch; NaN for a mean",

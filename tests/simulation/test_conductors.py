@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import tpss
-from tpss.results.rail_words import rails_in_words
+from tpss.outages.row import Verdict, row_of
+from tpss.results.judged_rails import EN_50122
 
 from direct_scenarios import direct_document, direct_scenario
 from slow_audit import assert_agree, audit_of
@@ -52,14 +53,29 @@ def test_what_is_told_of_rails(leaking):
     assert rails.highest_v.max() > 0.0 > rails.lowest_v.min()
     assert (rails.permanent_v <= rails.short_v + 1e-9).all()
     assert leaking.stray_current.leaving_a[0] > 0.0
-    lines = rails_in_words(leaking)
+    lines = leaking.judged_rails.in_words
     assert lines[0].startswith("Rails to earth: at most")
     assert "Stray current" in lines[-1]
 
 
 def test_limits_are_data(leaking):
     strict = leaking.with_standards({"rails.permanent_v": 1e-3, "rails.stray_ma_per_m": 1e-6})
-    assert [", beyond it" in line for line in rails_in_words(strict)] == [False, True, True]
+    assert [", beyond it" in line for line in strict.judged_rails.in_words] == [False, True, True]
+
+
+def test_what_is_beyond_a_limit_of_rails_is_a_violation_the_worst_first(leaking):
+    assert len(leaking.standards.violations) == 0
+    strict = leaking.with_standards({"rails.permanent_v": 1e-3, "rails.stray_ma_per_m": 1e-6})
+    found = strict.standards.violations
+    assert set(found.standard) == {EN_50122}
+    voltages = found[found.rule == "rail voltage"]
+    assert len(voltages) == (leaking.rails.permanent_v > 1e-3).sum() > 1
+    assert voltages.value_kv.is_monotonic_decreasing
+    assert voltages.value_kv[0] == leaking.rails.permanent_v.max() / 1e3
+    assert "V to earth over 300 s, above 0.001 V" in voltages.words[0]
+    assert found.words.iloc[-1].endswith("mA/m of track stray, above 1e-06 mA/m")
+    assert row_of("", "", leaking).verdict == Verdict.KEPT
+    assert row_of("", "", strict).verdict == Verdict.RAILS
 
 
 def test_autotransformers_outside_of_the_line_are_told_with_their_place():

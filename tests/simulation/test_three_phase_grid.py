@@ -14,6 +14,7 @@ from tpss.physics.three_phase import angle_of, winding_of
 from tpss.results.notes import notes
 from tpss.results.three_phase import busbars, station_currents_a
 
+from conftest import EXAMPLES
 from scenarios import run, short_line
 from slow_audit import assert_agree, audit_of
 
@@ -149,6 +150,33 @@ def test_opposite_phases_are_noted():
     (note,) = [each for each in notes(result) if "neutral section" in each]
     assert "at 9.95-10.05 km (RS and SR) are 180° apart: up to 3" in note
     assert not any("neutral section" in each for each in notes(run(fed_by(SUPPLIES["one busbar"]))))
+
+
+@pytest.mark.parametrize("secondary", [None, "2x"])
+def test_stations_of_one_busbar_also_feed_conductors(secondary):
+    """Between a source of one winding and the line lies a resistance then, which its law leaves out."""
+    station = {
+        "no_load_voltage_kv": 27.5,
+        "transformer": {"rated_mva": 60.0, "short_circuit_percent": 10.0, "load_loss_kw": 160.0},
+        "grid_kv": 220.0,
+        "grid_short_circuit_mva": 3000.0,
+        "rail_earthing_ohm": 0.5,
+        "phases": "RS",
+        "busbar": "north",
+    }
+    places = {"Airport": 0.0, "City": 50.0}
+    scenario = tpss.load_scenario(EXAMPLES / "hs_2x25kv.toml").with_(
+        {
+            "supply.transformer_stations": [
+                {"name": name, "position_km": km, **station} for name, km in places.items()
+            ],
+            "supply.transformer_stations.0.secondary": secondary,
+            "simulation.duration_min": 10.0,
+        }
+    )
+    result = tpss.simulate(scenario)
+    assert result.audit["passed"]
+    assert result.audit["converter_residual"] < 1e-9
 
 
 def test_without_phases_nothing_is_told():

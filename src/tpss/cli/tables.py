@@ -13,7 +13,6 @@ from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.terminal import parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
-from tpss.results.rail_words import rails_in_words
 from tpss.results.regeneration import fed_back, in_words
 from tpss.results.result import THERMAL, Result
 from tpss.results.step_words import step_lines
@@ -268,7 +267,7 @@ def key_figures(result: Result) -> list[str]:
         )
     if result.standards.voltage_in_words:
         lines.append(f"Voltage: {result.standards.voltage_in_words}")
-    lines += rails_in_words(result)
+    lines += result.judged_rails.in_words
     if result.standards.unbalance_in_words:
         lines.append(f"Unbalance: {result.standards.unbalance_in_words}")
     lines += thermal_in_words(summary.get(THERMAL))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from tpss.results.judged_rails import EN_50122
 from tpss.results.result import Result
 from tpss.results.standards.unbalance import GRID
 from tpss.results.standards.windows import WINDOWS_MIN, highest_means, step_values
@@ -33,8 +34,9 @@ class Verdict(IntEnum):
     USEFUL_VOLTAGE = 7
     TRIPPED = 8
     OVERLOAD = 9
-    UNBALANCE = 10
-    KEPT = 11
+    RAILS = 10
+    UNBALANCE = 11
+    KEPT = 12
 
     @property
     def words(self) -> str:
@@ -50,6 +52,7 @@ class Verdict(IntEnum):
             Verdict.USEFUL_VOLTAGE: "useful voltage too low",
             Verdict.TRIPPED: "tripped",
             Verdict.OVERLOAD: "station overloaded",
+            Verdict.RAILS: "limit of rails exceeded",
             Verdict.UNBALANCE: "grid unbalanced",
             Verdict.KEPT: "limits kept",
         }[self]
@@ -139,6 +142,8 @@ def _verdict(result: Result, figures: Mapping[str, Any]) -> Verdict:
         loading = figures["peak_loading"]
     if loading > 1.0:
         return Verdict.OVERLOAD
+    if EN_50122 in violated:
+        return Verdict.RAILS
     return Verdict.UNBALANCE if GRID in violated else Verdict.KEPT
 
 

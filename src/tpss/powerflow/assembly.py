@@ -135,7 +135,8 @@ def assemble(
         admittance_s[list(blocks(part))] += np.array([1.0, -1.0, -1.0, 1.0]) / part.impedance_ohm
     linked = links_of(links)
     add_admittances(linked, place, admittance_s)
-    shared = shared_grids(mutual_ohm, sources)
+    inner = np.array(inner_ohm)
+    shared = shared_grids(mutual_ohm, sources, inner if bundles else None)
     stamp_shared(admittance_s, shared, sources, place)
 
     return Network(
@@ -151,7 +152,7 @@ def assemble(
         tolerance=max(TOLERANCE, rounding),
         groups=groups_of(groups, ends, place, [part.mutual_ohm_per_m for part in sections]),
         links=linked,
-        bundles=bundles_of(bundles, ends, place, np.array(flat_pu), np.array(inner_ohm)),
+        bundles=bundles_of(bundles, ends, place, np.array(flat_pu), inner),
         shared=shared,
         stores=StoreLaw.blank(0) if stores is None else stores,
     )

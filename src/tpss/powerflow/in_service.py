@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
-from tpss.powerflow.bundles import without_dead_conductors
+from tpss.powerflow.bundles import NO_BUNDLES, without_dead_conductors
 from tpss.powerflow.links import add_admittances, ends_of, without_links
 from tpss.powerflow.network import UNFED, Network
 from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
@@ -55,7 +55,9 @@ def in_service(
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
     changed = changed._replace(links=without_links(network.links, opened_links))
     if network.shared != NO_SHARED_GRIDS:
-        changed = changed._replace(shared=shared_grids(network.shared.mutual_ohm, sources))
+        inner_ohm = None if network.bundles == NO_BUNDLES else network.bundles.inner_ohm
+        shared = shared_grids(network.shared.mutual_ohm, sources, inner_ohm)
+        changed = changed._replace(shared=shared)
     return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
 
 

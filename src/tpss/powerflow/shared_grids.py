@@ -26,6 +26,7 @@ from tpss.record import Records
 from tpss.sources.kinds import Source
 
 Complexes = npt.NDArray[np.complex128]
+Floats = npt.NDArray[np.float64]
 
 
 class SharedGrids(NamedTuple):
@@ -41,7 +42,9 @@ class SharedGrids(NamedTuple):
 NO_SHARED_GRIDS = cast("SharedGrids", ())
 
 
-def shared_grids(mutual_ohm: Complexes | None, sources: Records[Source]) -> SharedGrids:
+def shared_grids(
+    mutual_ohm: Complexes | None, sources: Records[Source], inner_ohm: Floats | None = None
+) -> SharedGrids:
     """Common grids from what their sources do to each other, None if there are none.
 
     Parameters
@@ -50,6 +53,9 @@ def shared_grids(mutual_ohm: Complexes | None, sources: Records[Source]) -> Shar
         As `SharedGrids.mutual_ohm`. [Ω]
     sources : records of Source
         Those in service have units; all that share a grid are transformer stations.
+    inner_ohm : array, shape (sources,), optional
+        What of the impedance of each lies between its node and the line already, see `Bundles`; none
+        by default. [Ω]
     """
     if mutual_ohm is None:
         return NO_SHARED_GRIDS
@@ -61,6 +67,8 @@ def shared_grids(mutual_ohm: Complexes | None, sources: Records[Source]) -> Shar
         among = np.ix_(sharing, sharing)
         laws, units = sources["grid"][sharing], sources["installed"][sharing]
         own_ohm = laws["grid_impedance_ohm"] + laws["transformer_impedance_ohm"] / units
+        if inner_ohm is not None:
+            own_ohm = own_ohm - inner_ohm[sharing]
         admittance_s[among] = np.linalg.inv(mutual_ohm[among] + np.diag(own_ohm))
     return SharedGrids(mutual_ohm, admittance_s)
 

@@ -12,7 +12,7 @@ import xarray as xr
 from tpss.results import store, tables
 from tpss.results.autotransformers import autotransformers
 from tpss.results.converter_losses import converter_losses
-from tpss.results.rails import rails, stray_current
+from tpss.results.judged_rails import JudgedRails
 from tpss.results.regeneration import regeneration
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
@@ -95,14 +95,19 @@ class Result:
         return regeneration(self.dataset, self.scenario)
 
     @cached_property
+    def judged_rails(self) -> JudgedRails:
+        """Rails that are conductors of their own, held against their limits."""
+        return JudgedRails(self.dataset, self.scenario)
+
+    @property
     def rails(self) -> pd.DataFrame:
         """One row per place: voltage of the rails to earth; empty unless they are conductors."""
-        return rails(self.dataset, self.scenario)
+        return self.judged_rails.voltages
 
-    @cached_property
+    @property
     def stray_current(self) -> pd.DataFrame:
         """One row per line: current that leaves the rails of a direct current; otherwise empty."""
-        return stray_current(self.dataset, self.scenario)
+        return self.judged_rails.stray_current
 
     @cached_property
     def autotransformers(self) -> pd.DataFrame:
@@ -147,7 +152,7 @@ class Result:
     @cached_property
     def standards(self) -> Evidence:
         """Key figures by the definitions of the standards: voltages, energies, loads, violations."""
-        return gather(self.dataset, self.scenario)
+        return gather(self.dataset, self.scenario, self.judged_rails)
 
     def with_standards(self, changes: Mapping[str, Any]) -> "Result":
         """The same run, judged by other criteria.

@@ -9,6 +9,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tpss.results.judged_rails import JudgedRails
+from tpss.results.rails import has_rails
 from tpss.results.standards import (
     energy,
     network_load,
@@ -36,7 +38,7 @@ MOST_WORDS = 10
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Key figures of a run by the definitions of EN 50163, EN 50388 and EN 50463.
+    """Key figures of a run by the definitions of EN 50122, EN 50163, EN 50388 and EN 50463.
 
     They are evidence for an assessment, which is more than a simulation: limits, durations and
     minima come from the scenario's ``standards`` and are to be checked against the edition in
@@ -59,6 +61,8 @@ class Evidence:
         Busbars of the grid whose transformer stations tell their phases.
     across : sequence of AcrossNeutral
         Neutral sections between phases that are told.
+    of_rails : JudgedRails, optional
+        Rails that are conductors of their own.
     """
 
     dataset: xr.Dataset
@@ -68,6 +72,7 @@ class Evidence:
     mass_t: Floats
     busbars: Sequence[Unbalance] = ()
     across: Sequence[AcrossNeutral] = ()
+    of_rails: JudgedRails | None = None
 
     @cached_property
     def voltage(self) -> pd.DataFrame:
@@ -259,7 +264,8 @@ class Evidence:
             self.useful_voltage_trains,
             self.standards.voltage_limits,
         )
-        return [*found, *unbalance_violations(self.busbars)]
+        of_rails = self.of_rails.violations if self.of_rails is not None else ()
+        return [*found, *of_rails, *unbalance_violations(self.busbars)]
 
     @property
     def _window(self) -> slice | None:
@@ -276,8 +282,8 @@ def _plain(names: Iterable[Any], values: Iterable[float]) -> dict[str, float | N
     }
 
 
-def gather(dataset: xr.Dataset, scenario: Scenario) -> Evidence:
-    """Evidence of a run."""
+def gather(dataset: xr.Dataset, scenario: Scenario, of_rails: JudgedRails) -> Evidence:
+    """Evidence of a run, whose rails are judged already."""
     trains, lines = scenario.trains_by_service(), scenario.lines_by_name
     several = len(lines) > 1
     return Evidence(
@@ -295,4 +301,5 @@ def gather(dataset: xr.Dataset, scenario: Scenario) -> Evidence:
         mass_t=np.array([trains[name].mass_t for name in dataset.service.to_numpy()], dtype=float),
         busbars=unbalance_of(dataset, scenario),
         across=across_neutral_sections(dataset, scenario),
+        of_rails=of_rails if has_rails(dataset) else None,
     )
