@@ -25,6 +25,7 @@ from tpss.run.services import departing_trains
 from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide, pass_unfed, prepare_unfed
 from tpss.step.model import Model, driving_data, with_step
+from tpss.step.sparing import allow_currents
 from tpss.step.state import State, loads_of
 
 from benchmarks.continuation import Equations
@@ -54,7 +55,8 @@ class Replay:
             start = start.with_trips(trips)
         self.switchings = start.switchings
         self.control = start.model.control
-        model = start.model._replace(control=model.control)  # with types that use spare time
+        control = self.control._replace(studied_train=model.control.studied_train)
+        model = start.model._replace(control=control)  # with types that use spare time
         if start.turns is not None:  # for the trains of the run, no others
             self.run = run_of(replace(start, model=model))
             return
@@ -74,6 +76,8 @@ class Replay:
         self.go_to(step)
         untouched = copy.deepcopy(run.state)
         clock = run.state.clock[0]
+        if run.model.control.spares_motors:
+            allow_currents(step, run.model.options.step_s, run.model, run.state)
         clock.on_line = begin_step(step, run.model, run.state, run.recording)
         change_length(step, step_s, run.model, run.state, run.recording)
         count, model = clock.on_line, plain(with_step)(run.model, step_s)
