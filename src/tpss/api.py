@@ -12,7 +12,7 @@ from tpss.model import build_model
 from tpss.model.build import Layout, at_step
 from tpss.model.start import start_of
 from tpss.results.contents import FORMAT, FORMAT_KEY
-from tpss.results.converter_losses import converter_losses, totals
+from tpss.results.converter_losses import converter_losses, describes_losses, totals
 from tpss.results.dataset import attributes, build_dataset
 from tpss.results.key_figures import Frame, KeyFigures, frame_of, key_figures_of
 from tpss.results.result import Result
@@ -167,9 +167,9 @@ class Prepared:
         }
         dataset = build_dataset(outcome, model, self.layout)
         dataset.attrs = attributes(figures, model.options.step_s, run.last_step_s)
-        losses = totals(converter_losses(dataset, self.scenario), dataset, self.scenario)
-        if losses is not None:
-            figures["converter_losses"] = losses
+        if describes_losses(self.scenario):
+            table = converter_losses(dataset, self.scenario)
+            figures["converter_losses"] = totals(table, dataset, self.scenario)
         if has_stores(dataset):  # a table of none takes as long as a run
             figures["storage"] = totals_of_stores(storage(dataset, self.scenario))
         return Result(self.scenario, dataset, figures)

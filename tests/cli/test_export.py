@@ -72,6 +72,9 @@ def dataset_of_another_version(folder):
     dataset = xr.load_dataset(folder / "result.nc", engine="netcdf4")
     dataset.attrs["result_format"] = 3
     dataset.to_netcdf(folder / "result.nc", engine="netcdf4")
+    summary = json.loads((folder / "summary.json").read_text())
+    del summary["sha256"]  # as in a folder of that version
+    (folder / "summary.json").write_text(json.dumps(summary))
 
 
 @pytest.mark.parametrize(

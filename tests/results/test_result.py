@@ -4,6 +4,7 @@ Runs used below: the AT line with a train every 3 minutes, 6 minutes long, witho
 high-voltage line; and the thesis's main line until its studied train has gone 160 km.
 """
 
+import hashlib
 import json
 import shutil
 
@@ -363,7 +364,10 @@ def test_a_folder_holds_dataset_summary_and_scenario(folder, at_line):
         "summary.json",
         "scenario.toml",
     }
-    assert json.loads((folder / "summary.json").read_text("utf-8")) == at_line.summary
+    saved = json.loads((folder / "summary.json").read_text("utf-8"))
+    content = (folder / "result.nc").read_bytes()
+    assert saved.pop("sha256") == {"result.nc": hashlib.sha256(content).hexdigest()}
+    assert saved == at_line.summary
 
 
 def test_the_saved_scenario_runs_again_to_the_same_energies(main_line, tmp_path):

@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tpss import ResultError, load_result, simulate, write_report
-from tpss.files import whole
+from tpss import ResultError, load_result, load_scenario, simulate, write_report
+from tpss.files import whole, workplace
 from tpss.report.contact_line import line_voltage
 from tpss.results import store
 
+from conftest import EXAMPLES
 from scenarios import run
 
 
@@ -65,7 +66,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import tpss
-from tpss.files import whole
+from tpss.files import workplace
 from tpss.results import store
 
 def kill(*_, **__):
@@ -81,8 +82,9 @@ new = tpss.load_result("new")
 if sys.argv[1] == "writing":
     store.json.dumps = kill
 elif sys.argv[1] == "moving":
-    whole.move_folder = kill
+    workplace.put_in_place = kill
 else:
+    workplace.exchange = lambda *_: False
     Path.rename = kill_at_second()
 new.save("result", force=True)
 """
@@ -101,13 +103,40 @@ def test_a_killed_process_leaves_the_old_result(old, new, tmp_path, when):
     assert load_result(tmp_path / "result").scenario.name == "old"
 
 
-def test_a_process_killed_between_the_old_result_and_the_new_one_leaves_both(old, new, tmp_path):
-    """A folder cannot take another's name in one step; for a moment both have a hidden one."""
+def test_a_process_killed_between_the_old_result_and_the_new_one_loses_neither(old, new, tmp_path):
+    """Where two folders cannot take each other's name in one step, none has it for a moment.
+
+    Whoever asks for the result next gets the old one, with what its user has put there.
+    """
     old.save(tmp_path / "result")
     new.save(tmp_path / "new")
+    (tmp_path / "result" / "mine.txt").write_text("mine")
     save_and_be_killed("between", tmp_path)
-    left = [path.parent for path in tmp_path.rglob(".result-*/**/summary.json")]
-    assert {load_result(folder).scenario.name for folder in left} == {"old", "new"}
+    assert not (tmp_path / "result").exists()
+    assert load_result(tmp_path / "result").scenario.name == "old"
+    assert (tmp_path / "result" / "mine.txt").read_text() == "mine"
+    assert names_in(tmp_path) == ["new", "result"]
+
+
+def test_a_flipped_bit_is_told(old, tmp_path):
+    """Wherever it lies: 150 places of the dataset, of which many would give other numbers silently."""
+    folder = old.save(tmp_path / "result")
+    written = bytearray((folder / "result.nc").read_bytes())
+    for place in range(len(written) // 300, len(written), len(written) // 150):
+        written[place] ^= 4
+        (folder / "result.nc").write_bytes(written)
+        with pytest.raises(ResultError, match="not as it was written"):
+            load_result(folder)
+        written[place] ^= 4
+    (folder / "result.nc").write_bytes(written)
+    assert load_result(folder).summary.keys() == old.summary.keys()
+
+
+def test_datasets_are_compressed_and_nothing_of_them_is_lost(old, tmp_path):
+    several = simulate(load_scenario(EXAMPLES / "thesis_3_3.toml"))
+    folder = several.save(tmp_path / "result")
+    assert (folder / "result.nc").stat().st_size < 0.3 * several.dataset.nbytes
+    assert load_result(folder).dataset.identical(several.dataset)
 
 
 def test_the_old_result_comes_back_if_the_new_one_cannot_take_its_place(
@@ -121,9 +150,11 @@ def test_the_old_result_comes_back_if_the_new_one_cannot_take_its_place(
             raise OSError(5, "Input/output error")
         return rename(path, target)
 
-    monkeypatch.setattr(Path, "rename", failing)
-    with pytest.raises(ResultError, match="cannot be written: Input/output error"):
-        new.save(folder, force=True)
+    with monkeypatch.context() as changed:
+        changed.setattr(workplace, "exchange", lambda *_: False)
+        changed.setattr(Path, "rename", failing)
+        with pytest.raises(ResultError, match="cannot be written: Input/output error"):
+            new.save(folder, force=True)
     assert load_result(folder).scenario.name == "old"
     assert names_in(tmp_path) == ["result"]
 

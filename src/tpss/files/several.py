@@ -1,12 +1,17 @@
 """Several files of a folder, which are written all or none."""
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from tpss.errors import ResultError
 from tpss.files.refusals import ANOTHER, explained, refuse_to_replace
-from tpss.files.whole import folder_beside, real, write_new
+from tpss.files.whole import real, settle, write_new
+from tpss.files.workplace import NEW, OLD, clear_left, workplace
+
+JOURNAL = "journal.json"
+"""File of a workplace: which files are about to be put into their places, and which were there."""
 
 
 def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
@@ -17,6 +22,7 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
     ResultError
         The folder is not one, or files exist and may not be replaced.
     """
+    clear_left(_named(real(folder)), take_back)
     if os.path.lexists(folder) and not folder.is_dir():
         raise ResultError(f"{folder} is not a folder; {ANOTHER}")
     there = [folder / name for name in names if os.path.lexists(folder / name)]
@@ -36,34 +42,54 @@ def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list
         As `check_files`, or the folder cannot be written.
     """
     target = real(folder)
-    with explained(folder), folder_beside(target / "export") as work:
-        new, old = work / "new", work / "old"
+    with explained(folder), workplace(_named(target), take_back) as work:
+        new = work / NEW
         new.mkdir()
-        old.mkdir()
         for name, content in contents.items():
             write_new(new / name, content)
         check_files(folder, contents, force)
         if target.exists():
-            _move_files(new, target, old)
+            _move_files(work, target)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             new.rename(target)
     return [folder / name for name in contents]
 
 
-def _move_files(new: Path, target: Path, old: Path) -> None:
+def _named(target: Path) -> Path:
+    """By what the workplaces of a folder are named: they lie within it, or where it is to be."""
+    return target / "export"
+
+
+def _move_files(work: Path, target: Path) -> None:
     """Put written files into a folder; if one cannot be moved, everything is restored."""
-    moved: list[str] = []
+    (work / OLD).mkdir()
+    names = sorted(file.name for file in (work / NEW).iterdir())
+    there = [name for name in names if os.path.lexists(target / name)]
+    write_new(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
+    settle(work)
     try:
-        for file in sorted(new.iterdir()):
-            place = target / file.name
-            if os.path.lexists(place):
-                place.rename(old / file.name)
-            file.rename(place)
-            moved.append(file.name)
+        for name in names:
+            if name in there:
+                (target / name).rename(work / OLD / name)
+            (work / NEW / name).rename(target / name)
     except BaseException:
-        for name in moved:
-            (target / name).unlink()
-        for file in old.iterdir():
-            file.rename(target / file.name)
+        take_back(work)
         raise
+    settle(target)
+    (work / JOURNAL).unlink()
+
+
+def take_back(work: Path) -> None:
+    """Bring a folder back to what it held before files of a workplace were put into it."""
+    target, journal = work.parent, work / JOURNAL
+    if not journal.exists():
+        return
+    listed = json.loads(journal.read_text())
+    for name in listed["names"]:
+        if (work / OLD / name).exists():
+            (work / OLD / name).replace(target / name)
+        elif name not in listed["there"] and not (work / NEW / name).exists():
+            (target / name).unlink(missing_ok=True)
+    settle(target)
+    journal.unlink()

@@ -1,32 +1,37 @@
-"""Files and folders that are there whole, and on the disk, or not at all."""
+"""Files that are there whole, and on the disk, or not at all."""
 
 import os
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import time
+from contextlib import suppress
 from pathlib import Path
+from secrets import token_hex
+from typing import BinaryIO
 
-TRIAL_BYTES = 2**16
-"""A disk without space for so many bytes is full."""
+UNFINISHED = ".unfinished"
+"""Ends the name of a file that is being written."""
+
+ABANDONED_S = 3600.0
+"""What is unfinished and has not been written to for so long is not being written. [s]"""
 
 Content = bytes | memoryview
 
 
 def write_file(place: Path, content: Content) -> None:
-    """Write a file, or replace one, whole or not at all.
+    """Write a file, or replace one, whole or not at all, whoever else writes it at the same time.
 
     Raises
     ------
     OSError
     """
-    unfinished = place.with_name(f"{place.name}.unfinished")
+    clear_unfinished(place)
+    unfinished = place.with_name(f".{place.name}-{token_hex(4)}{UNFINISHED}")
     try:
-        _write(unfinished, content, "wb")
+        write_new(unfinished, content)
         unfinished.replace(place)
-    except OSError:
+    except BaseException:
         unfinished.unlink(missing_ok=True)
         raise
+    settle(place.parent)
 
 
 def write_new(place: Path, content: Content) -> None:
@@ -36,57 +41,46 @@ def write_new(place: Path, content: Content) -> None:
     ------
     OSError
     """
-    _write(place, content, "xb")
+    with place.open("xb") as file:
+        _write_through(file, content)
 
 
-def _write(place: Path, content: Content, mode: str) -> None:
-    """Write a file through to the disk."""
-    with place.open(mode) as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
+def _write_through(file: BinaryIO, content: Content) -> None:
+    """Write into a file through to the disk."""
+    file.write(content)
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def clear_unfinished(place: Path) -> None:
+    """Remove what processes that ended while they wrote a file have left of it."""
+    for left in place.parent.glob(f".{literal(place.name)}-*{UNFINISHED}"):
+        with suppress(OSError):  # it may be gone, or not ours
+            if is_abandoned(left):
+                left.unlink()
+
+
+def is_abandoned(left: Path) -> bool:
+    """Whether something unfinished has not been written to for so long that nobody works on it."""
+    return time.time() - left.stat().st_mtime > ABANDONED_S
+
+
+def literal(name: str) -> str:
+    """A name as a pattern that fits nothing else."""
+    return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)
+
+
+def settle(folder: Path) -> None:
+    """Write the names in a folder through to the disk, where the system can."""
+    if os.name == "nt":
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
 
 
 def real(folder: Path) -> Path:
     """A folder's place on the disk, links followed."""
     return Path(os.path.realpath(folder))
-
-
-@contextmanager
-def folder_beside(target: Path) -> Iterator[Path]:
-    """A hidden folder to work in, on the disk of the nearest folder above `target` that exists."""
-    parent = next(folder for folder in target.parents if os.path.lexists(folder))
-    with tempfile.TemporaryDirectory(
-        prefix=f".{target.name}-", dir=parent, ignore_cleanup_errors=True
-    ) as work:
-        yield Path(work)
-
-
-def try_out(target: Path) -> None:
-    """Write a trial file next to a folder to be made, to prove that it can be made."""
-    with folder_beside(target) as work:
-        (work / "trial").write_bytes(bytes(TRIAL_BYTES))
-
-
-def move_folder(
-    new: Path, target: Path, old: Path, carry_over: Callable[[Path, Path], None]
-) -> None:
-    """Put a written folder into its place; one that it replaces is removed only afterwards.
-
-    Parameters
-    ----------
-    new, target, old : Path
-        The folder, its place, and where one that it replaces is kept meanwhile.
-    carry_over : callable
-        Moves what is to be kept of the old folder into the new one.
-    """
-    try:
-        if target.exists():
-            target.rename(old)
-        new.rename(target)
-    finally:
-        if old.exists() and not target.exists():
-            old.rename(target)
-    if old.exists():
-        carry_over(old, target)
-        shutil.rmtree(old, ignore_errors=True)

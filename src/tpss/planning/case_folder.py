@@ -12,7 +12,7 @@ import pandas as pd
 
 from tpss.errors import StudyError
 from tpss.files.refusals import ANOTHER, explained
-from tpss.files.whole import write_file
+from tpss.files.whole import UNFINISHED, write_file
 from tpss.sweep.folder import CASES, LOCK, REMEDY, lock, read_parts
 from tpss.sweep.versions import versions
 
@@ -47,7 +47,7 @@ class CaseFolder:
             (self.path / CASES).mkdir(parents=True, exist_ok=True)
             with lock(self.path):
                 self._begin()
-                for leftover in (self.path / CASES).glob("*.unfinished"):
+                for leftover in (self.path / CASES).glob(f"*{UNFINISHED}"):
                     leftover.unlink()
                 yield
 

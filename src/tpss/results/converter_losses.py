@@ -33,6 +33,11 @@ COLUMNS = (
 )
 
 
+def describes_losses(scenario: Scenario) -> bool:
+    """Whether any station says what it loses."""
+    return any(side.is_described for side in sides_of(scenario))
+
+
 def station_powers(dataset: xr.Dataset, scenario: Scenario) -> dict[str, Powers]:
     """Powers on the 50 Hz side in every step, by the stations that describe losses."""
     active, reactive, running = (

@@ -99,12 +99,12 @@ class Result:
         """Rails that are conductors of their own, held against their limits."""
         return JudgedRails(self.dataset, self.scenario)
 
-    @property
+    @cached_property
     def rails(self) -> pd.DataFrame:
         """One row per place: voltage of the rails to earth; empty unless they are conductors."""
         return self.judged_rails.voltages
 
-    @property
+    @cached_property
     def stray_current(self) -> pd.DataFrame:
         """One row per line: current that leaves the rails of a direct current; otherwise empty."""
         return self.judged_rails.stray_current

@@ -1,5 +1,6 @@
 """Result folders: written whole or not at all, and read with clear messages on damage."""
 
+import hashlib
 import json
 import os
 import threading
@@ -12,7 +13,7 @@ import tomli_w
 import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
-from tpss.files import whole
+from tpss.files import whole, workplace
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
 from tpss.results.dataset import NODE_KIND, described
@@ -22,6 +23,12 @@ from tpss.step.recorded import RECORDED
 
 FIRST_BYTES = 2**16
 """Initial size of a dataset in memory; it grows."""
+
+PACKED = {"zlib": True, "complevel": 1, "shuffle": True}
+"""How numbers are compressed: more than this level takes longer and saves little."""
+
+CHECKSUMS = "sha256"
+"""Key of a saved summary: checksums of the other files, by their names."""
 
 ONE_AT_A_TIME = threading.Lock()
 """The netCDF library is not safe in several threads at once."""
@@ -43,7 +50,7 @@ def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
     """
     with explained(folder or PARENT):
         _refuse(folder, force)
-        whole.try_out(whole.real(folder or next_folder(scenario.name)))
+        workplace.try_out(whole.real(folder or next_folder(scenario.name)))
 
 
 def save(
@@ -58,21 +65,27 @@ def save(
         _refuse(folder, force)
         target = whole.real(folder or next_folder(scenario.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        with whole.folder_beside(target) as work:
-            new = work / "new"
+        with workplace.workplace(target, _put_right(target)) as work:
+            new = work / workplace.NEW
             new.mkdir()
             # In memory first: on a full disk HDF5 cannot close its file, and aborts the process.
             # The simulation has needed more memory than this.
-            whole.write_new(new / DATASET, _as_netcdf(dataset))
+            content = _as_netcdf(dataset)
+            whole.write_new(new / DATASET, content)
             whole.write_new(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
-            text = json.dumps(summary, indent=2, ensure_ascii=False)
+            checked = {**summary, CHECKSUMS: {DATASET: hashlib.sha256(content).hexdigest()}}
+            text = json.dumps(checked, indent=2, ensure_ascii=False)
             whole.write_new(new / SUMMARY, f"{text}\n".encode())
             if folder is None:
                 return _move_to_next(new, scenario.name)
             _refuse(folder, force)
-            old = work.with_name(f"{work.name}-replaced")
-            whole.move_folder(new, target, old, carry_over)
+            workplace.put_in_place(work, target, carry_over)
             return folder
+
+
+def _put_right(target: Path) -> workplace.PutRight:
+    """What is done where a process was killed while it put a result into its place."""
+    return lambda work: workplace.restore(work, target, carry_over)
 
 
 def _refuse(folder: Path | None, force: bool) -> None:
@@ -109,6 +122,8 @@ def next_folder(name: str, parent: Path = PARENT) -> Path:
 
 def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     """Read a result folder.  See `load_result`."""
+    if not folder.exists():
+        workplace.clear_left(whole.real(folder), _put_right(whole.real(folder)))
     missing = [name for name in (DATASET, SUMMARY, SCENARIO) if not (folder / name).is_file()]
     if missing:
         raise ResultError(
@@ -118,6 +133,8 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         _demand_this_format(folder, summary)
+        # First: on some damaged files HDF5 ends the process.
+        _demand_what_was_written(folder / DATASET, summary.pop(CHECKSUMS, {}))
         dataset = _read_netcdf(folder / DATASET)
         scenario = load_scenario(folder / SCENARIO)
         _demand_a_result(dataset)
@@ -135,7 +152,8 @@ def _as_netcdf(dataset: xr.Dataset) -> memoryview:
     """A dataset as the content of a netCDF 4 file."""
     with ONE_AT_A_TIME:
         file = netCDF4.Dataset(DATASET, "w", memory=FIRST_BYTES)
-        dataset.dump_to_store(xr.backends.NetCDF4DataStore(file))
+        packed = {name: PACKED for name in dataset.variables if dataset[name].dtype.kind in "fi"}
+        dataset.dump_to_store(xr.backends.NetCDF4DataStore(file), encoding=packed)
         content: memoryview = file.close()
     return content
 
@@ -177,6 +195,14 @@ def _demand_this_format(folder: Path, summary: Any) -> None:
             f"{written or 'older than any number'}, this version reads {FORMAT}; run the scenario "
             f"again (tpss run {folder / SCENARIO}), or read it with that version"
         )
+
+
+def _demand_what_was_written(file: Path, checksums: dict[str, str]) -> None:
+    """Raise a `ValueError` if a file is not the one of which a checksum is known."""
+    with file.open("rb") as opened:
+        found = hashlib.file_digest(opened, "sha256").hexdigest()
+    if checksums.get(file.name, found) != found:
+        raise ValueError(f"{file.name} is not as it was written: its checksum is another")
 
 
 def _demand_a_result(dataset: xr.Dataset) -> None:

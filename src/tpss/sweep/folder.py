@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from filelock import FileLock, Timeout
 
 from tpss.errors import StudyError
 from tpss.files.refusals import ANOTHER, explained, reason
-from tpss.files.whole import write_file
+from tpss.files.whole import UNFINISHED, write_file
 
 REMEDY = (
     f"free space, or {ANOTHER}. Finished cases are kept, and the same command continues from them"
@@ -55,7 +56,7 @@ class Folder:
             (self.path / CASES).mkdir(parents=True, exist_ok=True)
             with lock(self.path):
                 begun = self._begin(manifest)
-                for leftover in (self.path / CASES).glob("*.unfinished"):
+                for leftover in (self.path / CASES).glob(f"*{UNFINISHED}"):
                     leftover.unlink()
                 yield begun
 
@@ -66,7 +67,7 @@ class Folder:
         if not self.path.is_dir():
             raise StudyError(f"{self.path} is not a folder; give another --out")
         names = {entry.name for entry in self.path.iterdir()} - {CASES, LOCK}
-        if names and MANIFEST not in names and not names <= {f"{MANIFEST}.unfinished"}:
+        if MANIFEST not in names and not all(name.endswith(UNFINISHED) for name in names):
             raise StudyError(
                 f"{self.path} is not empty, nor the folder of a study; give another --out"
             )
@@ -111,19 +112,17 @@ LOCK = ".lock"
 @contextmanager
 def lock(path: Path) -> Iterator[None]:
     """Keep other processes out until this one ends, in whatever manner."""
+    held = FileLock(path / LOCK)
     try:
-        import fcntl
-    except ImportError:  # not on Windows
+        held.acquire(timeout=0)
+    except Timeout:
+        raise StudyError(
+            f"{path} is in use by another process; wait for it, or give another --out"
+        ) from None
+    try:
         yield
-        return
-    with (path / LOCK).open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise StudyError(
-                f"{path} is in use by another process; wait for it, or give another --out"
-            ) from None
-        yield
+    finally:
+        held.release()
 
 
 def missing(done: Ranges, cases: int) -> Ranges:

@@ -1,0 +1,168 @@
+"""Whatever kills a process, at whatever call of the file system, files are all old or all new.
+
+A child process writes, and is killed with SIGKILL at its n-th call of the file system that changes
+anything; n runs from 1 until the child lives to its end.  Then another process looks.
+"""
+
+import os
+import signal
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from tpss.files.several import check_files, save_files
+from tpss.files.whole import ABANDONED_S, write_file
+from tpss.files.workplace import NEW, clear_left, put_in_place, restore, workplace
+
+CHANGES = ("open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "shutil.rmtree")
+"""Events of the interpreter that come before the file system is changed."""
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="a process is not copied there")
+
+
+def killed_at(call: int, work) -> bool:
+    """Whether a process that does some work was killed at this call."""
+    child = os.fork()
+    if child == 0:
+        seen = 0
+
+        def count(event, _):
+            nonlocal seen
+            if event in CHANGES:
+                seen += 1
+                if seen == call:
+                    os.kill(os.getpid(), signal.SIGKILL)
+
+        sys.addaudithook(count)
+        try:
+            work()
+        finally:
+            os._exit(0)
+    _, status = os.waitpid(child, 0)
+    return os.WIFSIGNALED(status)
+
+
+def at_every_call(prepare, work, look) -> int:
+    """Do some work, killed at each of its calls in turn; return the number of calls."""
+    call = 1
+    while True:
+        prepare()
+        killed = killed_at(call, work)
+        look(killed)
+        if not killed:
+            return call - 1
+        call += 1
+
+
+def make_old(folder: Path) -> None:
+    """Let what is hidden in a folder have been made long ago."""
+    for left in folder.glob(".*"):
+        os.utime(left, (0.0, 0.0))
+
+
+def content_of(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("can_exchange", [True, False])
+def test_a_folder_is_the_old_or_the_new_one(tmp_path, monkeypatch, can_exchange):
+    """The user's own file is in it, too; without an exchange the next one to come restores it."""
+    if not can_exchange:
+        monkeypatch.setattr("tpss.files.workplace.exchange", lambda *_: False)
+    target, kept = tmp_path / "result", {"notes.txt": "mine"}
+
+    def carry_over(old: Path, new: Path) -> None:
+        for file in old.glob("*.txt"):
+            file.rename(new / file.name)
+
+    def put_right(work: Path) -> None:
+        restore(work, target, carry_over)
+
+    def prepare() -> None:
+        clear_left(target, put_right)
+        target.mkdir(exist_ok=True)
+        for name, text in {"a.nc": "old", "b.json": "old", **kept}.items():
+            (target / name).write_text(text)
+
+    def work() -> None:
+        with workplace(target, put_right) as place:
+            (place / NEW).mkdir()
+            for name in ("a.nc", "b.json"):
+                (place / NEW / name).write_text("new")
+            put_in_place(place, target, carry_over)
+
+    def look(_: bool) -> None:
+        if can_exchange:
+            assert target.is_dir()
+        make_old(tmp_path)
+        clear_left(target, put_right)
+        found = content_of(target)
+        assert found in ({"a.nc": each, "b.json": each, **kept} for each in ("old", "new"))
+        assert [path.name for path in tmp_path.iterdir() if path.name != "result"] == []
+
+    assert at_every_call(prepare, work, look) > 10
+
+
+def test_several_files_are_all_old_or_all_new(tmp_path):
+    old, new = (dict.fromkeys(("b.csv", "c.csv"), each) for each in ("old", "new"))
+    new |= {"a.csv": "new", "d.csv": "new"}
+
+    def prepare() -> None:
+        for file in tmp_path.iterdir():
+            file.unlink()
+        for name, text in {**old, "mine.txt": "mine"}.items():
+            (tmp_path / name).write_text(text)
+
+    def look(_: bool) -> None:
+        make_old(tmp_path)
+        check_files(tmp_path, [], force=True)
+        found = content_of(tmp_path)
+        assert found.pop("mine.txt") == "mine"
+        assert found in (old, new)
+        assert not [path for path in tmp_path.iterdir() if path.is_dir()]
+
+    def work() -> None:
+        save_files(tmp_path, {name: text.encode() for name, text in new.items()}, force=True)
+
+    assert at_every_call(prepare, work, look) > 10
+
+
+def test_a_file_is_the_old_or_the_new_one(tmp_path):
+    place = tmp_path / "report.html"
+
+    def look(killed: bool) -> None:
+        assert place.read_text() in (("old", "new") if killed else ("new",))
+        make_old(tmp_path)
+
+    calls = at_every_call(lambda: place.write_text("old"), lambda: write_file(place, b"new"), look)
+    assert calls >= 2
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]  # what was left is cleared
+
+
+def test_what_others_are_writing_is_not_cleared(tmp_path):
+    theirs = tmp_path / ".a.json-01234567.unfinished"
+    theirs.write_text("half")
+    write_file(tmp_path / "a.json", b"whole")
+    assert theirs.exists()
+    long_ago = theirs.stat().st_mtime - 2.0 * ABANDONED_S
+    os.utime(theirs, (long_ago, long_ago))
+    write_file(tmp_path / "a.json", b"whole")
+    assert not theirs.exists()
+
+
+def test_writers_of_one_file_do_not_meet(tmp_path):
+    place, contents = tmp_path / "study.json", [bytes([k]) * 100_000 for k in range(8)]
+    with ThreadPoolExecutor(8) as writers:
+        list(writers.map(lambda content: write_file(place, content), contents * 5))
+    assert place.read_bytes() in contents
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_workplace_in_use_is_left_alone(tmp_path):
+    target = tmp_path / "result"
+    with workplace(target) as theirs:
+        clear_left(target)
+        assert theirs.is_dir()
+    assert list(tmp_path.iterdir()) == []
