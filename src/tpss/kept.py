@@ -26,20 +26,24 @@ class Kept(Generic[_Value]):
 
         What raises an error is not kept: it raises it again.
         """
-        found = self._values.get(key)  # one look-up: to hash a whole supply takes a while
+        found = self.get(key)
         if found is not None:
             return found
         value = make()
+        self.put(key, value)
+        return value
+
+    def get(self, key: Hashable) -> _Value | None:
+        """The value of a key, if there is one."""
+        return self._values.get(key)
+
+    def put(self, key: Hashable, value: _Value) -> None:
+        """Keep a value, in place of another one of its key, or of the one that was made first."""
         with self._lock:
+            self._values.pop(key, None)
             self._values[key] = value
             while len(self._values) > self.most:
                 del self._values[next(iter(self._values))]
-        return value
-
-    def clear(self) -> None:
-        """Keep nothing more of what was made so far."""
-        with self._lock:
-            self._values.clear()
 
     def __len__(self) -> int:
         return len(self._values)
@@ -51,4 +55,5 @@ def content_of(part: Any) -> Hashable:
         return part.shape, np.asarray(part).tobytes()
     if isinstance(part, tuple):
         return tuple(content_of(each) for each in part)
-    return part
+    number: Hashable = part
+    return number
