@@ -6,7 +6,7 @@ from tpss import TpssError, simulate
 from tpss.model import build_model
 from tpss.model.traffic import build_services
 from tpss.run import already_running, lone
-from tpss.run.already_running import trains_already_running
+from tpss.run.already_running import find_already_running, trains_already_running
 from tpss.run.lone import EmptyLine
 from tpss.run.run import Run
 from tpss.step.model import RunControl
@@ -59,7 +59,7 @@ def waits_of_lone_trains(changes, monkeypatch):
         return train_of(line, service, wait_s or 0.0)
 
     monkeypatch.setattr(EmptyLine, "train_of", noted)
-    return len(trains_already_running(model, service)), waits
+    return len(find_already_running(model, service)), waits
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,24 @@ def test_there_is_one_lone_train_for_each_remainder_of_headways_in_a_step(
     trains, waits = waits_of_lone_trains({**CONTINUOUS, **changes}, monkeypatch)
     assert trains > 2 * len(expected)
     assert waits == expected
+
+
+def test_cases_on_the_same_line_have_their_trains_in_common_whatever_the_supply(monkeypatch):
+    """The second supply asks for no lone train; another mass, limit or headway does."""
+    given = {**CONTINUOUS, "simulation.time_step_min": 0.5, "traffic.0.headway_min": 3.3}
+    first = trains_already_running(*model_and_service(given))
+    asked, find = [], already_running.find_already_running
+    monkeypatch.setattr(
+        already_running, "find_already_running", lambda *known: asked.append(1) or find(*known)
+    )
+    model, service = model_and_service({**given, "supply.catenary": "AT"})
+    assert trains_already_running(model, service) == first == find(model, service)
+    assert not asked
+    for change in ("trains.*.mass_t", "line.speed_limits.0.speed_kmh", "traffic.0.headway_min"):
+        value = {"trains.*.mass_t": 700.0}.get(change, 4.1)
+        model, service = model_and_service({**given, change: value})
+        assert trains_already_running(model, service) == find(model, service) != first
+    assert len(asked) == 3
 
 
 def test_trains_that_move_in_steps_need_one_lone_train(monkeypatch):

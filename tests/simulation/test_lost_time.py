@@ -1,8 +1,14 @@
 """Time lost to the voltage: against the same run at the supply's voltage without load."""
 
+from dataclasses import replace
+
 import pytest
 
 import tpss
+from tpss.kept import Kept
+from tpss.run import stiff
+from tpss.run.protection import run_to_end
+from tpss.step.advance import advance
 
 from scenarios import short_line
 
@@ -71,3 +77,27 @@ def test_there_is_none_where_no_train_has_arrived(changes):
 
 def test_it_is_not_looked_for_unless_it_is_asked_for():
     assert tpss.simulate(short_line(WEAK)).summary["lost_time"] is None
+
+
+def test_cases_with_the_same_trains_share_the_run_at_one_voltage_and_find_what_they_would_alone(
+    monkeypatch,
+):
+    """A shorter run takes its part of a longer one; another supply has the same, other trains do not."""
+    given = {"simulation.until": None, "traffic.0.already_running": True}
+    changes = [{}, {"supply.catenary": "AT"}, {"trains.*.mass_t": 700.0}]
+    starts = [
+        tpss.prepare(short_line({**WEAK, **given, "simulation.duration_min": 60.0, **each})).start
+        for each in changes
+    ]
+    starts = [replace(start, steps=steps) for steps in (300, 200, 250, 299) for start in starts]
+    runs = [(run_to_end(start, advance)[0], start) for start in starts]
+
+    def alone(run, start):
+        monkeypatch.setattr(stiff, "_kept", Kept(1))
+        return stiff.lost_by_train(run, start, 16500.0)
+
+    expected = [alone(*each) for each in runs]
+    assert all(expected)
+    monkeypatch.setattr(stiff, "_kept", Kept(8))
+    assert [stiff.lost_by_train(*each, 16500.0) for each in runs] == expected
+    assert len(stiff._kept) == 2

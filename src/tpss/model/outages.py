@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from tpss.errors import Finding, ScenarioError
-from tpss.model.parting import parting_of
+from tpss.kept import Kept
+from tpss.model.parting import Joint, parting_of
 from tpss.model.supply import build_supply, joined_network, layouts_of
 from tpss.model.supply_plan import TRANSFORMER, SupplyPlan
 from tpss.powerflow.following import following
@@ -71,8 +73,12 @@ def _times_s(outage: Outage | None) -> tuple[float, float]:
     return 60.0 * outage.from_min, math.inf if outage.to_min is None else 60.0 * outage.to_min
 
 
-class Laid(NamedTuple):
-    """A supply with all open that an outage opens, before anything else is taken out."""
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A supply with all open that an outage opens, before anything else is taken out.
+
+    There is one of each such supply, which cases share: it equals itself only.
+    """
 
     network: Network
     plan: SupplyPlan
@@ -92,23 +98,52 @@ class Laid(NamedTuple):
         }
         joints = [] if outage is not None else plan.joints
         joints = [*joints, *(joint for joint in plan.guards if joint[1] not in apart)]
-        network, leaders = joined_network(*self, joints)
-        if outage is not None or out:
-            units = {} if outage is None else _units_left(outage, self.supply)
-            units |= {each.station: 0 for each in out if each.station >= 0}
-            opened = [] if outage is None else _transformers_out(outage, plan)
-            opened += [each.transformer for each in out if each.transformer >= 0]
-            out_of_service = [s for s, left in units.items() if left == 0]
-            links = [k for s in out_of_service for k in plan.station_links.get(s, ())]
-            network = in_service(network, units, opened, links)
-        return following(network, leaders) if leaders else network
+        if outage is None and not out:
+            return self._shared(joints, None)
+        units = {} if outage is None else _units_left(outage, self.supply)
+        units |= {each.station: 0 for each in out if each.station >= 0}
+        opened = [] if outage is None else _transformers_out(outage, plan)
+        opened += [each.transformer for each in out if each.transformer >= 0]
+        left = _Left(tuple(units.items()), tuple(opened))
+        if out:  # a run tells by its network whether something has tripped: each is one of its own
+            return _network_of(self, joints, left)
+        return self._shared(joints, left)
+
+    def _shared(self, joints: Sequence[Joint], left: "_Left | None") -> Network:
+        """The network with pairs of nodes joined and what is left in service, which cases share."""
+        key = self, tuple(joints), left
+        return _networks.of(key, lambda: _network_of(self, joints, left))
+
+
+class _Left(NamedTuple):
+    """What is left of a supply in service."""
+
+    units: tuple[tuple[int, int], ...]
+    """Numbers of stations, and units that they have left."""
+    opened: tuple[int, ...]
+    """Numbers of the branches that are out."""
+
+
+def _network_of(laid: Laid, joints: Sequence[Joint], left: _Left | None) -> Network:
+    """The network of a supply with pairs of nodes joined, and what is left in service; None: all."""
+    network, leaders = joined_network(laid.network, laid.plan, laid.supply, joints)
+    if left is not None:
+        units = dict(left.units)
+        out_of_service = [s for s, count in units.items() if count == 0]
+        links = [k for s in out_of_service for k in laid.plan.station_links.get(s, ())]
+        network = in_service(network, units, left.opened, links)
+    return following(network, leaders) if leaders else network
+
+
+_networks, _laid = Kept[Network](128), Kept[Laid](64)
 
 
 def layout_of(scenario: Scenario, outage: Outage | None) -> Laid:
     """Network of a scenario that is parted as an outage parts it, and its parts."""
     parting = parting_of(outage, scenario.supply, scenario.protection.trip)
     supply = scenario.supply if outage is None else outage.switched(scenario.supply)
-    return Laid(*build_supply(supply, layouts_of(scenario.lines_by_name), parting), supply)
+    key = (supply, layouts_of(scenario.lines_by_name), parting)
+    return _laid.of(key, lambda: Laid(*build_supply(*key), supply))
 
 
 def _units_left(outage: Outage, supply: Supply) -> dict[int, int]:

@@ -69,6 +69,8 @@ def demand_one_angle(scenario: Scenario, plan: SupplyPlan) -> None:
         Two stations of different phases are tied by the contact line, which would short them; or by
         rails or feeders that are conductors, in which the currents of both have no angle in common.
     """
+    if all(phases_of(station) is None for station in scenario.supply.stations):
+        return
     shorted = list(_findings(scenario, plan, islands_of(plan), SHORTED, PART_THEM))
     if findings := shorted or list(
         _findings(scenario, plan, islands_of(plan, by_conductors=True), BY_CONDUCTORS, ONE_ANGLE)

@@ -8,7 +8,6 @@ lines meet, there is one node for all of them.
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 from tpss.model.conductors import add_conductors, autotransformers_of
@@ -44,14 +43,10 @@ from tpss.units import kilometres, si
 NOTHING_PARTED = Parting()
 
 
-@lru_cache(maxsize=64)
 def build_supply(
     supply: Supply, lines: tuple[LineLayout, ...], parting: Parting = NOTHING_PARTED
 ) -> tuple[Network, SupplyPlan]:
-    """Network along lines, with the names of its parts, in which all is parted that is said to be.
-
-    Cases of a study have few supplies; those of the same one share what this gives, and only read it.
-    """
+    """Network along lines, with the names of its parts, in which all is parted that is said to be."""
     plan = plan_supply(supply, lines, parting)
     sources = build_sources(plan.sources, supply.stations)
     parts = len(plan.nodes), plan.sections, plan.branches, sources, system_of(supply)

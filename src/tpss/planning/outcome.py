@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.audit.verdict import Audit
 from tpss.planning.plan import Evaluation
 from tpss.planning.steady import FINISHED, SteadyRun, Window, run_steadily
 from tpss.results.grid_side import sides_of
-from tpss.results.key_figures import KeyFigures, frame_of, key_figures_of
+from tpss.results.key_figures import audit_and_useful_voltage, frame_of
 from tpss.results.recorded_energies import grid_side_w
 from tpss.run.run import Run, arrivals_s
 from tpss.run.stiff import lost_by_train
@@ -57,11 +58,11 @@ def outcome_of(
     """
     steady = run_steadily(scenario, evaluation, memory)
     window, run = steady.window, steady.run
-    figures = _key_figures(steady)
+    audit, useful_kv = _audit_and_useful_voltage(steady)
     row = {
         "status": steady.status,
-        "problem": "; ".join(figures.audit.failures) or None,
-        "audit_passed": figures.audit.passed,
+        "problem": "; ".join(audit.failures) or None,
+        "audit_passed": audit.passed,
         "steps": run.step,
         "period_min": steady.period_min,
     }
@@ -71,19 +72,19 @@ def outcome_of(
         **row,
         "window_from_min": window.begin_s / 60.0,
         "window_to_min": window.end_s / 60.0,
-        "mean_useful_voltage_kv": figures.mean_useful_voltage_kv,
+        "mean_useful_voltage_kv": useful_kv,
         **_electrical(steady, window),
         **dict(_of_services(steady, window)),
     }
 
 
-def _key_figures(steady: SteadyRun) -> KeyFigures:
-    """Key figures, those of a peak window taken in the one where means are."""
+def _audit_and_useful_voltage(steady: SteadyRun) -> tuple[Audit, float]:
+    """Audit, and lowest mean useful voltage [kV], whose peak window is the one where means are taken."""
     scenario, run, window = steady.scenario, steady.run, steady.window
     frame = frame_of(scenario, steady.layout, steady.start.model)
     if window is not None:
         frame = replace(frame, peak_from_min=window.begin_s / 60.0, peak_to_min=window.end_s / 60.0)
-    return key_figures_of(run, steady.status, steady.start, frame)
+    return audit_and_useful_voltage(run, frame)
 
 
 def _electrical(steady: SteadyRun, window: Window) -> dict[str, float]:

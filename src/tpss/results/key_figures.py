@@ -242,7 +242,7 @@ def run_for_figures(
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
     """Key figures of a run that has ended with a status, without `thermal`, which takes its time."""
     figures = _gather(run, frame)
-    whole = dict(zip(RunFigures.dtype.names or (), figures.run.tolist()[0], strict=True))
+    whole = _of_whole_run(figures)
     studied = start.studied if start.studied < run.departed else -1
     trip_min, speed_kmh = _studied_trip(run, studied, figures)
     return KeyFigures(
@@ -269,6 +269,19 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         limited=dict(zip(LIMITED, run.recording.counters.tolist(), strict=True)),
         audit=_audit(run, figures, whole, frame),
     )
+
+
+def audit_and_useful_voltage(run: Run, frame: Frame) -> tuple[Audit, float]:
+    """Audit of a run that has ended, and the lowest mean useful voltage of the zones [kV].
+
+    They are those of `key_figures_of`, for many runs of which no more is asked.
+    """
+    figures = _gather(run, frame)
+    return _audit(run, figures, _of_whole_run(figures), frame), _lowest_zone_kv(figures)
+
+
+def _of_whole_run(figures: Figures) -> dict[str, Any]:
+    return dict(zip(RunFigures.dtype.names or (), figures.run.tolist()[0], strict=True))
 
 
 def _gather(run: Run, frame: Frame) -> Figures:

@@ -1,11 +1,15 @@
 """Trains that stand along the line when a run begins: those of services that run already, and others."""
 
 import math
+from collections.abc import Hashable
+from dataclasses import replace
 from itertools import count
 
 from tpss.driving.data import MotionModel, Options
 from tpss.driving.passage import LONGEST_PHASE_S
 from tpss.errors import TooLargeError
+from tpss.kept import Kept, content_of
+from tpss.kernel import plain
 from tpss.run.lone import EmptyLine, LoneTrain
 from tpss.run.services import (
     DEPARTURE_ROUNDING_S,
@@ -14,7 +18,7 @@ from tpss.run.services import (
     placed_trains,
     train_at,
 )
-from tpss.step.model import Model
+from tpss.step.model import Model, driving_data
 
 MOST_PHASES = 3e8
 """Phases of motion of all lone trains after which a start is refused: some minutes of computing."""
@@ -44,6 +48,29 @@ def trains_on_line(model: Model, services: list[Service]) -> list[ScheduledTrain
 
 def trains_already_running(model: Model, service: Service) -> list[ScheduledTrain]:
     """Trains of a service as if it had run for ever: those that departed before the start.
+
+    They do not know the supply: cases with the same trains on the same line have them in common.
+
+    Raises
+    ------
+    TooLargeError
+        As `find_already_running`.
+    """
+    key = _known_to_a_lone_train(model, service)
+    return list(_kept.of(key, lambda: tuple(find_already_running(model, service))))
+
+
+_kept = Kept[tuple[ScheduledTrain, ...]](256)
+
+
+def _known_to_a_lone_train(model: Model, service: Service) -> Hashable:
+    """What drivers know, and the voltage: all that decides where trains stand that are alone."""
+    known = (*plain(driving_data)(model), model.points)
+    return content_of(known), model.network.system.nominal_voltage_v, replace(service, delays=None)
+
+
+def find_already_running(model: Model, service: Service) -> list[ScheduledTrain]:
+    """`trains_already_running`, found by the runs of lone trains.
 
     The n-th stands where a lone train at nominal voltage is n headways after its departure, with its
     speed and its progress in a dwell or a braking plan.  Where trains depart within a step, the lone

@@ -140,7 +140,8 @@ class Run:
         departed = sum(train.departure_step < max(begun, 1) for train in self.trains)
         if begun == 0:
             return departed
-        pending = self.state.trains["motion"]["phase"][:departed] == Phase.PENDING
+        phases = np.asarray(self.state.trains)["motion"]["phase"][:departed]
+        pending = phases == Phase.PENDING
         return departed - int(pending.sum())
 
     @property
@@ -269,7 +270,7 @@ def switch(run: Run, switchings: Sequence[Switching], last: int) -> int:
 
 def arrivals_s(run: Run) -> npt.NDArray[np.float64]:
     """When each train came to stand at its destination, or NaN. [s]"""
-    timetable = run.state.trains["timetable"]
+    timetable = np.asarray(run.state.trains)["timetable"]
     instant = timetable["arrival_step"]
     arrived_s = run.instants_s[np.maximum(instant, 0)] - timetable["stood_s"]
     return np.asarray(np.where(instant >= 0, arrived_s, np.nan), dtype=float)

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tpss.driving.data import MotionModel, Options
 from tpss.record import Records
 from tpss.run.delays import Delays
@@ -176,19 +178,27 @@ def placed_trains(service: Service) -> list[ScheduledTrain]:
 def train_records(trains: list[ScheduledTrain], voltage_v: float) -> Records[Train]:
     """Records of the trains, in their order, with a first guess of their voltage. [V]"""
     records = Train.blank(len(trains))
-    parts = {"motion": Motion, "plan": Plan}
-    fields: list[tuple[str, ...]] = [("train_type",), ("route",)]
-    fields += [("timetable", "departure_step"), ("timetable", "departure_wait_s")]
-    fields += [("timetable", "delay_s")]
-    fields += [(name, field) for name, part in parts.items() for field in part.dtype.names or ()]
-    for (*part, field), column in zip(fields, list(zip(*trains, strict=True))[2:], strict=False):
+    fields = np.asarray(records)  # whose fields take numpy a tenth of the time
+    for (part, field), column in zip(_ENTERING, list(zip(*trains, strict=True))[2:], strict=False):
         if any(column):  # most of them are zero
-            (records[part[0]] if part else records)[field] = column
-    records["timetable"]["arrival_step"] = -1
-    records["demand"]["voltage_v"] = records["line_voltage_v"] = voltage_v
-    records["demand"]["terms_speed_m_s"] = -1.0
-    records["allowed_current_a"] = math.inf
+            (fields[part] if part else fields)[field] = column
+    fields["timetable"]["arrival_step"] = -1
+    fields["demand"]["voltage_v"] = fields["line_voltage_v"] = voltage_v
+    fields["demand"]["terms_speed_m_s"] = -1.0
+    fields["allowed_current_a"] = math.inf
     return records
+
+
+_ENTERING = (
+    ("", "train_type"),
+    ("", "route"),
+    ("timetable", "departure_step"),
+    ("timetable", "departure_wait_s"),
+    ("timetable", "delay_s"),
+    *(("motion", name) for name in Motion.dtype.names or ()),
+    *(("plan", name) for name in Plan.dtype.names or ()),
+)
+"""Part and name of the fields of `Train` that follow the names in a `ScheduledTrain`."""
 
 
 def train_at(record: Any, train: ScheduledTrain, number: int) -> ScheduledTrain:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from tpss.record import Records
 from tpss.run.already_running import trains_on_line
 from tpss.run.limits import demand_room
@@ -96,11 +98,12 @@ def begin(
     studied_name = services[0].name_of(1)
     studied = names.index(studied_name) if studied_name in names else -1
     ends_with = studied if steps is None else -1
-    spares_motors = bool((model.types["spared"]["continuous_a"] < math.inf).any())
+    types = np.asarray(model.types)
+    spares_motors = bool((types["spared"]["continuous_a"] < math.inf).any())
     control = RunControl(
         studied_train=ends_with,
         spares_motors=spares_motors,
-        has_stores=bool((model.types["on_board"]["store"]["capacity_j"] > 0.0).any()),
+        has_stores=bool((types["on_board"]["store"]["capacity_j"] > 0.0).any()),
     )
     model = model._replace(control=control)
     records = train_records(trains, model.network.system.nominal_voltage_v)

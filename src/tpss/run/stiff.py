@@ -5,14 +5,18 @@ are later by in the run itself is what the supply takes from them.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from tpss.kept import Kept, content_of
+from tpss.kernel import plain
 from tpss.run.run import INTERRUPTED, Progress, Run, advance_to_end, arrivals_s, run_of
 from tpss.run.start import Start
+from tpss.step.model import driving_data
+from tpss.step.recording import is_kept_apart
 
 
 @dataclass(frozen=True)
@@ -88,15 +92,67 @@ def lost_by_train(
     control = start.model.control._replace(fixed_voltage_v=voltage_v, studied_train=-1)
     model = start.model._replace(control=control)
     stiff = replace(start, model=model, steps=run.step, switchings=())
-    other = run_of(stiff)
-    if advance_to_end(other, stiff, report, interrupted) == INTERRUPTED:
+    arrived = _stiff_arrivals(stiff, run.step, report, interrupted)
+    if arrived is None:
         return {}
-    arrived = _arrivals_by_name(other)
     return {
         name: time_s - arrived[name]
         for name, time_s in _arrivals_by_name(run).items()
         if name in arrived
     }
+
+
+class _Stiff(NamedTuple):
+    """When trains came to stand at their destinations in a run at one voltage."""
+
+    steps: int
+    """Length of the run."""
+    arrivals: dict[str, tuple[int, float]]
+    """Instant and time of each train. [s]"""
+
+    def within(self, steps: int) -> dict[str, float]:
+        """Those of a run of no more steps. [s]"""
+        return {name: time_s for name, (step, time_s) in self.arrivals.items() if step <= steps}
+
+
+_kept = Kept[_Stiff](256)
+
+
+def _stiff_arrivals(
+    start: Start,
+    steps: int,
+    report: Callable[[Progress], None] | None,
+    interrupted: Sequence[int] | None,
+) -> dict[str, float] | None:
+    """When trains of a run at one voltage came to stand, by name; None: it was interrupted. [s]
+
+    Where trains do not look out for each other they do not know the supply: cases with the same trains
+    on the same line have these runs in common.
+    """
+    key = _known_to_trains(start) if not is_kept_apart(start.model) else None
+    known = None if key is None else _kept.get(key)
+    if known is None or known.steps < steps:
+        other = run_of(start)
+        if advance_to_end(other, start, report, interrupted) == INTERRUPTED:
+            return None
+        instants = other.state.trains["timetable"]["arrival_step"].tolist()
+        times_s = _arrivals_by_name(other)
+        names = zip(other.trains, instants, strict=True)
+        known = _Stiff(
+            other.step,
+            {each.name: (n, times_s[each.name]) for each, n in names if each.name in times_s},
+        )
+        if key is not None:
+            _kept.put(key, known)
+    return known.within(steps)
+
+
+def _known_to_trains(start: Start) -> Hashable:
+    """What drivers know, the voltages and the trains: all that decides about a run at one voltage."""
+    model = start.model
+    known = (*plain(driving_data)(model), model.points)
+    voltages_v = model.control.fixed_voltage_v, model.network.system.nominal_voltage_v
+    return content_of(known), voltages_v, tuple(start.trains), tuple(start.services)
 
 
 def _arrivals_by_name(run: Run) -> dict[str, float]:

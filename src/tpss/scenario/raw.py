@@ -16,6 +16,9 @@ Ends = tuple[float, float]
 CALLS = ("stops", "passes")
 """Lists of a service's stations on its way."""
 
+TABLES = (dict, Mapping)
+"""What a table is, the usual one first: to ask for others takes ten times as long."""
+
 LARGEST = 1e300
 """Larger numbers count as this one: an integer in a file has any number of digits."""
 
@@ -23,14 +26,14 @@ LARGEST = 1e300
 def table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     """The table of a key; an empty one if there is none."""
     value = document.get(key)
-    return value if isinstance(value, Mapping) else {}
+    return value if isinstance(value, TABLES) else {}
 
 
 def items(document: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Numbers and tables of a list."""
     value = document.get(key)
     for i, item in enumerate(value if isinstance(value, list | tuple) else []):
-        if isinstance(item, Mapping):
+        if isinstance(item, TABLES):
             yield i, item
 
 

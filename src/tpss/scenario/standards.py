@@ -1,5 +1,6 @@
 """Criteria for a result: limits of the voltage, the peak window, zones of the line."""
 
+from functools import cache
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -25,6 +26,7 @@ USEFUL = ("mean_useful_kv", "mean_useful_fast_kv")
 """Keys of the least mean useful voltage."""
 
 
+@cache
 def limits_of_system(system: str) -> "VoltageLimits":
     """Voltage limits of a system, those of the library."""
     return VoltageLimits.model_validate({"system": system})

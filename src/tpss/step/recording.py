@@ -108,11 +108,11 @@ def recording_bytes(model: Model, steps: int, trains: int) -> int:
 
 
 def _regenerates(model: Model) -> bool:
-    return bool((model.types["regeneration"]["highest_force_n"] > 0.0).any())
+    return bool((np.asarray(model.types)["regeneration"]["highest_force_n"] > 0.0).any())
 
 
 def _stores_on_board(model: Model) -> bool:
-    return bool((model.types["on_board"]["store"]["capacity_j"] > 0.0).any())
+    return bool((np.asarray(model.types)["on_board"]["store"]["capacity_j"] > 0.0).any())
 
 
 def _has_neutral(model: Model) -> bool:

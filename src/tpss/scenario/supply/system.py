@@ -1,5 +1,6 @@
 """Electrification systems, which the library describes."""
 
+from functools import cache
 from typing import Annotated
 
 from pydantic import Field
@@ -36,6 +37,7 @@ SystemName = Annotated[str, entry_of(SYSTEMS)]
 """Name of a system of the library."""
 
 
+@cache
 def system_named(name: str) -> System:
     """Values of a system of the library."""
     return System.model_validate(library.values(SYSTEMS, name))
