@@ -98,9 +98,14 @@ class Laid(NamedTuple):
             units |= {each.station: 0 for each in out if each.station >= 0}
             opened = [] if outage is None else _transformers_out(outage, plan)
             opened += [each.transformer for each in out if each.transformer >= 0]
-            out_of_service = [s for s, left in units.items() if left == 0]
-            links = [k for s in out_of_service for k in plan.station_links.get(s, ())]
-            network = in_service(network, units, opened, links)
+            links = (
+                {} if outage is None else dict.fromkeys(_autotransformers_out(outage, plan), 0.0)
+            )
+            for s, left in units.items():
+                share = left / self.supply.stations[s].installed
+                links |= dict.fromkeys(plan.station_links.get(s, ()), share)
+            stores = [] if outage is None else _stores_out(outage, self.supply)
+            network = in_service(network, units, opened, links, stores)
         return following(network, leaders) if leaders else network
 
 
@@ -127,6 +132,21 @@ def _transformers_out(outage: Outage, plan: SupplyPlan) -> list[int]:
         for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True))
         if kind == TRANSFORMER and _is_at(plan.node_km[branch.start_node], outage)
     ]
+
+
+def _autotransformers_out(outage: Outage, plan: SupplyPlan) -> list[int]:
+    """Numbers of the links of autotransformers that an outage takes out."""
+    return [
+        k
+        for (line, km), links in plan.autotransformer_links.items()
+        if any(each.is_at(line, km) for each in outage.autotransformers)
+        for k in links
+    ]
+
+
+def _stores_out(outage: Outage, supply: Supply) -> list[int]:
+    """Numbers of the stores of energy at the line that an outage takes out."""
+    return [m for m, store in enumerate(supply.storage) if store.name in outage.storage]
 
 
 def _is_at(position_km: float, outage: Outage) -> bool:
