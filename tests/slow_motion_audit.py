@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from slow_figures import intervals_s, largest, nan_is_largest
 from tpss.driving.data import Braking, Driver, MotionModel
+from tpss.numerics.curve import CurvePoint
 from tpss.physics.constants import GRAVITY_M_S2
 from tpss.run.run import Outcome
 from tpss.step.model import Model
@@ -31,8 +32,8 @@ def traction_balance(outcome: Outcome, model: Model) -> float:
 def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
     """`traction_balance` of trains whose steps may have several phases, from the recorded powers.
 
-    The motors' recorded work counts as far as some efficiency of the train makes it what the drawn
-    energy is, less the auxiliaries of the time from departure to arrival.
+    The motors' recorded work counts as far as some efficiency of the train, at some speed and load,
+    makes it what the drawn energy is, less the auxiliaries of the time from departure to arrival.
     """
     trains, timetable = outcome.recording.trains, outcome.state.trains["timetable"]
     kind, count = _kinds(outcome, model), len(outcome.trains)
@@ -44,7 +45,8 @@ def continuous_traction_balance(outcome: Outcome, model: Model) -> float:
     low, high = np.empty(count), np.empty(count)
     for i, curve in enumerate(kind.efficiency):
         values = model.points.value[curve.first : curve.first + curve.points]
-        low[i], high[i] = values.min(), values.max()
+        factors = _factors_over_load(kind[i].over_load)
+        low[i], high[i] = values.min() * factors.min(), values.max() * factors.max()
     for_motors = before["active_power"] * h - kind.auxiliary_power_w * present_s
     if outcome.recording.regeneration.size:
         for_motors = for_motors + outcome.recording.regeneration["regenerated_power"][:-1] * h
@@ -82,6 +84,11 @@ def stepped_traction_balance(outcome: Outcome, model: Model) -> float:
     way_m = h * (before["speed"] + after["speed"]) / 2.0
     efficiency = _efficiency(before["speed"], kind, model.points)
     power_w = (before["active_power"] - kind.auxiliary_power_w) * efficiency
+    for i, curve in enumerate(kind.over_load):
+        if curve.count:
+            factors = _factors_over_load(curve)
+            least, most = factors.min() * power_w[:, i], factors.max() * power_w[:, i]
+            power_w[:, i] = np.clip(before["motor_power"][:, i], least, most)
     work = power_w * h / kind.slip_factor
     force = before["tractive_force"]
     rotor = np.where(
@@ -96,6 +103,17 @@ def stepped_traction_balance(outcome: Outcome, model: Model) -> float:
     fallen = -np.nansum(np.minimum(before["gradient_force"], 0.0) * way_m)
     slowed = -np.nansum(np.minimum(kinetic, 0.0))
     return float(abs(difference) / max(np.nansum(work) + fallen + slowed, 1.0))
+
+
+def _factors_over_load(curve: Any) -> Floats:
+    """Factors of the efficiency at a thousand loads; 1 if it does not follow the load. [1]"""
+    if not curve.count:
+        return np.ones(1)
+    own = CurvePoint.array([(0.0, 0.0, 0.0)] * curve.count)
+    own.x, own.value = curve.power_w[: curve.count], curve.factor[: curve.count]
+    own.slope = curve.slope_per_w[: curve.count]
+    loads = np.union1d(np.linspace(0.0, own.x[-1], 1000), own.x)
+    return _curve(loads, own)
 
 
 def _efficiency(speed: Floats, kind: Any, points: Any) -> Floats:

@@ -51,6 +51,6 @@ def test_what_a_transformer_puts_into_the_system_is_its_weights_times_each_other
 
 
 def test_a_transformer_that_is_out_feeds_nothing_and_leaves_nothing_in_the_system():
-    network = in_service(behind_a_transformer(1e6 + 0j).network, {}, [], [0])
+    network = in_service(behind_a_transformer(1e6 + 0j).network, {}, [], {0: 0.0})
     assert not network.admittance_s.any()
     assert unfed_nodes(network).tolist() == [False, True, True]

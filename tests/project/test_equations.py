@@ -107,9 +107,10 @@ COMPUTE_NO_EQUATION = {
         "train_bridge_sine", "effort_outside_training", "outside_table", "effort_by_speed",
         "take_speed_as_it_is", "_settle", "effort_at", "follows_voltage", "voltage_decides",
         "lay_out_bands", "band_above", "band_below",
+        "lay_out_loads", "slopes_over_load", "falls_with_power",
         # Questions about the state of a train, and what keeps it.
         "is_on_line", "brakes_within_step", "current_limits", "find_breaches", "copy_motion",
-        "regenerates", "gives_or_stores", "has_store", "begin_own_store",
+        "works_beyond_loads", "regenerates", "asks_more", "has_store", "begin_own_store",
     },
 }  # fmt: skip
 """Functions of each room that compute no equation of their own: they choose, keep or ask."""

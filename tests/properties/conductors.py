@@ -1,5 +1,6 @@
 """Random lines whose rails, and perhaps feeders, are conductors of their own."""
 
+from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
@@ -55,6 +56,26 @@ def take_apart(draw: Draw, document: Document) -> None:
             station["rail_earthing_ohm"] = draw(numbers(0.05, 5.0))
         if with_feeder and (k == 0 or draw(st.booleans())):
             station["secondary"] = "2x"
+    if with_feeder:
+        give_autotransformers(Random(repr(document)), document)
+
+
+def give_autotransformers(draw: Random, document: Document) -> None:
+    """Let some autotransformers stand on a line; now and then too near to something else."""
+    lines = {"": document["line"]} if "line" in document else document["lines"]
+    name = draw.choice(list(lines))
+    begin_km, length_km = lines[name].get("begins_at_km", 0.0), lines[name]["length_km"]
+    shares = sorted(draw.uniform(0.05, 0.95) for _ in range(draw.randint(0, 2)))
+    if shares:
+        document["supply"]["autotransformers"] = [
+            {
+                **({"line": name} if name else {}),
+                "positions_km": [begin_km + share * length_km for share in shares],
+                "rated_mva": draw.uniform(2.0, 20.0),
+                "short_circuit_percent": draw.uniform(0.3, 3.0),
+                "no_load_current_percent": draw.choice([0.0, 0.3]),
+            }
+        ]
 
 
 def of_25_kv_or_direct(document: Document) -> bool:

@@ -1,5 +1,6 @@
 """Random outages: stations, units, transformers, switches and sections, throughout or for a time."""
 
+from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
@@ -130,3 +131,17 @@ def _section(draw: Draw, document: Document) -> Document:
     if lines[name].get("tracks", 1) == 2 and tied != "everywhere":
         section |= draw(st.sampled_from([{}, {"track": 1}, {"track": 2}]))
     return section
+
+
+def take_parts_out(draw: Random, document: Document) -> None:
+    """Let a random outage name some stores of energy and autotransformers too, where there are any."""
+    supply = document["supply"]
+    for outage in document.get("outages", ()):
+        stores = [store["name"] for store in supply.get("storage", ()) if draw.random() < 0.5]
+        places = [
+            {key: each[key] for key in ("line",) if key in each} | {"position_km": km}
+            for each in supply.get("autotransformers", ())
+            for km in each["positions_km"]
+            if draw.random() < 0.5
+        ]
+        outage |= {"storage": stores, "autotransformers": places}

@@ -19,12 +19,13 @@ from .electric_brakes import with_electric_brakes
 from .feeding import CONVERTER_STATIONS, OWN_CATENARIES, UNLIKE_STATIONS, transformer_stations
 from .given_tracks import give_tracks
 from .kilometres import moved
+from .load_curves import give_curves_over_load
 from .losses import with_losses
 from .machines import EMUS, ODD_TRAINS, TRAINS
 from .mixed import with_mixed_stations
 from .networks import into_network
 from .neutral import with_neutral_section
-from .outages import outages
+from .outages import outages, take_parts_out
 from .ranges import numbers
 from .ratings import with_ratings
 from .single_tracks import with_single_tracks
@@ -326,6 +327,8 @@ def sound_scenarios(
         into_direct_current(draw, document)
     if apart and of_25_kv_or_direct(document):
         take_apart(draw, document)
+    give_curves_over_load(Random(repr(document)), document)
+    take_parts_out(Random(repr(document)), document)
     if direct or apart:
         return document
     rarely = st.sampled_from([False, True] if feed_back else [False, False, False, True])

@@ -6,6 +6,7 @@ from tpss.numerics.curve import Points, extremes
 from tpss.numerics.pairs import magnitude
 from tpss.step.recording import Recording
 from tpss.vehicle.on_board import has_store
+from tpss.vehicle.part_load import range_over_load
 from tpss.vehicle.regeneration import taken_share
 from tpss.vehicle.train_type import TrainType
 
@@ -21,7 +22,7 @@ def audit_feed_back(
     """Note by how much the power that a train feeds back is off its brakes and its voltage, in a step.
 
     What it offers follows from the work of its electric brakes, but for the efficiency, which changes
-    with the speed: it is taken as far as some efficiency of the train's makes it that.
+    with speed and load: it is taken as far as some efficiency of the train's makes it that.
 
     References
     ----------
@@ -34,7 +35,9 @@ def audit_feed_back(
     figures.power_mismatch_va = worst(figures.power_mismatch_va, over)
     # 2. What they offer.
     low, high = extremes(own.efficiency, points)
-    off = offered - min(max(offered, low * electric), high * electric)
+    low_load, high_load = range_over_load(own.over_load)
+    least, most = low * low_load * electric, high * high_load * electric
+    off = offered - min(max(offered, least), most)
     figures.power_mismatch_va = worst(figures.power_mismatch_va, off)
     # 3. What the line takes of it; beside a store that is a matter of `audit.on_board`.
     if has_store(kind):

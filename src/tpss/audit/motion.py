@@ -11,6 +11,7 @@ from tpss.step.model import Model
 from tpss.step.recorded import TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import TrainState
+from tpss.vehicle.part_load import range_over_load
 from tpss.vehicle.train import Train
 from tpss.vehicle.train_type import TrainType
 
@@ -37,10 +38,10 @@ def _audit_continuous(
 ) -> None:  # fmt: skip
     """Work and motion of a train whose step may have several phases.
 
-    What the motors do follows from the energy drawn, but for the efficiency, which changes with the
-    speed: the recorded work is taken as far as some efficiency of the train's makes it that.  The rotors
-    keep of it what is not work at the wheel rim.  A train goes forward, and no further than its limits
-    let it.
+    What the motors do follows from the energy drawn, but for the efficiency, which changes with speed
+    and load: the recorded work is taken as far as some efficiency of the train's makes it that.  The
+    rotors keep of it what is not work at the wheel rim.  A train goes forward, and no further than its
+    limits let it.
     """
     before, after = recording.trains[step, i], recording.trains[step + 1, i]
     h = present_s = step_s
@@ -49,6 +50,8 @@ def _audit_continuous(
     if step + 1 == train.timetable.arrival_step:
         present_s -= train.timetable.stood_s
     low, high = extremes(kind.efficiency, model.points)
+    low_load, high_load = range_over_load(kind.over_load)
+    low, high = low * low_load, high * high_load
     if recording.without_power_s.shape[0] > 0:
         present_s -= recording.without_power_s[step, i]
     fed = before.pantograph_real != 0.0 or before.pantograph_imag != 0.0
@@ -99,6 +102,8 @@ def _audit_stepped(
 ) -> None:
     """Work of a train that moves in steps.
 
+    Where the efficiency follows the load, the motors' recorded work is taken as in `_audit_continuous`.
+
     References
     ----------
     [Boullanger2009]_, eq. (2.11), (F.19), (2.29) and (2.30).
@@ -110,6 +115,9 @@ def _audit_stepped(
     moved_m = after.route_position - before.route_position
     efficiency = curve_at(before.speed, kind.efficiency.first, kind.efficiency.points, model.points)
     power_w = (before.active_power - kind.auxiliary_power_w) * efficiency
+    if kind.over_load.count > 0:
+        low, high = range_over_load(kind.over_load)
+        power_w = min(max(before.motor_power, low * power_w), high * power_w)
     figures.work_j += power_w * h / kind.slip_factor
     force, rotor = before.tractive_force, 0.0
     if force > 0.0:

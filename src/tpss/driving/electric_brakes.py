@@ -2,8 +2,8 @@ r"""The work of electric brakes in a phase of constant retardation, however long
 
 Their force follows the speed, v = v₀ + a t: it has corners where they begin to fade, where they give
 nothing, and where their power passes its limit.  Between two corners :math:`F_e v` is a polynomial of
-the time, of the second degree at most, but for what follows a curve over speed; so the rule of Gauss
-with two points is exact, at
+the time, of the second degree at most, but for what follows a curve over speed or load; so the rule of
+Gauss with two points is exact, at
 
 .. math:: t_m \pm \frac{\delta}{2 \sqrt{3}} .
 """
@@ -15,6 +15,7 @@ from tpss.driving.pull import Pull
 from tpss.kernel import inlined, kernel
 from tpss.numerics.curve import Points, curve_at
 from tpss.vehicle.adhesion import adhesion_of
+from tpss.vehicle.part_load import given_share
 from tpss.vehicle.regeneration import electric_force
 from tpss.vehicle.train import Passage
 from tpss.vehicle.train_type import TrainType
@@ -78,10 +79,13 @@ def brake_electrically(
         for side in (-GAUSS, GAUSS):
             speed = max(0.0, begin_m_s + a * (time + half * (1.0 + side)))
             rails_n = rails_pass_on(speed, kind, data.options, points)
-            work_j = electric_force(pull.braking_n, speed, rails_n, own) * speed * half
+            force_n = electric_force(pull.braking_n, speed, rails_n, own)
+            work_j = force_n * speed * half
             passage.electric_j += work_j
             curve = own.efficiency
-            passage.offered_j += work_j * curve_at(speed, curve.first, curve.points, points)
+            efficiency = curve_at(speed, curve.first, curve.points, points)
+            efficiency *= given_share(force_n * speed, own.over_load)
+            passage.offered_j += work_j * efficiency
         time = until
         if time >= pull.duration_s:
             return

@@ -182,12 +182,13 @@ def _add_autotransformer(
     contact = plan.contact_node(line, km)
     rails, feeder = (places.beside(contact, kind) for kind in (RAILS, FEEDER))
     half_v = half_voltage_v(supply)
-    name = f"{line.prefix}{kilometres(km)} km"
+    name, first = f"{line.prefix}{kilometres(km)} km", len(plan.links)
     nodes, leakage_ohm = (contact, rails, feeder), 2.0 * each.leakage_ohm(half_v)
     plan.add_link(AUTOTRANSFORMER, name, nodes, (1.0, -2.0, 1.0), leakage_ohm)
     magnetising_s = each.magnetising_s(half_v)
     if magnetising_s != 0.0:
         plan.add_link(MAGNETISING, name, (contact, feeder), (1.0, -1.0), 1.0 / magnetising_s)
+    plan.autotransformer_links[line.name, km] = list(range(first, len(plan.links)))
 
 
 def half_voltage_v(supply: Supply) -> float:

@@ -104,7 +104,12 @@ class Laid:
         units |= {each.station: 0 for each in out if each.station >= 0}
         opened = [] if outage is None else _transformers_out(outage, plan)
         opened += [each.transformer for each in out if each.transformer >= 0]
-        left = _Left(tuple(units.items()), tuple(opened))
+        links = {} if outage is None else dict.fromkeys(_autotransformers_out(outage, plan), 0.0)
+        for s, count in units.items():
+            share = count / self.supply.stations[s].installed
+            links |= dict.fromkeys(plan.station_links.get(s, ()), share)
+        stores = [] if outage is None else _stores_out(outage, self.supply)
+        left = _Left(tuple(units.items()), tuple(opened), tuple(links.items()), tuple(stores))
         if out:  # a run tells by its network whether something has tripped: each is one of its own
             return _network_of(self, joints, left)
         return self._shared(joints, left)
@@ -122,16 +127,19 @@ class _Left(NamedTuple):
     """Numbers of stations, and units that they have left."""
     opened: tuple[int, ...]
     """Numbers of the branches that are out."""
+    links: tuple[tuple[int, float], ...]
+    """Numbers of links, and the share of each that is left."""
+    stores: tuple[int, ...]
+    """Numbers of the stores that are out."""
 
 
 def _network_of(laid: Laid, joints: Sequence[Joint], left: _Left | None) -> Network:
     """The network of a supply with pairs of nodes joined, and what is left in service; None: all."""
     network, leaders = joined_network(laid.network, laid.plan, laid.supply, joints)
     if left is not None:
-        units = dict(left.units)
-        out_of_service = [s for s, count in units.items() if count == 0]
-        links = [k for s in out_of_service for k in laid.plan.station_links.get(s, ())]
-        network = in_service(network, units, left.opened, links)
+        network = in_service(
+            network, dict(left.units), left.opened, dict(left.links), left.stores
+        )
     return following(network, leaders) if leaders else network
 
 
@@ -162,6 +170,21 @@ def _transformers_out(outage: Outage, plan: SupplyPlan) -> list[int]:
         for b, (kind, branch) in enumerate(zip(plan.branch_kinds, plan.branches, strict=True))
         if kind == TRANSFORMER and _is_at(plan.node_km[branch.start_node], outage)
     ]
+
+
+def _autotransformers_out(outage: Outage, plan: SupplyPlan) -> list[int]:
+    """Numbers of the links of autotransformers that an outage takes out."""
+    return [
+        k
+        for (line, km), links in plan.autotransformer_links.items()
+        if any(each.is_at(line, km) for each in outage.autotransformers)
+        for k in links
+    ]
+
+
+def _stores_out(outage: Outage, supply: Supply) -> list[int]:
+    """Numbers of the stores of energy at the line that an outage takes out."""
+    return [m for m, store in enumerate(supply.storage) if store.name in outage.storage]
 
 
 def _is_at(position_km: float, outage: Outage) -> bool:

@@ -68,7 +68,9 @@ class SupplyPlan:
     link_names: list[str] = field(default_factory=list)
     link_kinds: list[str] = field(default_factory=list)
     station_links: dict[int, list[int]] = field(default_factory=dict)
-    """Links that are windings of a station, by its number: they are out when it is."""
+    """Links that are windings of a station, by its number: they are out as far as its units are."""
+    autotransformer_links: dict[tuple[str, float], list[int]] = field(default_factory=dict)
+    """Links of each autotransformer, by the name of its line and its place. [km]"""
     bundles: list[BundlePart] = field(default_factory=list)
     """Sections that are conductors side by side."""
     rails_beside: dict[int, int] = field(default_factory=dict)

@@ -21,6 +21,7 @@ from tpss.physics.running_resistance import DavisCoefficients
 from tpss.physics.thermal import time_to_rated_s
 from tpss.record import Records
 from tpss.scenario.machine import Curve, EffortLimits, EffortTable, RetardationBands
+from tpss.scenario.over_load import EfficiencyOverLoad
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.standards import VoltageLimits, limits_of_system
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, system_named
@@ -31,6 +32,7 @@ from tpss.vehicle.effort.kinds import EffortKind, TractiveEffort
 from tpss.vehicle.effort.limits import EffortLimits as Limits
 from tpss.vehicle.effort.table import MOST_VOLTAGES
 from tpss.vehicle.effort.table import EffortTable as Table
+from tpss.vehicle.part_load import LoadCurve, lay_out_loads
 from tpss.vehicle.regeneration import ROUNDED_V, Regeneration
 from tpss.vehicle.spared_motors import SparedMotors
 from tpss.vehicle.train_type import LineCurrentLimit, Networks, TrainType
@@ -106,6 +108,7 @@ def _train_type(train: Train, profile: int, book: CurveBook, limits: VoltageLimi
         pulls_at_any_voltage=_pulls_at_any_voltage(train),
         spared=_spared_motors(train),
         on_board=_on_board(train),
+        over_load=_over_load(train.efficiency_over_load, _rated_power_kw(train)),
         **_electric(train, book),
     )
 
@@ -193,7 +196,25 @@ def _regeneration(train: Train, book: CurveBook, limits: VoltageLimits) -> Any:
         none_from_v=_si_or(own, "zero_from_kv", si(limits, "umax2_kv")),
         efficiency=_over_speed(own.efficiency or train.efficiency, book),
         rounded_v=0.0 if system_named(limits.system).is_direct else ROUNDED_V,
+        over_load=_over_load(own.efficiency_over_load, own.max_power_kw)
+        if own.efficiency_over_load
+        else _over_load(train.efficiency_over_load, _rated_power_kw(train)),
     )
+
+
+def _rated_power_kw(train: Train) -> float:
+    """Highest power of a machine that states it; else NaN: its curve over load does. [kW]"""
+    effort = train.tractive_effort
+    return effort.max_power_kw if isinstance(effort, EffortLimits) else math.nan
+
+
+def _over_load(curve: EfficiencyOverLoad | None, rated_kw: float) -> Any:
+    """A row of `LoadCurve` for loads of a power, unless the curve states another. [kW]"""
+    if curve is None:
+        return LoadCurve.row()
+    rated_w = _si_or(curve, "rated_power_kw", rated_kw * 1e3)
+    shares = si_list(curve, "load_percent")
+    return lay_out_loads([share * rated_w for share in shares], list(curve.value))
 
 
 def _spared_motors(train: Train) -> Any:

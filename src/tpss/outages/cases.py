@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tpss.errors import Finding, ScenarioError
-from tpss.scenario.outages import SWITCHES, Outage
+from tpss.scenario.outages import SWITCHES, Outage, OutAutotransformer
 from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.supply.mixed_station import MixedStation
@@ -37,7 +37,9 @@ def outages_of(scenario: Scenario, every: bool) -> list[Outage]:
 
 
 def single_outages(scenario: Scenario) -> Iterator[Outage]:
-    """Each station, each with one unit fewer if it has several alike, each transformer, each switch.
+    """Each station, each with one unit fewer if it has several alike, and each other single element.
+
+    These are transformers, autotransformers, stores of energy at the line, and switches.
 
     Of the feeds those of stations with more than one: a single one is as much as its station.  The
     contact line is left out, which rules of n-1 exempt, as those of Bane NOR do (TRV:03191).
@@ -50,6 +52,12 @@ def single_outages(scenario: Scenario) -> Iterator[Outage]:
             yield Outage(name=f"{station.name}, one unit out", units={station.name: 1})
     for km in feeding_positions_km(scenario.supply):
         yield Outage(name=f"transformer {kilometres(km)} km out", transformers_km=(km,))
+    for each in scenario.supply.autotransformers:
+        for km in each.positions_km:
+            out = OutAutotransformer(line=each.line, position_km=km)
+            yield Outage(name=f"{out.in_words} out", autotransformers=(out,))
+    for store in scenario.supply.storage:
+        yield Outage(name=f"store {store.name} out", storage=(store.name,))
     for kind in SWITCHES:
         for switch in getattr(scenario.supply, kind):
             if switch.closed:

@@ -28,7 +28,7 @@ from tpss.numerics.pairs import scaled, squared
 from tpss.powerflow.load import demand_with_brakes
 from tpss.powerflow.network import Flow, Loads, Network
 from tpss.vehicle.demand import electrical_demand
-from tpss.vehicle.feed_back import gives_or_stores
+from tpss.vehicle.feed_back import asks_more
 from tpss.vehicle.train import Course, Train
 
 
@@ -75,7 +75,7 @@ def train_current(
     square = squared(voltage)
     magnitude = math.sqrt(square)
     train = loads.trains[at(i)]
-    if gives_or_stores(loads.types[at(train.train_type)]):
+    if asks_more(loads.types[at(train.train_type)]):
         return _current_with_brakes(voltage, scale, start, train, loads)
     if train.decision.course == Course.PASSAGE:
         return _current_of_passage(voltage, scale, start, train, loads)

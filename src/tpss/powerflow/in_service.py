@@ -6,7 +6,8 @@ network to the other.  Out of service are
     a source      it has no units, and no node is its own: that is one without a source
     some units    the source has fewer
     a branch      its admittance is 0
-    a link        likewise
+    a link        likewise, or a part of it, if it stands for several units
+    a store       no voltage lets it take or give anything
 
 Nodes that no source reaches by what is left are marked as `UNFED`.
 """
@@ -18,19 +19,21 @@ import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
 from tpss.powerflow.bundles import NO_BUNDLES, without_dead_conductors
-from tpss.powerflow.links import add_admittances, ends_of, without_links
+from tpss.powerflow.links import add_admittances, ends_of, weakened
 from tpss.powerflow.network import UNFED, Network
 from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
-from tpss.record import copy_of_records
+from tpss.record import Records, copy_of_records
+from tpss.storage.wayside import StoreLaw
 
 
 def in_service(
     network: Network,
     units: Mapping[int, int],
     opened: Collection[int],
-    opened_links: Collection[int] = (),
+    shares_of_links: Mapping[int, float] | None = None,
+    idle_stores: Collection[int] = (),
 ) -> Network:
-    """The network, none of whose nodes follows, with fewer units of some sources, branches and links.
+    """The network, none of whose nodes follows, with less in service.
 
     Parameters
     ----------
@@ -40,8 +43,10 @@ def in_service(
         Units that are in service, by the number of their source; of others all are.
     opened : collection of int
         Numbers of the branches that are out.
-    opened_links : collection of int
-        Numbers of the links that are out.
+    shares_of_links : mapping of int to float, optional
+        Share of links that is in service, by their numbers; of others all is. [1]
+    idle_stores : collection of int
+        Numbers of the stores of energy that are out.
     """
     sources, branches = copy_of_records(network.sources), copy_of_records(network.branches)
     source_of_node = network.source_of_node.copy()
@@ -53,12 +58,22 @@ def in_service(
         branches[number].admittance_s = 0.0
     source_of_node[source_of_node == UNFED] = -1
     changed = network._replace(sources=sources, branches=branches, source_of_node=source_of_node)
-    changed = changed._replace(links=without_links(network.links, opened_links))
+    changed = changed._replace(links=weakened(network.links, shares_of_links or {}))
+    if idle_stores:
+        changed = changed._replace(stores=_idle(network.stores, idle_stores))
     if network.shared != NO_SHARED_GRIDS:
         inner_ohm = None if network.bundles == NO_BUNDLES else network.bundles.inner_ohm
         shared = shared_grids(network.shared.mutual_ohm, sources, inner_ohm)
         changed = changed._replace(shared=shared)
     return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
+
+
+def _idle(stores: Records[StoreLaw], out: Collection[int]) -> Records[StoreLaw]:
+    """Stores at the line, some of which follow no voltage."""
+    changed = copy_of_records(stores)
+    for number in out:
+        changed[number].charge_w_per_v = changed[number].discharge_w_per_v = 0.0
+    return changed
 
 
 def mark_unfed(network: Network) -> Network:

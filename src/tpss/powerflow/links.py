@@ -106,13 +106,13 @@ def add_admittances(
                 admittance_s[block] += links.admittance_s[k] * w_i * w_j
 
 
-def without_links(links: Links, out: Iterable[int]) -> Links:
-    """The links, of which some are out of service by their numbers."""
-    numbers = list(out)
-    if not numbers:
+def weakened(links: Links, shares: Mapping[int, float]) -> Links:
+    """The links, of which shares of some are in service by their numbers; 0: they are out. [1]"""
+    if not shares:
         return links
     admittance_s = links.admittance_s.copy()
-    admittance_s[numbers] = 0.0
+    for number, share in shares.items():
+        admittance_s[number] *= share
     return links._replace(admittance_s=admittance_s)
 
 

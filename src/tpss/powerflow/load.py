@@ -5,8 +5,9 @@ import numpy as np
 from tpss.driving.passage import demand_of_passage
 from tpss.kernel import at, inlined, kernel
 from tpss.powerflow.network import Loads
+from tpss.vehicle.at_load import follow_load
 from tpss.vehicle.demand import electrical_demand
-from tpss.vehicle.feed_back import feed_back, gives_or_stores
+from tpss.vehicle.feed_back import asks_more, feed_back
 from tpss.vehicle.on_board import exchange_with_store, has_store
 from tpss.vehicle.train import Course, Train
 
@@ -33,7 +34,7 @@ def find_demand(
     loads : Loads
     """
     kind = loads.types[at(train.train_type)]
-    if gives_or_stores(kind):
+    if asks_more(kind):
         return demand_with_brakes(voltage_v, with_slopes, train, loads)
     if train.decision.course == Course.PASSAGE:
         return demand_of_passage(
@@ -46,7 +47,7 @@ def find_demand(
 def demand_with_brakes(
     voltage_v: float, with_slopes: bool, train: Train, loads: Loads
 ) -> tuple[float, float, float, float]:
-    """`find_demand` of a train with electric brakes, or a store.
+    """`find_demand` of a train with electric brakes, a store, or an efficiency that follows the load.
 
     A function of its own: the others are compiled as if there were none.
 
@@ -64,6 +65,8 @@ def demand_with_brakes(
         demand.offered_power_w = train.passage.offered_j * per_second
     else:
         p, q, p_slope, q_slope = electrical_demand(voltage_v, kind, demand, loads.scratch)
+        if kind.over_load.count > 0:
+            p, p_slope = follow_load(p, p_slope, demand.driven_share, kind, demand)
     if has_store(kind):
         return exchange_with_store(voltage_v, p, q, p_slope, q_slope, kind, train)
     return feed_back(voltage_v, p, q, p_slope, q_slope, kind.regeneration, demand)

@@ -50,7 +50,7 @@ _LIMITED = {
     "bridge_clipped": "the reactive-power network left 0 to 1 and was cut",
     "power_factor_extrapolated": "the power-factor network was used outside its training range, or a "
     "curve outside its speeds",
-    "efficiency_extrapolated": "the efficiency curve was used outside its speeds",
+    "efficiency_extrapolated": "an efficiency curve was used outside its speeds, or beyond its loads",
     "too_near": "trains were nearer to others, or to where they had to wait, than they could brake for",
     "motors_spared": "drivers took all that they allow motors to bear, to spare them",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",

@@ -13,7 +13,7 @@ from tpss.scenario.supply.converter_station import ConverterStation
 from tpss.scenario.supply.feeds import feeds_of, places_on
 from tpss.scenario.supply.mixed_station import MixedStation
 from tpss.scenario.supply.transformers import feeding_positions_km
-from tpss.units import kilometres
+from tpss.units import kilometres, on_line
 
 
 def outage_faults(
@@ -60,12 +60,28 @@ def _faults(outage: Outage, supply: Supply, switches: Sequence[str]) -> Iterator
     for name, count in outage.units.items():
         if name in stations:
             yield from _units(name, count, stations[name])
+    stores = [store.name for store in supply.storage]
+    for i, name in enumerate(outage.storage):
+        if name not in stores:
+            yield f"storage.{i}", repr(name), *no_such("store", name, stores)
+    yield from _autotransformers(outage, supply)
     known_km = feeding_positions_km(supply)
     for i, km in enumerate(outage.transformers_km):
         if not any(abs(km - each) <= SAME_PLACE_KM for each in known_km):
             listed = ", ".join(f"{kilometres(each)} km" for each in known_km) or "none"
             problem = "the high-voltage line has no transformer there"
             yield f"transformers_km.{i}", kilometres(km), problem, f"transformers: {listed}"
+
+
+def _autotransformers(outage: Outage, supply: Supply) -> Iterator[Fault]:
+    """Autotransformers where none stands."""
+    known = [(each.line, km) for each in supply.autotransformers for km in each.positions_km]
+    for i, out in enumerate(outage.autotransformers):
+        if not any(out.is_at(line, km) for line, km in known):
+            listed = [on_line(line or "", f"{kilometres(km)} km") for line, km in known]
+            problem = "the supply has no autotransformer there"
+            remedy = f"autotransformers: {', '.join(listed) or 'none'}"
+            yield f"autotransformers.{i}.position_km", kilometres(out.position_km), problem, remedy
 
 
 def _units(name: str, count: int, station: Station) -> Iterator[Fault]:

@@ -77,6 +77,22 @@ class OutSection(Part):
         return self
 
 
+class OutAutotransformer(Part):
+    """An autotransformer that is out."""
+
+    line: Name | None = name_of_line()
+    position_km: Position = Field(description="Where it stands.")
+
+    @property
+    def in_words(self) -> str:
+        """Which it is."""
+        return f"autotransformer {on_line(self.line or '', f'{kilometres(self.position_km)} km')}"
+
+    def is_at(self, line: str | None, position_km: float) -> bool:
+        """Whether it is the one at a place of a line, or of the only one. [km]"""
+        return self.line in (None, line) and abs(self.position_km - position_km) <= SAME_PLACE_KM
+
+
 class Outage(Part):
     """Elements of the supply that are out of service."""
 
@@ -100,6 +116,13 @@ class Outage(Part):
     sections: tuple[OutSection, ...] = Field(
         default=(), description="Sections of the contact line that are out."
     )
+    autotransformers: tuple[OutAutotransformer, ...] = Field(
+        default=(), description="Autotransformers that are out."
+    )
+    storage: tuple[Name, ...] = Field(
+        default=(),
+        description="Stores of energy at the line that are out: parted from it, with what they hold.",
+    )
     from_min: Real = Field(
         default=0.0, ge=0, le=100_000, description="When it begins, from the start of the run."
     )
@@ -115,6 +138,8 @@ class Outage(Part):
         parts += [f"transformer at {kilometres(km)} km out" for km in self.transformers_km]
         parts += [f"{name} open" for name in self.opens]
         parts += [f"{each.in_words} out" for each in self.sections]
+        parts += [f"{each.in_words} out" for each in self.autotransformers]
+        parts += [f"store {name} out" for name in self.storage]
         end = "the end" if self.to_min is None else f"{self.to_min:g} min"
         when = "" if self.is_throughout else f", from {self.from_min:g} min to {end}"
         return ", ".join(parts) + when
@@ -137,10 +162,11 @@ class Outage(Part):
 
     @model_validator(mode="after")
     def _takes_something_out(self) -> Self:
-        named = self.stations or self.units or self.transformers_km or self.opens
-        if not (named or self.sections):
+        named = self.stations or self.units or self.transformers_km or self.opens or self.storage
+        if not (named or self.sections or self.autotransformers):
             raise fault(
-                "nothing is out", "give stations, units, transformers_km, opens or sections"
+                "nothing is out",
+                "give stations, units, transformers_km, opens, sections, autotransformers or storage",
             )
         if both := [name for name in self.stations if name in self.units]:
             raise fault(

@@ -131,7 +131,8 @@ def _parts_on_lines(document: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[
     for i, zone in items(table(document, "standards"), "zones"):
         yield f"standards.zones.{i}", zone
     for i, outage in items(document, "outages"):
-        yield from ((f"outages.{i}.sections.{k}", each) for k, each in items(outage, "sections"))
+        for kind in ("sections", "autotransformers"):
+            yield from ((f"outages.{i}.{kind}.{k}", each) for k, each in items(outage, kind))
     for i, entry in items(document, "traffic"):
         for k, train in items(entry, "initial_trains"):
             yield f"traffic.{i}.initial_trains.{k}", train

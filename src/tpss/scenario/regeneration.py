@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from tpss.scenario.fields import Part, Real, fault
 from tpss.scenario.machine import Ratio, RatioOverSpeed
+from tpss.scenario.over_load import EfficiencyOverLoad
 
 
 class Regeneration(Part):
@@ -30,6 +31,10 @@ class Regeneration(Part):
         default=None,
         description="From motor shaft to pantograph: a number, or a curve over speed; leave it out: "
         "that of traction.",
+    )
+    efficiency_over_load: EfficiencyOverLoad | None = Field(
+        default=None,
+        description="Factor of it over the load; leave it out: that of traction, if it has one.",
     )
     power_factor: Ratio = Field(
         default=1.0,

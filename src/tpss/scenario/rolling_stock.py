@@ -10,12 +10,14 @@ from tpss.scenario.fields import Name, Part, Real, entry_of, fault
 from tpss.scenario.machine import (
     AdhesionOverSpeed,
     CurrentLimitation,
+    EffortLimits,
     EffortTable,
     RatioOverSpeed,
     RetardationOverSpeed,
     TractiveEffort,
 )
 from tpss.scenario.on_board import OnBoardStorage
+from tpss.scenario.over_load import EfficiencyOverLoad
 from tpss.scenario.rating import MotorRating
 from tpss.scenario.regeneration import Regeneration
 from tpss.scenario.supply.system import SystemName
@@ -120,6 +122,11 @@ class Train(Part):
     )
     efficiency: RatioOverSpeed = Field(
         description="From pantograph to motor shaft: a number, or a curve over speed."
+    )
+    efficiency_over_load: EfficiencyOverLoad | None = Field(
+        default=None,
+        description="Factor of it over the load, by which it falls at a part of the rated power; leave "
+        "it out: the same at all loads.",
     )
     auxiliary_power_kw: Real = Field(
         ge=0, le=20_000, description="Active power of the auxiliaries."
@@ -230,6 +237,22 @@ class Train(Part):
                 f"choose between {known[0]:g} and {known[-1]:g} A, or extend the table",
             )
         return current
+
+    @field_validator("efficiency_over_load")
+    @classmethod
+    def _load_of_the_machine(
+        cls, curve: EfficiencyOverLoad | None, info: ValidationInfo
+    ) -> EfficiencyOverLoad | None:
+        if curve is None or curve.rated_power_kw is not None:
+            return curve
+        if "tractive_effort" in info.data and not isinstance(
+            info.data["tractive_effort"], EffortLimits
+        ):
+            raise fault(
+                "the load is a share of a rated power, which the tractive effort does not state",
+                "add rated_power_kw to it, such as 3600",
+            )
+        return curve
 
     @field_validator("power_factor")
     @classmethod

@@ -26,7 +26,7 @@ from tpss.step.recording import Call, Indices, Recording
 from tpss.step.state import Floats, TrainState
 from tpss.storage.store import energy_after, lost_power
 from tpss.vehicle.breaches import BREACHES, find_breaches
-from tpss.vehicle.demand import armature_demand
+from tpss.vehicle.demand import armature_demand, motors_power
 from tpss.vehicle.on_board import has_store
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train import (
@@ -160,6 +160,8 @@ def record_step(
     if has_store(kind):  # beside the line it gives and takes
         asked_w += demand.regenerated_power_w - train.stored.power_w
     row.motor_power = (asked_w - kind.auxiliary_power_w) / demand.per_efficiency
+    if kind.over_load.count > 0:
+        row.motor_power = motors_power(kind, demand)
     if demand.offered_power_w > 0.0:  # in such a step the motors do nothing else
         row.motor_power = 0.0
     traction_w, braking_w, running_w, gradient_w = mean_powers(train, step_s)

@@ -3,12 +3,13 @@
 import math
 from enum import IntEnum
 
-from tpss.kernel import inlined
+from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points, outside_curve
 from tpss.numerics.neural_network import outside
 from tpss.physics.locomotive import machine_force
 from tpss.physics.motor import motor_voltage
 from tpss.physics.reactive_power import ReactiveModel, bridge_outside_training
+from tpss.vehicle.demand import motors_power
 from tpss.vehicle.effort.kinds import effort_extrapolates
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train_type import TrainType
@@ -28,6 +29,9 @@ class Breach(IntEnum):
 
 BREACHES = len(Breach)
 
+ROUNDED = 1e-9
+"""By how much a machine may exceed its rated power without exceeding it. [1]"""
+
 
 @inlined
 def current_limits(kind: TrainType, demand: Demand) -> bool:
@@ -35,6 +39,16 @@ def current_limits(kind: TrainType, demand: Demand) -> bool:
     machine_n = max(0.0, demand.machine_force_n)
     rim_n = machine_force(machine_n, demand.resistance_n, kind.rotor_mass_kg, kind.inertia_kg)
     return bool(demand.wheel_force_n < min(demand.force_cap_n, max(0.0, rim_n)))
+
+
+@kernel
+def works_beyond_loads(kind: TrainType, demand: Demand) -> bool:
+    """Whether motors give more power than a curve over load knows."""
+    last = kind.over_load.count - 1
+    if last < 0:
+        return False
+    most_w = kind.over_load.power_w[at(last)] * demand.driven_share
+    return motors_power(kind, demand) > most_w * (1.0 + ROUNDED)
 
 
 @inlined
@@ -62,7 +76,7 @@ def find_breaches(
         breaches |= 1 << Breach.CURRENT_LIMITED
     if force_n <= 0.0:
         return breaches
-    if outside_curve(speed, kind.efficiency, points):
+    if outside_curve(speed, kind.efficiency, points) or works_beyond_loads(kind, demand):
         breaches |= 1 << Breach.EFFICIENCY_EXTRAPOLATED
     if kind.reactive_model == ReactiveModel.POWER_FACTOR_CURVE:
         if outside_curve(speed, kind.power_factor, points):

@@ -327,3 +327,15 @@ def electrical_demand(
     demand.wheel_force_n = force
     demand.active_power_w, demand.reactive_power_var = active, reactive
     return active, reactive, power_slope * demand.per_efficiency, reactive_slope
+
+
+@kernel
+def motors_power(kind: TrainType, demand: Demand) -> float:
+    """Power of the motors at the voltage last tried, mean over the step. [W]
+
+    References
+    ----------
+    [Boullanger2009]_, as `motor_state`.
+    """
+    _, _, power, _ = motor_state(demand.wheel_force_n, kind, demand)
+    return power

@@ -2,6 +2,7 @@
 
 from tpss.kernel import inlined, kernel
 from tpss.numerics.curve import Points, curve_at
+from tpss.vehicle.part_load import given_share
 from tpss.vehicle.regeneration import Regeneration, electric_force, taken_share
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train_type import TrainType
@@ -14,9 +15,10 @@ def regenerates(kind: TrainType) -> bool:
 
 
 @inlined
-def gives_or_stores(kind: TrainType) -> bool:
-    """Whether trains of a type have electric brakes, or a store."""
-    return kind.regeneration.highest_force_n > 0.0 or kind.on_board.store.capacity_j > 0.0
+def asks_more(kind: TrainType) -> bool:
+    """Whether trains of a type have electric brakes, a store, or an efficiency that follows the load."""
+    gives = kind.regeneration.highest_force_n > 0.0 or kind.on_board.store.capacity_j > 0.0
+    return gives or kind.over_load.count > 0
 
 
 @kernel
@@ -43,6 +45,7 @@ def offer(
     curve = kind.regeneration.efficiency
     demand.electric_power_w = force * speed_m_s
     efficiency = curve_at(speed_m_s, curve.first, curve.points, points)
+    efficiency *= given_share(demand.electric_power_w, kind.regeneration.over_load)
     demand.offered_power_w = demand.electric_power_w * efficiency
 
 

@@ -32,6 +32,7 @@ from tpss.kernel import inlined, kernel
 from tpss.numerics.ramp import ramp
 from tpss.physics.locomotive import active_power
 from tpss.physics.reactive_power import ReactiveModel
+from tpss.vehicle.at_load import follow_load
 from tpss.vehicle.billing import billed_power, motors_current
 from tpss.vehicle.bridge import bridge_ratio
 from tpss.vehicle.terms import Demand
@@ -104,6 +105,8 @@ def _apparent_power(
     power, power_slope, speed, speed_slope = billed_power(motor_force_n, 1.0, kind, demand)
     active = active_power(power, demand.per_efficiency, kind.auxiliary_power_w)
     active_slope = active_power(power_slope, demand.per_efficiency, 0.0)
+    if kind.over_load.count > 0:
+        active, active_slope = follow_load(active, active_slope, 1.0, kind, demand)
     current_a = 0.0
     if kind.reactive_model == ReactiveModel.DOUBLE_BRIDGE:
         # The current is linear in the force and, above base speed, in the speed.

@@ -6,6 +6,7 @@ from tpss.storage.on_board import exchange
 from tpss.storage.store import begin_store
 from tpss.vehicle.billing import billed_power
 from tpss.vehicle.demand import Array, update_power_terms
+from tpss.vehicle.part_load import power_for
 from tpss.vehicle.regeneration import taken_share
 from tpss.vehicle.terms import Demand
 from tpss.vehicle.train import Phase, Train
@@ -74,7 +75,7 @@ def within_own_power(
 ) -> float:
     """Largest force of all motors with which a train asks for no more than its store gives. [N]
 
-    At the mean speed of a phase the power is proportional to the force.
+    At the mean speed of a phase the motors' power is proportional to the force.
 
     Parameters
     ----------
@@ -91,7 +92,8 @@ def within_own_power(
     """
     update_power_terms(speed_m_s, kind, demand, points, scratch)
     power_w, per_newton, _, _ = billed_power(force_n, 1.0, kind, demand)
-    left_w = (demand.store_only_w - kind.auxiliary_power_w) / demand.per_efficiency
+    taken_w = (demand.store_only_w - kind.auxiliary_power_w) / demand.per_efficiency
+    left_w = power_for(taken_w, kind.over_load)
     if power_w <= left_w:
         return force_n
     return max(0.0, left_w / per_newton)

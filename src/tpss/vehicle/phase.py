@@ -15,6 +15,7 @@ from tpss.numerics.curve import Points
 from tpss.physics.locomotive import machine_force
 from tpss.physics.motor import MotorModel, line_voltage_factor, motor_current
 from tpss.physics.reactive_power import filter_reactive_power
+from tpss.vehicle.at_load import follow_load
 from tpss.vehicle.breaches import find_breaches
 from tpss.vehicle.demand import (
     armature_demand,
@@ -110,6 +111,8 @@ def demand_of_phase(
     update_cap_terms(kind, demand)
     active, reactive, _, reactive_slope = electrical_demand(voltage_v, kind, demand, scratch)
     motor_w = (active - kind.auxiliary_power_w) / demand.per_efficiency
+    if kind.over_load.count > 0:
+        active, _ = follow_load(active, 0.0, 1.0, kind, demand)
     current, _ = armature_demand(force_n, 0.0, kind, demand)
     if kind.voltage_model != MotorModel.NEW:
         current /= line_voltage_factor(voltage_v, kind.voltage_model)

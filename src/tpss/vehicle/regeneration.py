@@ -5,9 +5,9 @@ Of a braking force F_b at the wheel rim the motors give
 .. math:: F_e = \min(F_b, F_{max}, P_{max} / v, F_{rails}) \, \varphi(v),
 
 with φ rising from 0 to 1 between two speeds; friction brakes give the rest.  They offer the line
-:math:`F_e v \eta`.  Auxiliaries are fed first.  The line takes it whole up to a voltage U₁ and none from
-a voltage U₂ on; the share in between falls along a straight line that may be rounded off at both ends,
-so that its slope has no jumps:
+:math:`F_e v \eta`, with a factor over the load (`vehicle.part_load`).  Auxiliaries are fed first.  The
+line takes it whole up to a voltage U₁ and none from a voltage U₂ on; the share in between falls along
+a straight line that may be rounded off at both ends, so that its slope has no jumps:
 
 .. math:: g = 1 - \frac{s^2}{2 w (L - w)}, \quad 1 - \frac{s - w/2}{L - w}, \quad
           \frac{(L - s)^2}{2 w (L - w)}
@@ -22,6 +22,7 @@ from tpss.kernel import inlined
 from tpss.numerics.curve import Curve
 from tpss.numerics.ramp import ramp
 from tpss.record import Record
+from tpss.vehicle.part_load import LoadCurve
 
 ROUNDED_V = 50.0
 """Length of each rounded end, w, where nothing else is said. [V]"""
@@ -48,6 +49,8 @@ class Regeneration(Record):
     """Efficiency over speed, from motor shaft to pantograph. [1]"""
     rounded_v: float = ROUNDED_V
     """Length of each rounded end, no more than a quarter of the whole; 0: a straight line. [V]"""
+    over_load: LoadCurve = LoadCurve.row()
+    """Factor of the efficiency over the power of the electric brakes."""
 
 
 @inlined

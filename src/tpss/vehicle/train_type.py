@@ -11,6 +11,7 @@ from tpss.record import Record
 from tpss.storage.on_board import OnBoard
 from tpss.vehicle.braking import BrakingBands
 from tpss.vehicle.effort.kinds import TractiveEffort
+from tpss.vehicle.part_load import LoadCurve
 from tpss.vehicle.regeneration import Regeneration
 from tpss.vehicle.spared_motors import SparedMotors
 
@@ -109,3 +110,5 @@ class TrainType(Record):
     """Its motors, if its driver spares them."""
     on_board: OnBoard = OnBoard.row()
     """Its store of energy."""
+    over_load: LoadCurve = LoadCurve.row()
+    """Factor of the efficiency over the power of the motors."""
