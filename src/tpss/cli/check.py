@@ -16,6 +16,7 @@ from tpss.cli.terminal import say
 from tpss.model.build import build_model
 from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
+from tpss.printable import printable
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.clock import clock_at
@@ -64,14 +65,15 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
         varied = with_step(scenario.variant(name))
         build_services(varied, build_model(varied)[0])
     console = Console()
-    title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
-    console.print(title, highlight=False)
+    description = escape(printable(scenario.description, "\n"))
+    console.print(f"[bold]{scenario.name}[/bold]  {description}\n", highlight=False)
     rows = Table.grid(padding=(0, 2))
     for heading, text in summary(scenario):
         rows.add_row(f"[dim]{heading}[/dim]", escape(text))
     console.print(rows)
-    for note in (*notes(scenario), *stuck(scenario, model)):
-        console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
+    for note in (*scenario.file_notes, *notes(scenario), *stuck(scenario, model)):
+        text = escape(printable(note))
+        console.print(f"\n[yellow]Note:[/yellow] {text}", highlight=False)
     say(console, f"\nNo faults in {file}")
 
 

@@ -116,6 +116,8 @@ def _simulate_and_save(
     from tpss.run.interrupt import interruptible
 
     console = Console(stderr=True, quiet=quiet)
+    for note in scenario.file_notes:
+        say(console, f"Note: {note}")
     announce_compilation(console)
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:

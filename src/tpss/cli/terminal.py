@@ -9,12 +9,14 @@ from rich.markup import escape
 from rich.measure import Measurement
 from rich.table import Table
 
+from tpss.printable import printable
+
 Column = TypeVar("Column")
 
 
 def say(console: Console, text: str) -> None:
-    """Print a text as it is, on one line."""
-    console.print(text, highlight=False, markup=False, soft_wrap=True)
+    """Print a text as it is, on one line; what would steer the terminal is shown as its code."""
+    console.print(printable(text, "\n"), highlight=False, markup=False, soft_wrap=True)
 
 
 def announce_compilation(console: Console) -> None:

@@ -29,7 +29,7 @@ from tpss.scenario.supply import Supply
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS
 from tpss.scenario.timetable import Timetable
 from tpss.scenario.traffic import Traffic
-from tpss.scenario.validate import validate
+from tpss.scenario.validate import validate_with_notes
 from tpss.scenario.variants import Variants, apply_variant
 
 READ_IN = ("timetables",)
@@ -121,6 +121,7 @@ class Scenario(Part):
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))
     _given: str = PrivateAttr(default="scenario")
+    _file_notes: tuple[str, ...] = PrivateAttr(default=())
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], source: str | Path = "scenario") -> Self:
@@ -149,7 +150,7 @@ class Scenario(Part):
         ScenarioError
             As `from_document`.
         """
-        scenario = validate(cls, document, Path(source))
+        scenario, notes = validate_with_notes(cls, document, Path(source))
         faults = outage_faults(
             scenario.outages,
             scenario.simulation,
@@ -162,6 +163,7 @@ class Scenario(Part):
         scenario._document = document
         # A change of the working folder must not lead to other files.
         scenario._source, scenario._given = Path(source).absolute(), str(source)
+        scenario._file_notes = notes
         return scenario
 
     @property
@@ -173,6 +175,11 @@ class Scenario(Part):
     def given_source(self) -> str:
         """Its file as it was named, by which findings name it."""
         return self._given
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """What is told of how its files were read, such as gradients derived from altitudes."""
+        return self._file_notes
 
     def with_(self, changes: Mapping[str, Any]) -> Self:
         """Validated copy with some values changed.

@@ -1,0 +1,61 @@
+"""JSON of others: a key that is there twice, or lists nested beyond all use, are refused."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+DEEPEST = 64
+"""Tables and lists within each other; no file of ours or of formats that are imported has as many."""
+
+
+def parse_json(text: str | bytes) -> Any:
+    """Document of a JSON text.
+
+    Raises
+    ------
+    ValueError
+        It is not JSON, has a key twice in a table, or is nested too deeply.
+    """
+    try:
+        document = json.loads(text, object_pairs_hook=_each_once)
+    except RecursionError:
+        raise ValueError(_TOO_DEEP) from None
+    demand_depth(document)
+    return document
+
+
+def demand_depth(document: Any) -> None:
+    """Refuse a document whose tables and lists are nested too deeply.
+
+    Raises
+    ------
+    ValueError
+    """
+    level, depth = [document], 0
+    while level:
+        depth += 1
+        if depth > DEEPEST:
+            raise ValueError(_TOO_DEEP)
+        level = [inside for each in level for inside in _inside(each)]
+
+
+_TOO_DEEP = f"more than {DEEPEST} tables or lists within each other"
+
+
+def _inside(container: Any) -> Iterator[Any]:
+    """Tables and lists in a table or a list."""
+    if not isinstance(container, dict | list):
+        return  # a document of a single value
+    values = container.values() if isinstance(container, dict) else container
+    yield from (each for each in values if isinstance(each, dict | list))
+
+
+def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        seen: set[str] = set()
+        for key, _ in pairs:
+            if key in seen:
+                raise ValueError(f"the key {key!r} is there twice in one table")
+            seen.add(key)
+    return table
