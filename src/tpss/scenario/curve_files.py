@@ -127,7 +127,11 @@ def read_braking(path: Path, named_by: str) -> CurveOfFile:
     ScenarioError
         The file has faults; all are listed, those of one kind once.
     """
-    table = read_table(path, BRAKING, named_by)
+    return braking_from(read_table(path, BRAKING, named_by))
+
+
+def braking_from(table: Table) -> CurveOfFile:
+    """Retardations of a table, as `read_braking`."""
     demand_ascending(table, "speed")
     quantities = {"from_speed_kmh": "speed", "retardation_m_s2": "retardation"}
     lists = {key: table.numbers(quantity) for key, quantity in quantities.items()}

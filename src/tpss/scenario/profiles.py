@@ -199,7 +199,11 @@ def read_losses(path: Path, named_by: str) -> Profile:
     ScenarioError
         The file has faults; all are listed, those of one kind once.
     """
-    table = read_table(path, LOSSES, named_by)
+    return losses_from(read_table(path, LOSSES, named_by))
+
+
+def losses_from(table: Table) -> Profile:
+    """Losses of a table, as `read_losses`."""
     demand_ascending(table, "load")
     pairs = zip(table.numbers("load"), table.numbers("losses"), strict=True)
     rows = [{"load_percent": load, "loss_kw": loss} for load, loss in pairs]

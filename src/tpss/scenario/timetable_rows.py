@@ -115,7 +115,7 @@ def read_rows(
         Row(
             sheet.path,
             row.line,
-            {ALIASES[name].key: _text(table, k, name) for name in columns},
+            {ALIASES[name].key: text_of_cell(table, k, name) for name in columns},
             {ALIASES[name].key: column.heading for name, column in columns.items()},
         )
         for k, row in enumerate(table.rows)
@@ -141,7 +141,7 @@ _SHORT_DECIMALS = re.compile(r"(\d+),(\d{1,2})")
 """Minutes with a decimal comma, which is none of thousands."""
 
 
-def _text(table: Table, row: int, quantity: str) -> str:
+def text_of_cell(table: Table, row: int, quantity: str) -> str:
     """A value as a text with a decimal point; as it was written where that has one already."""
     column, value = table.header.columns[quantity], table.values[quantity][row]
     cell = cell_of(table.rows[row], column)
