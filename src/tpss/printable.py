@@ -2,6 +2,8 @@
 
 import re
 import unicodedata
+from collections.abc import Mapping
+from typing import Any
 
 STEERING = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Categories of Unicode of characters that steer: control, format (which turns text round, or has no
@@ -37,6 +39,17 @@ def printable(text: str, keep: str = "") -> str:
         each if each in keep or not steers(each) else each.encode("unicode_escape").decode()
         for each in text
     )
+
+
+def document_in_nfc(value: Any) -> Any:
+    """A document, all texts of which, keys too, are in the form C of Unicode."""
+    if isinstance(value, str):
+        return in_nfc(value)
+    if isinstance(value, Mapping):
+        return {document_in_nfc(key): document_in_nfc(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(document_in_nfc(each) for each in value)
+    return value
 
 
 def in_nfc(text: str) -> str:

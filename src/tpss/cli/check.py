@@ -5,18 +5,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
 from tpss.cli.library import KINDS
 from tpss.cli.notes import notes, stuck
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.model.build import build_model
 from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
-from tpss.printable import printable
 from tpss.run.clocks import clock_of
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.clock import clock_at
@@ -65,15 +63,14 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
         varied = with_step(scenario.variant(name))
         build_services(varied, build_model(varied)[0])
     console = Console()
-    description = escape(printable(scenario.description, "\n"))
-    console.print(f"[bold]{scenario.name}[/bold]  {description}\n", highlight=False)
+    title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
+    console.print(title, highlight=False)
     rows = Table.grid(padding=(0, 2))
     for heading, text in summary(scenario):
         rows.add_row(f"[dim]{heading}[/dim]", escape(text))
     console.print(rows)
     for note in (*scenario.file_notes, *notes(scenario), *stuck(scenario, model)):
-        text = escape(printable(note))
-        console.print(f"\n[yellow]Note:[/yellow] {text}", highlight=False)
+        console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
     say(console, f"\nNo faults in {file}")
 
 

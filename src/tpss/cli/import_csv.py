@@ -3,12 +3,11 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table as Grid
 
 from tpss import units
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.importers.office_files import LINE, files
 from tpss.importers.office_tables import (
     SHOWN,
@@ -18,7 +17,6 @@ from tpss.importers.office_tables import (
     read_office_table,
 )
 from tpss.importers.texts import write
-from tpss.printable import printable
 from tpss.tables.aliases import ALIASES
 from tpss.tables.kinds import KINDS
 from tpss.tables.numbers import IN_WORDS
@@ -67,7 +65,7 @@ def _show(each: OfficeTable, console: Console) -> None:
     for heading in ("  column", "meaning", "unit", "decimals", "lowest", "highest", "first"):
         grid.add_column(heading)
     for row in (*_columns(each), *_derived(each)):
-        grid.add_row(*(escape(printable(cell)) for cell in row))
+        grid.add_row(*(escape(cell) for cell in row))
     console.print(grid, highlight=False)
     say(console, f"  {len(table)} rows, lines {table.rows[0].line} to {table.rows[-1].line}")
     for note in each.assumed:

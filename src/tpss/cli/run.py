@@ -9,9 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import ResultError
 from tpss.results.contents import REPORT
 

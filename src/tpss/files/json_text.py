@@ -2,10 +2,30 @@
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
+
+from tpss.files.read import MEGABYTE, read_bytes
 
 DEEPEST = 64
 """Tables and lists within each other; no file of ours or of formats that are imported has as many."""
+
+
+MOST_OWN = 500 * MEGABYTE
+"""Longest document of our own that is read. [byte]"""
+
+
+def read_json_file(path: Path) -> Any:
+    """Document of a file of our own.
+
+    Raises
+    ------
+    OSError
+        It cannot be read, is no file, or too long.
+    ValueError
+        As `parse_json`.
+    """
+    return parse_json(read_bytes(path, MOST_OWN))
 
 
 def parse_json(text: str | bytes) -> Any:

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
+from tpss.printable import document_in_nfc
 from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
@@ -139,7 +140,7 @@ class Scenario(Part):
         ScenarioError
             The document has faults; the error lists all of them.
         """
-        return cls.from_own_document(copy_of(document), source)
+        return cls.from_own_document(document_in_nfc(copy_of(document)), source)
 
     @classmethod
     def from_own_document(cls, document: dict[str, Any], source: str | Path) -> Self:
