@@ -95,6 +95,15 @@ def test_gradients_are_derived_from_altitudes_and_that_is_told(write):
     assert load_scenario(file).file_notes == ("table.csv: gradients derived from altitudes",)
 
 
+def test_altitudes_may_stand_in_falling_kilometres(write):
+    """What they mean is the same; of gradients it would not be clear towards which end they climb."""
+    file = write("km;Höhe [m]\n20,0;98,6\n0,5;102,5\n0,0;100,0\n")
+    assert profile(file) == [(0.0, 5.0), (0.5, -0.2), (20.0, -0.2)]
+    assert "turned round" in load_scenario(file).file_notes[-1]
+    (finding,) = faults(write("km;Neigung\n20;1\n0;2\n"))
+    assert "does not increase" in finding.problem
+
+
 def test_altitudes_may_be_smoothed(write):
     """A bump of 1 m at 10 km disappears in means over 20 km, from which one gradient follows."""
     text = "km;Höhe [m]\n0;100\n10;101\n20;104\n"
@@ -113,6 +122,8 @@ def test_altitudes_may_be_smoothed(write):
         ("Position;Höhe\n0;1\n1;2\n", {}, "line 1", "gives no unit of the position"),
         ("km;Höhe\n1,234;1\n2,345;2\n", {}, "column 'km'", "is it 1234 or 1.234?"),
         ("km;Höhe\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points and some"),
+        ("km;Höhe\n1,234;1\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points"),
+        ("km;Höhe\n-1+500;1\n2+500;2\n", {}, "line 2, km", "not a number"),
         ("km;Höhe;Kilometer;km\n1;1;1;1\n", {}, "line 1", "the column is there twice"),
         ("km,Höhe\n0,5,100,5\n1,5,101,0\n", {}, "line 2", "4 values, expected 2; and 1 more like it"),
         ("km;Höhe\n0;1\n2;2\n1;3\n", {}, "line 4, km", "does not increase"),

@@ -1,5 +1,6 @@
 """Profiles of a scenario that stand in files of their own: gradients, speed limits, stations, losses."""
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -69,29 +70,40 @@ def read_gradients(path: Path, named_by: str, smoothed_over_km: float | None = N
 
 def gradients_from(table: Table, smoothed_over_km: float | None = None) -> Profile:
     """Gradients of a table, as `read_gradients`."""
+    if "altitude" in table.values:
+        return _derived(table, smoothed_over_km)
     demand_ascending(table, "position")
-    positions_km = table.numbers("position")
-    if "gradient" in table.values:
-        if smoothed_over_km is not None:
-            problem = "the file has gradients; altitudes are what is smoothed"
-            remedy = "leave out gradients_smoothed_over_km, or give altitudes"
-            raise ScenarioError([Finding(str(table.path), "", "", problem, remedy)])
-        values, notes = table.numbers("gradient"), table.notes
-        source, quantity = list(range(len(values))), "gradient"
+    if smoothed_over_km is not None:
+        problem = "the file has gradients; altitudes are what is smoothed"
+        remedy = "leave out gradients_smoothed_over_km, or give altitudes"
+        raise ScenarioError([Finding(str(table.path), "", "", problem, remedy)])
+    pairs = zip(table.numbers("position"), table.numbers("gradient"), strict=True)
+    rows = [{"from_km": km, "permille": permille} for km, permille in pairs]
+    quantities = {"from_km": "position", "permille": "gradient"}
+    return Profile(table, rows, list(range(len(rows))), quantities, table.notes)
+
+
+def _derived(table: Table, smoothed_over_km: float | None) -> Profile:
+    """Gradients of a table of altitudes; its rows may be in falling kilometres."""
+    _demand_several(table)
+    positions_km, altitudes_m = table.numbers("position"), table.numbers("altitude")
+    order, told = list(range(len(table))), "gradients derived from altitudes"
+    if all(after < before for before, after in pairwise(positions_km)):
+        order.reverse()
+        positions_km.reverse()
+        altitudes_m.reverse()
+        told += " in falling kilometres, which were turned round"
     else:
-        _demand_several(table)
-        altitudes_m, quantity = table.numbers("altitude"), "altitude"
-        begins_km = positions_km
-        told = "gradients derived from altitudes"
-        if smoothed_over_km is not None:
-            begins_km, altitudes_m = smoothed(positions_km, altitudes_m, smoothed_over_km)
-            told += f", which are averaged over {kilometres(smoothed_over_km)} km"
-        values = gradients_of(begins_km, altitudes_m)
-        source = [sum(km <= begin for km in positions_km) - 1 for begin in begins_km]
-        notes = [*table.notes, f"{table.path.name}: {told}"]
-        positions_km = begins_km
-    rows = [{"from_km": km, "permille": v} for km, v in zip(positions_km, values, strict=True)]
-    return Profile(table, rows, source, {"from_km": "position", "permille": quantity}, notes)
+        demand_ascending(table, "position")
+    begins_km = positions_km
+    if smoothed_over_km is not None:
+        begins_km, altitudes_m = smoothed(positions_km, altitudes_m, smoothed_over_km)
+        told += f", which are averaged over {kilometres(smoothed_over_km)} km"
+    permille = gradients_of(begins_km, altitudes_m)
+    rows = [{"from_km": km, "permille": each} for km, each in zip(begins_km, permille, strict=True)]
+    source = [order[bisect_right(positions_km, km) - 1] for km in begins_km]
+    notes = [*table.notes, f"{table.path.name}: {told}"]
+    return Profile(table, rows, source, {"from_km": "position", "permille": "altitude"}, notes)
 
 
 def _demand_several(table: Table) -> None:

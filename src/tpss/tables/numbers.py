@@ -32,6 +32,8 @@ _PATTERNS = {POINT: _pattern(POINT, COMMA), COMMA: _pattern(COMMA, POINT)}
 
 def plain(text: str) -> str:
     """A number's text with a plain minus, and without spaces or apostrophes between thousands."""
+    if text.isascii() and " " not in text and "'" not in text:
+        return text  # most are
     return _THOUSANDS.sub("", text.translate(_MINUS)).strip()
 
 
@@ -94,8 +96,13 @@ def signs_of(
     ranges : mapping of str to tuple
         Lowest and highest number that a column may hold.
     """
-    readings = {name: readings_of(texts) for name, texts in columns.items()}
-    signs = {name: each.possible[0] for name, each in readings.items() if len(each.possible) == 1}
+    signs = {
+        name: POINT
+        for name, texts in columns.items()
+        if separator == COMMA and not any(COMMA in text for text in texts)
+    }
+    readings = {name: readings_of(texts) for name, texts in columns.items() if name not in signs}
+    signs |= {name: each.possible[0] for name, each in readings.items() if len(each.possible) == 1}
     common, notes = set(signs.values()), list[str]()
     if len(common) == 2:
         told = " and ".join(f"{IN_WORDS[sign]}s in {name}" for name, sign in signs.items())
@@ -103,8 +110,7 @@ def signs_of(
     for name, each in readings.items():
         if len(each.possible) < 2:
             continue
-        is_plain = separator == COMMA and COMMA not in "".join(columns[name])
-        if is_plain or not each.example:  # the second: whole numbers
+        if not each.example:  # whole numbers
             signs[name] = POINT
         elif len(common) == 1:
             signs[name] = next(iter(common))

@@ -12,7 +12,7 @@ from tpss.files.content import content_of
 from tpss.tables.aliases import ALIASES
 from tpss.tables.header import MOST_ABOVE, Column, Header, demand_header, find_header
 from tpss.tables.kinds import Kind
-from tpss.tables.numbers import COMMA, IN_WORDS, number, plain, signs_of
+from tpss.tables.numbers import COMMA, IN_WORDS, number, plain, readings_of, signs_of
 from tpss.tables.sheet import (
     SEPARATORS,
     UTF_8,
@@ -29,7 +29,7 @@ from tpss.tables.workbook import is_workbook, of_workbook, read_sheet
 Value = float | str | None
 """None: the cell is empty."""
 
-_METRES_BEHIND = re.compile(r"([+-]?\d+(?:[.,]\d+)?)\s*\+\s*(\d{1,4}(?:[.,]\d+)?)")
+_METRES_BEHIND = re.compile(r"(\d+(?:[.,]\d+)?)\s*\+\s*(\d{1,4}(?:[.,]\d+)?)")
 """Positions as km 438+500 or km 12,4 + 35: metres behind a kilometre."""
 
 
@@ -227,7 +227,7 @@ def _signs(
     for name, column in numeric.items():
         cells = [cell_of(row, column) for row in rows]
         own = [plain(each) for each in cells if isinstance(each, str)]
-        texts[column.heading] = [each for each in own if not _METRES_BEHIND.fullmatch(each)]
+        texts[column.heading] = [each for each in own if not _has_metres_behind(each)]
         quantity, factor = ALIASES[name], column.meaning.factor
         ranges[column.heading] = (quantity.low / factor, quantity.high / factor)
     if decimal:
@@ -240,11 +240,15 @@ def _signs(
     return {name: signs[column.heading] for name, column in numeric.items()}, told
 
 
+def _has_metres_behind(text: str) -> bool:
+    return "+" in text and _METRES_BEHIND.fullmatch(text) is not None
+
+
 def _unclear(sheet: Sheet, column: Column, texts: Sequence[str]) -> Finding:
     """The fault that a column does not say what begins its decimals."""
     example = next(text for text in texts if "," in text or "." in text)
     both = {sign: number(example, sign) for sign in IN_WORDS}
-    if any(math.isnan(value) for value in both.values()):
+    if not readings_of(texts).possible:
         problem = "some numbers have decimal points and some have decimal commas"
         remedy = "write all of them in one way"
     else:
@@ -272,7 +276,7 @@ def _value(column: Column, cell: Cell, sign: str) -> Value:
 
 
 def _number(text: str, sign: str, is_position: bool) -> float:
-    behind = _METRES_BEHIND.fullmatch(text) if is_position else None
+    behind = _METRES_BEHIND.fullmatch(text) if is_position and "+" in text else None
     if behind is None:
         return number(text, sign) if sign else 0.0  # whose column has a fault of its own
     km, metres = (float(part.replace(",", ".")) for part in behind.groups())

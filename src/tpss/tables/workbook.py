@@ -1,14 +1,15 @@
 """Sheets of Excel's workbooks (.xlsx), with bounds on what they unpack to."""
 
 import io
-import zipfile
+import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError, suggest
-from tpss.files.archive import BombError, demand_bounded
+from tpss.files.archive import demand_bounded
 from tpss.printable import in_nfc
 from tpss.tables.sheet import COMMENT, Cell, Row, Sheet
 
@@ -55,16 +56,20 @@ def read_sheet(path: Path, content: bytes) -> Sheet:
     file, name = of_workbook(path)
     try:
         demand_bounded(content, MOST_UNPACKED)
-        book = _opened(content)
-    except (BombError, zipfile.BadZipFile, KeyError, ValueError, OSError) as error:
+        with _quiet():
+            sheets = {each.title: each for each in _opened(content).worksheets}
+            chosen = sheets[name] if name in sheets else next(iter(sheets.values()))
+            rows = list(_rows(path, chosen)) if name in ("", *sheets) else []
+    except ScenarioError:
+        raise
+    except Exception as error:  # of all that may be wrong within, each part has errors of its own
         problem = f"not a workbook that can be read: {error}"
         remedy = "save it as a workbook of Excel (.xlsx) again, or as CSV"
         raise ScenarioError([Finding(str(file), "", "", problem, remedy)]) from error
-    if name and name not in book.sheetnames:
-        problem, remedy = "the workbook has no such sheet", suggest(name, book.sheetnames)
+    if name not in ("", *sheets):
+        problem, remedy = "the workbook has no such sheet", suggest(name, sheets)
         raise ScenarioError([Finding(str(file), "sheet", name, problem, remedy)])
-    sheet = book[name] if name else book.worksheets[0]
-    return Sheet(path, list(_rows(path, sheet)), "", "")
+    return Sheet(path, rows, "", "")
 
 
 def _opened(content: bytes) -> Any:
@@ -73,8 +78,17 @@ def _opened(content: bytes) -> Any:
     return openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without warnings of what a workbook has besides its cells, such as forms."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
 def _rows(path: Path, sheet: Any) -> Iterator[Row]:
     """Rows with anything in them; those that begin with # are comments, as in CSV."""
+    sheet.reset_dimensions()  # what a file says of its size may be wrong
     count = 0
     for number, values in enumerate(sheet.iter_rows(values_only=True), 1):
         count += len(values)
