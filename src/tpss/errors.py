@@ -1,8 +1,11 @@
 """What can go wrong, as types: bad input, a failed audit, a result that cannot be read."""
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from tpss.printable import printable
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,46 @@ class Finding:
     def __str__(self) -> str:
         value = f" = {self.value}" if self.value else ""
         key = f": {self.key}{value}" if self.key else ""
-        return f"{self.file}{key}\n    {self.problem}\n    -> {self.remedy}"
+        lines = (f"{self.file}{key}", f"    {self.problem}", f"    -> {self.remedy}")
+        return "\n".join(map(printable, lines))
+
+
+MOST_TOLD = 100
+"""Findings that are printed; of more their number is told."""
+
+
+def told(findings: Sequence[Finding]) -> str:
+    """Findings as they are printed: the first of them, and how many more there are."""
+    texts = [str(finding) for finding in findings[:MOST_TOLD]]
+    more = len(findings) - MOST_TOLD
+    if more > 0:
+        texts.append(f"... and {more:,} more fault{'s' if more > 1 else ''}, not shown")
+    return "\n".join(texts)
+
+
+_IN_A_LINE = re.compile(r"line \d+")
+
+
+def alike_together(findings: Iterable[Finding]) -> list[Finding]:
+    """Findings, those about lines of a file once for each kind: the first, and how many are like it.
+
+    They are alike if they differ in nothing but numbers.
+    """
+    kinds: dict[tuple[str, ...], list[Finding]] = {}
+    for k, each in enumerate(findings):
+        of_a_line = _IN_A_LINE.match(each.key)
+        texts = (each.file, each.key, each.problem, each.remedy)
+        kind = tuple(_NUMBER.sub("#", text) for text in texts) if of_a_line else (str(k),)
+        kinds.setdefault(kind, []).append(each)
+    return [
+        first
+        if not more
+        else replace(first, problem=f"{first.problem}; and {len(more)} more like it")
+        for first, *more in kinds.values()
+    ]
+
+
+_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)*(?:e[-+]?\d+)?")
 
 
 def suggest(word: str, known: Iterable[str]) -> str:
@@ -64,8 +106,8 @@ class ScenarioError(TpssError):
     def __init__(self, findings: Sequence[Finding]) -> None:
         self.findings = tuple(findings)
         count = len(self.findings)
-        head = f"{count} fault{'s' if count > 1 else ''} in the input:"
-        super().__init__("\n".join([head, *(str(finding) for finding in self.findings)]))
+        head = f"{count:,} fault{'s' if count > 1 else ''} in the input:"
+        super().__init__(f"{head}\n{told(self.findings)}")
 
 
 class LibraryError(TpssError):

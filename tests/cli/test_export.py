@@ -35,6 +35,14 @@ def test_out_names_a_folder_that_may_be_new(tpss_command, demo, tmp_path):
     assert {file.name for file in demo.iterdir()} == {"result.nc", "summary.json", "scenario.toml"}
 
 
+@pytest.mark.parametrize(("word", "separator"), [("comma", ";"), ("point", ",")])
+def test_csv_for_a_spreadsheet(tpss_command, demo, word, separator):
+    said = tpss_command("export", "demo", "--spreadsheet", word)
+    assert said.code == 0
+    text = (demo / "tables" / "trips.csv").read_bytes().decode("utf-8")
+    assert text.startswith(f"\ufefftrain{separator}service{separator}")
+
+
 def test_existing_files_need_force(tpss_command, demo):
     tpss_command("export", "demo")
     said = tpss_command("export", "demo")

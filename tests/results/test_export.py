@@ -11,7 +11,7 @@ from tpss import ResultError
 from tpss.files import several
 from tpss.results import export
 from tpss.results.export import TABLES, with_units
-from tpss.results.file_kinds import Kind
+from tpss.results.file_kinds import Kind, Spreadsheet
 
 from scenarios import run
 
@@ -189,3 +189,39 @@ def test_a_name_that_begins_like_a_formula_is_text_in_a_workbook(tmp_path):
     sheet = openpyxl.load_workbook(tmp_path / "result.xlsx")["trips"]
     cell = next(cell for row in sheet.iter_rows(min_row=2) for cell in row if cell.value == name)
     assert cell.data_type == "s"
+
+
+def as_csv(table, spreadsheet):
+    content = export.contents_of({"a": table}, Kind.CSV, "", spreadsheet)["a.csv"]
+    return content.decode("utf-8")
+
+
+FORMULAS = pd.DataFrame(
+    {
+        "train": ["=1+1", "+a", "-b", "@c", "\td", "plain", None],
+        "=heading": [-1.5, 2.0] + 5 * [0.25],
+    }
+)
+
+
+def test_csv_for_a_spreadsheet_has_no_formulas_and_its_numbers_are_untouched():
+    lines = as_csv(FORMULAS, Spreadsheet.POINT).split("\r\n")
+    assert lines[0] == "\ufefftrain,'=heading"
+    assert lines[1:8] == [
+        "'=1+1,-1.5", "'+a,2", "'-b,0.25", "'@c,0.25", "'\td,0.25", "plain,0.25", ",0.25",
+    ]  # fmt: skip
+
+
+def test_csv_for_a_spreadsheet_with_decimal_commas_is_separated_by_semicolons():
+    lines = as_csv(FORMULAS, Spreadsheet.COMMA).split("\r\n")
+    assert lines[1:3] == ["'=1+1;-1,5", "'+a;2"]
+
+
+def test_csv_for_programs_is_left_as_it_is():
+    assert as_csv(FORMULAS, None).split("\n")[:2] == ["train,=heading", "=1+1,-1.5"]
+
+
+@pytest.mark.parametrize("kind", KINDS[1:])
+def test_only_csv_needs_to_know_the_spreadsheet(kind):
+    with pytest.raises(ResultError, match="--spreadsheet is of csv"):
+        export.contents_of({"a": FORMULAS}, kind, "a.xlsx", Spreadsheet.POINT)

@@ -38,35 +38,35 @@ def spoilt(remedy: str, profiles: dict[str, tuple[str, str, str]]) -> list[Any]:
 
 PROFILES = [
     *spoilt("begin with the line position_km,gradient_permille", {
-        "header": ("km,permille\n0,1\n", "line 1", "km,permille"),
-        "semicolons": (
-            "# a\n\nposition_km;gradient_permille\n", "line 3", "position_km;gradient_permille"
-        ),
-        "other-column": ("position_km,gradient\n0,1\n", "line 1", "position_km,gradient"),
-        "columns-swapped": (
-            "gradient_permille,position_km\n1,0\n", "line 1", "gradient_permille,position_km"
-        ),
+        "header": ("a,b\n0,1\n", "line 1", "a,b"),
+        "other-column": ("position_km,radius\n0,1\n", "line 1", "position_km,radius"),
         "empty": ("", "line 1", ""),
         "comments-only": ("# nothing\n", "line 1", ""),
     }),
-    *spoilt("add rows", {"header-only": ("# a\n" + HEADER, "line 2", HEADER.strip())}),
+    *spoilt("add rows", {
+        "header-only": ("# a\n" + HEADER, "line 2", HEADER.strip()),
+        "semicolons": (
+            "# a\n\nposition_km;gradient_permille\n", "line 3", "position_km;gradient_permille"
+        ),
+    }),
     *spoilt("decimal point and no unit", {
         "cell": (HEADER + "0,1\n5,steep\n", "line 3, gradient_permille", "steep"),
         "unit": (HEADER + "0 km,1\n", "line 2, position_km", "0 km"),
-        "quotes": (HEADER + '"0",1\n', "line 2, position_km", '"0"'),
         "comment-behind-a-value": (
             HEADER + "0,1 # steep\n", "line 2, gradient_permille", "1 # steep"
         ),
+        "nan": (HEADER + "# a\n0,nan\n", "line 3, gradient_permille", "nan"),
+    }),
+    *spoilt("leave out the row", {
         "empty-cell": (HEADER + "0,\n", "line 2, gradient_permille", ""),
     }),
+    *spoilt("close each quote", {"quotes": (HEADER + '"0,1\n5,2\n', "line 2", '"0,1')}),
     *spoilt("separated by a comma", {
         "one-cell": (HEADER + "0,1\n\n# b\n5\n", "line 5", "5"),
         "three-cells": (HEADER + "0,0,1\n", "line 2", "0,0,1"),
         "semicolon-in-a-row": (HEADER + "0;1\n", "line 2", "0;1"),
-        "comma-at-the-end": (HEADER + "0,1,\n", "line 2", "0,1,"),
     }),
     *spoilt("finite number", {
-        "nan": (HEADER + "# a\n0,nan\n", "line 3, gradient_permille", "nan"),
         "infinite": (HEADER + "0,1\n1e999,2\n", "line 3, position_km", "inf"),
     }),
     *spoilt("less than or equal to 100", {
@@ -94,7 +94,25 @@ def test_every_fault_of_a_profile_is_reported(copied):
     profile = copied.with_name("gradients_a_160km.csv")
     profile.write_text(HEADER + "a,b\n1\n2,3,4\n", encoding="utf-8")
     keys = [finding.key for finding in faults_of({}, copied)]
-    assert keys == ["line 2, position_km", "line 2, gradient_permille", "line 3", "line 4"]
+    assert keys == ["line 3", "line 2, position_km", "line 2, gradient_permille"]
+
+
+def test_a_fault_of_many_rows_is_told_once(copied):
+    profile = copied.with_name("gradients_a_160km.csv")
+    rows = "".join(f"{k},steep\n" for k in range(60))
+    profile.write_text(HEADER + rows, encoding="utf-8")
+    (finding,) = faults_of({}, copied)
+    assert finding.key == "line 2, gradient_permille"
+    assert finding.problem == "not a number; and 59 more like it"
+
+
+def test_a_value_out_of_range_in_many_rows_is_told_once(copied):
+    profile = copied.with_name("gradients_a_160km.csv")
+    rows = "".join(f"{k},{300 + k}\n" for k in range(60))
+    profile.write_text(HEADER + rows, encoding="utf-8")
+    (finding,) = faults_of({}, copied)
+    assert finding.key == "line 2, gradient_permille"
+    assert finding.problem == "out of range; and 59 more like it"
 
 
 def test_a_missing_profile_is_reported_with_those_that_are_there(copied):

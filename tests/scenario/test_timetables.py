@@ -226,8 +226,8 @@ def test_a_name_may_be_that_of_one_train_only(tmp_path):
     [
         ("name,station,departure,arival", "arival", "did you mean arrival?"),
         ("name,station,departure,name", "name", "leave one out"),
-        ("train,station,departure", "", "add it"),
-        ("a,b,c", "a,b,c", "begin with the line name,train,station"),
+        ("train,station,departure", "train,station,departure", "begin with the line name,station"),
+        ("a,b,c", "a,b,c", "begin with the line name,station,departure"),
     ],
 )
 def test_a_header_that_is_none(tmp_path, header, value, remedy):

@@ -277,7 +277,7 @@ def test_a_type_in_a_file_finds_its_curve_beside_itself(tmp_path: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "key", "problem"),
     [
-        ("load,loss\n0,1\n", "line 1", "not the expected header"),
+        ("load,efficiency\n0,1\n", "line 1", "not the expected header"),
         ("load_percent,loss_kw\n0,300\n50,x\n", "line 3, loss_kw", "not a number"),
         ("load_percent,loss_kw\n0,300\n0,400\n", "line 3, load_percent", "does not increase"),
         ("load_percent,loss_kw\n0,-3\n90,400\n", "line 2, loss_kw", "out of range"),

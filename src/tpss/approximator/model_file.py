@@ -13,6 +13,8 @@ from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError, shortened
+from tpss.files.json_text import parse_json
+from tpss.files.read import read_bytes
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import write_file
 from tpss.scenario.fields import Name, Part, Real, Whole, fault
@@ -206,12 +208,10 @@ def read_model(path: Path) -> ModelFile:
 
 def _document(path: Path) -> Any:
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise ApproximatorError(f"{path} is too long to be the file of an approximator")
-        return json.loads(path.read_text("utf-8"))
+        return parse_json(read_bytes(path, MOST_BYTES))
     except OSError as error:
         raise ApproximatorError(f"{path} cannot be read: {reason(error)}") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ApproximatorError(
             f"{path} is not the file of an approximator, or damaged ({error}); {REMEDY}"
         ) from error

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
-from tpss.cli.terminal import progress_bar, say
+from tpss.cli.terminal import Console, progress_bar, say
 from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import reason
 
 if TYPE_CHECKING:
@@ -144,6 +144,10 @@ def _inputs_of_scenario(model: "Approximator", file: Path) -> dict[str, Any]:
     return {str(name): v for name, v in known.items() if model.file.inputs.has(str(name))}
 
 
+MOST_TABLE = 2_000 * MEGABYTE
+"""Longest table of cases that is read. [byte]"""
+
+
 def _demand_table_file(path: Path) -> None:
     if path.suffix not in (".csv", ".parquet"):
         raise ApproximatorError(
@@ -154,6 +158,7 @@ def _demand_table_file(path: Path) -> None:
 def _read_table(path: Path) -> pd.DataFrame:
     _demand_table_file(path)
     try:
+        demand_readable(path, MOST_TABLE)
         if path.suffix == ".parquet":
             return pd.read_parquet(path)
         return pd.read_csv(path, comment="#", skipinitialspace=True)

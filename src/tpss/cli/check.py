@@ -5,14 +5,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
 from tpss.cli.library import KINDS
 from tpss.cli.notes import notes, stuck
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.model.build import build_model
 from tpss.model.outages import service_of
 from tpss.model.traffic import build_services
@@ -70,7 +69,7 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     for heading, text in summary(scenario):
         rows.add_row(f"[dim]{heading}[/dim]", escape(text))
     console.print(rows)
-    for note in (*notes(scenario), *stuck(scenario, model)):
+    for note in (*scenario.file_notes, *notes(scenario), *stuck(scenario, model)):
         console.print(f"\n[yellow]Note:[/yellow] {escape(note)}", highlight=False)
     say(console, f"\nNo faults in {file}")
 

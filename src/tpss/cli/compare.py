@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.plot import figure_bytes
-from tpss.cli.terminal import parts_that_fit, say
+from tpss.cli.terminal import Console, parts_that_fit, say
 from tpss.errors import ResultError
 from tpss.files.several import check_files, save_files
 from tpss.results.contents import REPORT, SUMMARY

@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.table import Table
 
 from tpss.cli.columns import Column, named_rows, table_of_columns
 from tpss.cli.run import DONE, PROGRESS, SEVERITY, exit_code
 from tpss.cli.table_and_picture import demand_room, write_picture, write_table
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 
 if TYPE_CHECKING:
     import pandas as pd

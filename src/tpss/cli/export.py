@@ -10,13 +10,15 @@ from tpss.files.whole import write_file
 from tpss.results.contents import TABLES
 from tpss.results.electrical_profiles import electrical_profiles
 from tpss.results.export import export
-from tpss.results.file_kinds import Kind
+from tpss.results.file_kinds import Kind, Spreadsheet
 from tpss.results.osrd_tracks import read_tracks
 from tpss.results.result import load_result
 from tpss.units import kilometres
 
 
-def export_result(folder: Path, kind: Kind, out: Path | None, force: bool) -> None:
+def export_result(
+    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None
+) -> None:
     """Export the tables of a result, and print where they are.
 
     Raises
@@ -25,7 +27,7 @@ def export_result(folder: Path, kind: Kind, out: Path | None, force: bool) -> No
         The folder holds no result, or the files cannot be written.
     """
     place = folder / TABLES if out is None else out
-    files = export(load_result(folder), kind, place, force=force)
+    files = export(load_result(folder), kind, place, force=force, spreadsheet=spreadsheet)
     print(f"Wrote into {place}: {', '.join(file.name for file in files)}")
 
 

@@ -108,3 +108,58 @@ def railml(
     from tpss.cli.imports import import_railml
 
     import_railml(file, out, force)
+
+
+@app.command(
+    name="csv",
+    epilog="Examples:  tpss import csv heights.csv limits.xlsx stations.csv, then the same with "
+    "--out ours; tpss import csv gradients=profile.xlsx#Sheet2 --smooth-over 0.5 --out ours",
+)
+def tables(
+    files: Annotated[
+        list[str] | None,
+        argument(
+            metavar="[KIND=]FILE...",
+            help="Tables, CSV or workbooks (.xlsx, #SHEET behind for another than the first). KIND is "
+            "gradients, speed-limits, stations, effort, braking, losses or timetable; by default it "
+            "follows from the headings.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, option(help="Folder for the files; without it nothing is written.")
+    ] = None,
+    decimal: Annotated[
+        str,
+        option(
+            metavar="SIGN", help="point or comma, where numbers do not say what begins decimals."
+        ),
+    ] = "",
+    smooth_over: Annotated[
+        float | None,
+        option(
+            min=0.01,
+            max=100.0,
+            metavar="KM",
+            help="Length over which altitudes are averaged before gradients follow from them.",
+        ),
+    ] = None,
+    headings: Annotated[
+        bool, typer.Option("--headings", help="List the headings that are known, and units.")
+    ] = False,
+    force: Force = False,
+) -> None:
+    """Show how tables of numbers are understood, and write them as files of a scenario.
+
+    Shown are separator, decimals and encoding, what each column means, in which unit, its ends and first
+    values, and gradients that are derived from altitudes. With --out each table is written in CSV, with
+    headings of TPSS; gradients, speed limits and stations also give a line, line.toml. Scenarios name
+    tables as they are too; what is written here is what they would have read.
+    """
+    from tpss.cli.import_csv import import_tables, print_headings
+
+    if headings and not files:
+        print_headings()
+        return
+    if headings or not files:
+        raise typer.BadParameter("give files, or --headings alone")
+    import_tables(files, out, decimal, smooth_over, force)

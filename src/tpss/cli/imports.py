@@ -3,9 +3,7 @@
 from datetime import date
 from pathlib import Path
 
-from rich.console import Console
-
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.importers.network import ImportedNetwork
 from tpss.importers.network_files import SCENARIO, TIMETABLE
 from tpss.importers.network_files import files as network_texts

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.errors import LibraryError, suggest
 
 if TYPE_CHECKING:

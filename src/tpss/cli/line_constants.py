@@ -3,11 +3,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 from tpss.cli.columns import Column
 from tpss.cli.tables import print_table
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.units import label

@@ -449,6 +449,7 @@ def schema(
 def main() -> None:
     """Run the command line; faults of the input are printed, never raised."""
     from tpss.errors import TpssError
+    from tpss.printable import printable
 
     # Most objects of a short-lived process are modules: collecting garbage among them, repeatedly
     # while they load and again at the end, takes a quarter of the time of a run.
@@ -457,13 +458,13 @@ def main() -> None:
     try:
         app()
     except TpssError as error:
-        typer.echo(str(error), err=True)
+        typer.echo(printable(str(error), "\n"), err=True)
         sys.exit(2)
     except Exception as error:
         if os.environ.get("TPSS_DEBUG"):
             raise
         typer.echo(
-            f"Internal error: {type(error).__name__}: {error}\n"
+            f"Internal error: {type(error).__name__}: {printable(str(error))}\n"
             "This is a fault of TPSS, please report it; TPSS_DEBUG=1 shows where it occurred.",
             err=True,
         )

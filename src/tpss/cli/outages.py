@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, DONE, INTERRUPTED, NO_SOLUTION
-from tpss.cli.terminal import announce_compilation, parts_that_fit, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, parts_that_fit, progress_bar, say
 from tpss.errors import ResultError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace

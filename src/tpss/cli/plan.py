@@ -9,12 +9,10 @@ from collections.abc import Callable, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 from tpss.cli.plan_tables import print_answer
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED, NO_SOLUTION
 from tpss.cli.sweep import demand_packages
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import AuditError, NoPlanError
 
 if TYPE_CHECKING:

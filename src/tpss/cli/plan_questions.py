@@ -4,13 +4,11 @@ import math
 import sys
 from pathlib import Path
 
-from rich.console import Console
-
 from tpss.cli.plan import GAP_LEFT, exit_code_of
 from tpss.cli.plan_tables import print_firsts, print_frame
 from tpss.cli.run import DONE, NO_SOLUTION
 from tpss.cli.sweep import demand_packages
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 from tpss.errors import AuditError, Finding, NoPlanError, PlanError, ScenarioError, no_such
 
 

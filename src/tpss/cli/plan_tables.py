@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.terminal import say
+from tpss.cli.terminal import Console, say
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,7 +19,7 @@ from tpss.cli.arguments import (
     stations_of,
 )
 from tpss.results.contents import FIGURE_NAMES
-from tpss.results.file_kinds import Kind
+from tpss.results.file_kinds import Kind, Spreadsheet
 
 
 class Stamps(StrEnum):
@@ -215,6 +215,14 @@ def export(
     out: Annotated[
         Path | None, option(help="Folder for the files; by default RESULT/tables.")
     ] = None,
+    spreadsheet: Annotated[
+        Spreadsheet | None,
+        option(
+            metavar="DECIMALS",
+            help="CSV for a spreadsheet whose decimals begin with a point or a comma: columns are then "
+            "separated by commas or semicolons, and texts like formulas are marked with an apostrophe.",
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Write the tables of a result or a study as files for other programs; all are written or none.
@@ -229,9 +237,9 @@ def export(
     from tpss.cli.study import export_study, is_study
 
     if is_study(result):
-        export_study(result, to, out, force)
+        export_study(result, to, out, force, spreadsheet)
         return
-    export_result(result, to, out, force)
+    export_result(result, to, out, force, spreadsheet)
 
 
 def export_profiles(

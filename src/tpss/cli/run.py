@@ -9,9 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import ResultError
 from tpss.results.contents import REPORT
 
@@ -116,6 +114,8 @@ def _simulate_and_save(
     from tpss.run.interrupt import interruptible
 
     console = Console(stderr=True, quiet=quiet)
+    for note in scenario.file_notes:
+        say(console, f"Note: {note}")
     announce_compilation(console)
     prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:

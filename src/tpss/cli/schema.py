@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 from tpss.errors import ResultError
+from tpss.files.json_text import read_json_file
 from tpss.files.refusals import explained
 from tpss.files.whole import write_file
 
@@ -43,7 +44,7 @@ def write_schema(out: Path | None, kind: str = "scenario") -> None:
 
 def _is_our_schema(file: Path) -> bool:
     try:
-        document = json.loads(file.read_text(encoding="utf-8"))
+        document = read_json_file(file)
     except (OSError, ValueError):
         return False
     return isinstance(document, dict) and document.get("title") in TITLES

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.table_and_picture import demand_room, write_picture, write_table
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import ResultError
 
 if TYPE_CHECKING:

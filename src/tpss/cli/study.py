@@ -11,7 +11,7 @@ from tpss.files.several import check_files, save_files
 from tpss.files.whole import write_file
 from tpss.results.contents import DATASET, REPORT, TABLES
 from tpss.results.contents import FIGURES as FIGURES_FOLDER
-from tpss.results.file_kinds import Kind
+from tpss.results.file_kinds import Kind, Spreadsheet
 
 MANIFEST = "study.json"
 
@@ -65,7 +65,9 @@ def write_case(place: Path, case: int, out: Path | None, force: bool) -> None:
     print(f"Run it with  tpss run {target}")
 
 
-def export_study(folder: Path, kind: Kind, out: Path | None, force: bool) -> None:
+def export_study(
+    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None
+) -> None:
     """Export the table of a study, and print where it is.
 
     Raises
@@ -78,7 +80,7 @@ def export_study(folder: Path, kind: Kind, out: Path | None, force: bool) -> Non
 
     table = load_outcome(folder).table.drop(columns=["timing.ended"])
     place = folder / TABLES if out is None else out
-    contents = contents_of({"cases": table}, kind, "study.xlsx")
+    contents = contents_of({"cases": table}, kind, "study.xlsx", spreadsheet)
     check_files(place, contents, force)
     files = save_files(place, contents, force)
     print(f"Wrote into {place}: {', '.join(file.name for file in files)}")

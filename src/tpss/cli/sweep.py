@@ -5,12 +5,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED
-from tpss.cli.terminal import announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import StudyError
 
 if TYPE_CHECKING:

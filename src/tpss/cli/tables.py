@@ -4,13 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from tpss import units
 from tpss.cli.columns import Column, named_rows, table_of_columns
-from tpss.cli.terminal import parts_that_fit, say, width_of
+from tpss.cli.terminal import Console, parts_that_fit, say, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back, in_words

@@ -4,12 +4,49 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from rich.console import Console
+from rich import console as rich_console
 from rich.markup import escape
 from rich.measure import Measurement
+from rich.segment import Segment
 from rich.table import Table
 
+from tpss.printable import printable
+
 Column = TypeVar("Column")
+
+
+class _Escaped:
+    """What is printed, its texts without what would steer the terminal."""
+
+    def __init__(self, printed: Any) -> None:
+        self.printed = printed
+
+    def __rich_console__(
+        self, console: rich_console.Console, options: rich_console.ConsoleOptions
+    ) -> Iterator[Segment]:
+        for segment in console.render(self.printed, options):
+            is_ours = segment.control is not None
+            yield segment if is_ours else Segment(printable(segment.text, "\n"), segment.style)
+
+    def __rich_measure__(
+        self, console: rich_console.Console, options: rich_console.ConsoleOptions
+    ) -> Measurement:
+        return Measurement.get(console, options, self.printed)
+
+
+class _Escape(rich_console.RenderHook):
+    def process_renderables(
+        self, renderables: list[rich_console.ConsoleRenderable]
+    ) -> list[rich_console.ConsoleRenderable]:
+        return [_Escaped(each) for each in renderables]
+
+
+class Console(rich_console.Console):
+    """A console that shows what would steer the terminal, in a text of others, as its code."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.push_render_hook(_Escape())
 
 
 def say(console: Console, text: str) -> None:

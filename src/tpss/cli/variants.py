@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.table import Table
 
-from tpss.cli.terminal import parts_that_fit
+from tpss.cli.terminal import Console, parts_that_fit
 from tpss.scenario import Scenario
 from tpss.scenario.variants import ALL
 from tpss.units import on_line

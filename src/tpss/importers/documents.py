@@ -1,12 +1,13 @@
 """JSON documents of other formats, read into models; faults become findings with their places."""
 
-import json
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from tpss.errors import Finding, ScenarioError, shortened
+from tpss.files.json_text import parse_json
+from tpss.files.read import MEGABYTE
 from tpss.scenario.files import read_text, shown_line
 
 
@@ -17,6 +18,9 @@ class Item(BaseModel):
 
 
 Model = TypeVar("Model")
+
+MOST_JSON = 500 * MEGABYTE
+"""Longest document that is read: networks of whole countries are shorter. [byte]"""
 
 MOST_FINDINGS = 20
 """More of one file tell nothing new."""
@@ -30,10 +34,10 @@ def read_json(path: Path) -> Any:
     ScenarioError
         The file cannot be read or is not JSON.
     """
-    text = read_text(path)
+    text = read_text(path, most_bytes=MOST_JSON)
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
+        return parse_json(text)
+    except ValueError as error:
         number = getattr(error, "lineno", None)  # of errors of the format alone
         place, value = shown_line(text, number) if number else ("", "")
         remedy = "correct the file at that place, or name another file"

@@ -13,6 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tpss.errors import Finding, ScenarioError, shortened
+from tpss.files.archive import demand_likely
+from tpss.files.read import MEGABYTE, demand_readable
+from tpss.files.refusals import reason
+
+MOST_PACKED, MOST_UNPACKED = 1_000 * MEGABYTE, 4_000 * MEGABYTE
+"""Largest zip file, and largest table, that are read: feeds of whole countries are smaller. [byte]"""
 
 REMEDY = "correct the feed, or name another one"
 
@@ -79,6 +85,7 @@ class Feed:
         if path.is_dir():
             return
         try:
+            demand_readable(path, MOST_PACKED)
             with zipfile.ZipFile(path) as archive:
                 names = [name for name in archive.namelist() if name.endswith(".txt")]
         except (OSError, zipfile.BadZipFile) as error:
@@ -114,8 +121,8 @@ class Feed:
         try:
             with self._open(table) as text:
                 yield from _rows(place, text, needed)
-        except (OSError, UnicodeDecodeError, csv.Error, zipfile.BadZipFile) as error:
-            problem = f"the table cannot be read: {error}"
+        except (OSError, ValueError, csv.Error, zipfile.BadZipFile) as error:
+            problem = f"the table cannot be read: {reason(error)}"
             raise ScenarioError([Finding(place, "", "", problem, REMEDY)]) from error
 
     def optional_rows(self, table: str, *needed: str) -> Iterator[Row]:
@@ -124,9 +131,11 @@ class Feed:
 
     def _open(self, table: str) -> io.TextIOWrapper:
         if self.path.is_dir():
+            demand_readable(self.path / table, MOST_UNPACKED)
             return (self.path / table).open(encoding="utf-8-sig", newline="")
         archive = zipfile.ZipFile(self.path)
         with archive:  # the file that is opened keeps what it needs
+            demand_likely(archive.getinfo(self._inside[table]))
             return io.TextIOWrapper(archive.open(self._inside[table]), "utf-8-sig", newline="")
 
 

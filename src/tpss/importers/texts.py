@@ -6,6 +6,7 @@ from typing import Protocol
 
 from tpss.errors import Finding, ScenarioError
 from tpss.files.refusals import reason
+from tpss.printable import printable
 
 WIDTH = 100
 
@@ -38,11 +39,13 @@ def sections(told: Told) -> list[tuple[str, list[str]]]:
 
 def comments(head: str, told: Told) -> str:
     """What was taken from a file, left out and assumed, as comments of TOML or CSV."""
-    lines = wrap(head, WIDTH, initial_indent="# ", subsequent_indent="# ")
+    lines = wrap(printable(head), WIDTH, initial_indent="# ", subsequent_indent="# ")
     for title, items in sections(told):
         lines.append(f"# {title}:")
         for item in items:
-            lines += wrap(item, WIDTH, initial_indent="#   - ", subsequent_indent="#     ")
+            lines += wrap(
+                printable(item), WIDTH, initial_indent="#   - ", subsequent_indent="#     "
+            )
     return "\n".join([*lines, "", ""])
 
 

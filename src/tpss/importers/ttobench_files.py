@@ -5,7 +5,7 @@ import tomli_w
 from tpss.errors import Finding, ScenarioError
 from tpss.importers.texts import comments
 from tpss.importers.ttobench import Imported
-from tpss.scenario.files import GRADIENTS
+from tpss.tables.kinds import GRADIENTS
 
 _SCENARIO = """\
 # {track} with {train}, imported from TTOBench.  Track and train are in separate files.
@@ -83,7 +83,7 @@ def _line_files(track: Imported) -> dict[str, str]:
     rows = [f"{row['from_km']:.10g},{row['permille']:.10g}" for row in track.document["gradients"]]
     head = [
         "# Gradients apply from their positions on, positive uphill.",
-        ",".join(GRADIENTS.names.values()),
+        GRADIENTS.header,
     ]
     return {
         f"{track.name}.toml": _comments(track)

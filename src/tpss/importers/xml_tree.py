@@ -5,9 +5,13 @@ from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from tpss.errors import Finding, ScenarioError
+from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import reason
 
 REMEDY = "correct the file, or name another one"
+
+MOST_XML = 500 * MEGABYTE
+"""Longest document that is read: networks of whole countries are shorter. [byte]"""
 
 DEEPEST = 200
 """Elements within elements; no format has more."""
@@ -50,6 +54,7 @@ def read_xml(path: Path) -> Element:
     parser.StartDoctypeDeclHandler = doctype
     parser.CharacterDataHandler = builder.data
     try:
+        demand_readable(path, MOST_XML)
         with path.open("rb") as file:
             parser.ParseFile(file)
         return builder.close()

@@ -10,11 +10,16 @@ import numpy as np
 import pandas as pd
 
 from tpss.errors import Finding, ScenarioError, shortened
+from tpss.files.content import content_of
+from tpss.files.read import MEGABYTE
 from tpss.measured.quantities import Floats, Indices
-from tpss.scenario.files import read_text
+from tpss.tables.sheet import UTF_8, decoded
 
 SEPARATORS = ("\t", ";", ",")
 """What may separate columns; the first that is in the header does."""
+
+MOST_BYTES = 1_000 * MEGABYTE
+"""Longest file that is read: recorders write less in months. [byte]"""
 
 GAPS = ("", "nan", "na")
 """Texts of cells, in small letters, that are no values."""
@@ -92,17 +97,9 @@ def _is_idle(line: str) -> bool:
 
 def _text_of(path: Path) -> tuple[str, tuple[str, ...]]:
     """Text of a file, and what is told of how it was read."""
-    try:
-        text, notes = read_text(path), list[str]()
-    except ScenarioError as error:
-        if not isinstance(error.__cause__, UnicodeDecodeError):
-            raise
-        try:
-            text = path.read_bytes().decode("cp1252")
-        except UnicodeDecodeError:
-            raise error from None
-        notes = [f"{path.name} is not UTF-8 and was read as Windows-1252"]
-    return text.replace("\r\n", "\n").replace("\r", "\n"), tuple(notes)
+    text, encoding = decoded(path, content_of(path, most_bytes=MOST_BYTES))
+    notes = [] if encoding == UTF_8 else [f"{path.name} is not UTF-8 and was read as {encoding}"]
+    return text, tuple(notes)
 
 
 def _rows(text: str, separator: str, skipped: int) -> list[tuple[int, list[str]]]:

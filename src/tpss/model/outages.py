@@ -137,9 +137,7 @@ def _network_of(laid: Laid, joints: Sequence[Joint], left: _Left | None) -> Netw
     """The network of a supply with pairs of nodes joined, and what is left in service; None: all."""
     network, leaders = joined_network(laid.network, laid.plan, laid.supply, joints)
     if left is not None:
-        network = in_service(
-            network, dict(left.units), left.opened, dict(left.links), left.stores
-        )
+        network = in_service(network, dict(left.units), left.opened, dict(left.links), left.stores)
     return following(network, leaders) if leaders else network
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from tpss.errors import StudyError
+from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained
 from tpss.files.whole import UNFINISHED, write_file
 from tpss.sweep.folder import CASES, LOCK, REMEDY, lock, read_parts
@@ -66,7 +67,7 @@ class CaseFolder:
             write_file(place, json.dumps(own, indent=1).encode())
             return
         try:
-            begun = dict(json.loads(place.read_text("utf-8")))
+            begun = dict(read_json_file(place))
         except ValueError as error:
             raise StudyError(f"{place} is damaged ({error}); {ANOTHER}") from error
         for key, value in own.items():

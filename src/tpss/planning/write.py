@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from tpss.errors import PlanError
+from tpss.files.json_text import read_json_file
 from tpss.files.refusals import explained, reason
 from tpss.files.whole import write_file
 from tpss.planning import tables
@@ -167,7 +168,7 @@ def read_document(folder: Path) -> dict[str, Any]:
         It is no folder of an answer, or one of another version's format.
     """
     try:
-        document = json.loads((folder / PLAN).read_text("utf-8"))
+        document = read_json_file(folder / PLAN)
     except (OSError, ValueError) as error:
         raise PlanError(
             f"{folder} is not the folder of a plan that was solved ({PLAN}: {reason(error)}); name one "

@@ -14,6 +14,7 @@ import jinja2
 from plotly.graph_objects import Figure
 from plotly.offline import get_plotlyjs
 
+from tpss.printable import printable
 from tpss.results.contents import REPORT_MARK
 from tpss.units import kilometres
 
@@ -43,26 +44,42 @@ def fill(
     **parts
         What else the template shows.
     """
+    return (
+        templates()
+        .get_template(template)
+        .render(
+            generator=REPORT_MARK,
+            version=version("tpss"),
+            title=title,
+            figures=figures,
+            data=data,
+            style=_part("report.css"),
+            script="\n".join(map(_part, scripts)),
+            plotly=get_plotlyjs() if figures else "",
+            report_data=_for_script(figures, data),
+            **parts,
+        )
+    )
+
+
+def templates() -> jinja2.Environment:
+    """Templates of pages, in which every text is escaped."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tpss.report", "template"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        finalize=_shown,
     )
     environment.filters["kilometres"] = kilometres
-    return environment.get_template(template).render(
-        generator=REPORT_MARK,
-        version=version("tpss"),
-        title=title,
-        figures=figures,
-        data=data,
-        style=_part("report.css"),
-        script="\n".join(map(_part, scripts)),
-        plotly=get_plotlyjs() if figures else "",
-        report_data=_for_script(figures, data),
-        **parts,
-    )
+    return environment
+
+
+def _shown(value: Any) -> Any:
+    """A value as a page shows it: of texts of others, what turns lines round is shown as its code."""
+    is_of_others = isinstance(value, str) and not hasattr(value, "__html__")
+    return printable(value, "\n\t") if is_of_others else value
 
 
 def _part(name: str) -> str:

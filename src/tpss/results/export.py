@@ -14,8 +14,9 @@ from tpss import units
 from tpss.errors import ResultError
 from tpss.files.several import check_files, save_files
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
-from tpss.results.file_kinds import Kind
+from tpss.results.file_kinds import Kind, Spreadsheet
 from tpss.results.result import Result
+from tpss.results.spreadsheet import without_formulas
 from tpss.results.workbook import MOST_ROWS, workbook
 
 TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
@@ -27,7 +28,14 @@ NEEDS = {Kind.XLSX: ("openpyxl", "openpyxl"), Kind.PARQUET: ("pyarrow", "tpss[pa
 """Package that a file type needs, and what to install for it."""
 
 
-def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> list[Path]:
+def export(
+    result: Result,
+    kind: Kind,
+    folder: Path,
+    *,
+    force: bool = False,
+    spreadsheet: Spreadsheet | None = None,
+) -> list[Path]:
     """Write the tables of a result into a folder, all of them or none.
 
     Parameters
@@ -39,6 +47,8 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
         Made if it does not exist.
     force : bool
         Whether files of these names may be replaced.
+    spreadsheet : Spreadsheet, optional
+        CSV for a spreadsheet of such decimals, in which no text is a formula; None: for programs.
 
     Returns
     -------
@@ -54,22 +64,31 @@ def export(result: Result, kind: Kind, folder: Path, *, force: bool = False) -> 
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
     check_files(folder, names, force)
     tables = {name: table(result) for name, table in TABLES.items()}
-    return save_files(folder, contents_of(tables, kind, WORKBOOK), force)
+    return save_files(folder, contents_of(tables, kind, WORKBOOK, spreadsheet), force)
 
 
-def contents_of(tables: Mapping[str, pd.DataFrame], kind: Kind, workbook: str) -> dict[str, bytes]:
+def contents_of(
+    tables: Mapping[str, pd.DataFrame],
+    kind: Kind,
+    workbook: str,
+    spreadsheet: Spreadsheet | None = None,
+) -> dict[str, bytes]:
     """Files of tables by their names: one for each, or the workbook.
 
     Raises
     ------
     ResultError
-        A package is missing, or a table is too long.
+        A package is missing, a table is too long, or what is asked for is of CSV only.
     """
     _demand_package(kind)
+    if spreadsheet is not None and kind is not Kind.CSV:
+        raise ResultError(
+            f"--spreadsheet is of csv; {kind} keeps texts and numbers apart anyway: leave it out"
+        )
     headed = {name: with_units(table) for name, table in tables.items()}
     if kind is Kind.XLSX:
         return {workbook: _workbook(headed)}
-    return {f"{name}.{kind}": _bytes(table, kind) for name, table in headed.items()}
+    return {f"{name}.{kind}": _bytes(table, kind, spreadsheet) for name, table in headed.items()}
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:
@@ -86,10 +105,16 @@ def _demand_package(kind: Kind) -> None:
         )
 
 
-def _bytes(table: pd.DataFrame, kind: Kind) -> bytes:
+def _bytes(table: pd.DataFrame, kind: Kind, spreadsheet: Spreadsheet | None) -> bytes:
     if kind is Kind.PARQUET:
         return table.to_parquet(index=False, engine="pyarrow")
-    return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
+    if spreadsheet is None:
+        return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
+    separator, decimal = (";", ",") if spreadsheet is Spreadsheet.COMMA else (",", ".")
+    text = without_formulas(table).to_csv(
+        index=False, float_format="%.10g", lineterminator="\r\n", sep=separator, decimal=decimal
+    )
+    return text.encode("utf-8-sig")  # by the mark, spreadsheets know that it is UTF-8
 
 
 def _workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:

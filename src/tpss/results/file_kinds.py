@@ -1,4 +1,4 @@
-"""Types of files to which tables are exported."""
+"""Types of files to which tables are exported, and forms of CSV for spreadsheets."""
 
 from enum import StrEnum
 
@@ -9,3 +9,10 @@ class Kind(StrEnum):
     CSV = "csv"
     XLSX = "xlsx"
     PARQUET = "parquet"
+
+
+class Spreadsheet(StrEnum):
+    """What begins the decimals in the spreadsheet that is to open CSV."""
+
+    POINT = "point"
+    COMMA = "comma"

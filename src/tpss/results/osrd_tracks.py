@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tpss.errors import ResultError
+from tpss.files.content import MOST_TEXT
+from tpss.files.read import read_bytes
 
 
 class OsrdTrack(NamedTuple):
@@ -49,7 +51,7 @@ def read_tracks(path: Path, lines: Collection[str]) -> list[OsrdTrack]:
         It cannot be read, is no such table, or names lines that the result does not have.
     """
     try:
-        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+        rows = list(csv.reader(io.StringIO(read_bytes(path, MOST_TEXT).decode("utf-8-sig"))))
     except (OSError, ValueError, csv.Error) as error:
         raise ResultError(
             f"{path} cannot be read: {error}; name the tracks.csv of an import"

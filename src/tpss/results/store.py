@@ -14,6 +14,8 @@ import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
 from tpss.files import whole, workplace
+from tpss.files.json_text import read_json_file
+from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
 from tpss.results.dataset import NODE_KIND, described
@@ -131,7 +133,7 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
             "tpss run has written"
         )
     try:
-        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        summary = read_json_file(folder / SUMMARY)
         _demand_this_format(folder, summary)
         # First: on some damaged files HDF5 ends the process.
         _demand_what_was_written(folder / DATASET, summary.pop(CHECKSUMS, {}))
@@ -159,8 +161,24 @@ def _as_netcdf(dataset: xr.Dataset) -> memoryview:
 
 
 def _read_netcdf(path: Path) -> xr.Dataset:
+    demand_readable(path, MOST_BYTES)
     with ONE_AT_A_TIME, xr.open_dataset(path, engine="netcdf4") as stored:
+        _demand_bounded(stored)
         return _with_route_positions(_with_node_kinds(stored.load()))
+
+
+MOST_BYTES = 64_000 * MEGABYTE
+"""Of a dataset: eight times as much as a run may record. [byte]"""
+
+
+def _demand_bounded(dataset: xr.Dataset) -> None:
+    """Raise a `ValueError` if a dataset says that it holds more than a run may record.
+
+    What is packed may be small, and unpack to anything.
+    """
+    if dataset.nbytes > MOST_BYTES:
+        gigabytes = f"{dataset.nbytes / 1e9:.3g} GB"
+        raise ValueError(f"{DATASET} unpacks to {gigabytes}, more than a run records")
 
 
 def _with_node_kinds(dataset: xr.Dataset) -> xr.Dataset:

@@ -22,6 +22,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from tpss import library
+from tpss.printable import in_nfc, steering
 
 
 class Part(BaseModel):
@@ -82,13 +83,19 @@ LINE = "line"
 """Name of the line that the key of this name describes."""
 
 
-def _is_one_line(name: str) -> str:
-    if not name.isprintable() and any(ord(c) < 32 or ord(c) == 127 for c in name):
-        raise PydanticCustomError("control_character", "a control character in a name")
-    return name
+def _plain_name(name: str) -> str:
+    """A name in the form C of Unicode, without anything that cannot be seen."""
+    if character := steering(name):
+        code = f"U+{ord(character):04X}"
+        raise PydanticCustomError(
+            "control_character",
+            "a control character in a name, {code}, which steers or cannot be seen",
+            {"code": code},
+        )
+    return in_nfc(name)
 
 
-Name = Annotated[str, Field(min_length=1), AfterValidator(_is_one_line)]
+Name = Annotated[str, Field(min_length=1), AfterValidator(_plain_name)]
 
 
 def name_of_line() -> Any:

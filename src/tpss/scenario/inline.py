@@ -1,27 +1,35 @@
 """Put the files that a scenario names in place of their names.
 
 A name that ends in ``.toml`` stands for the table in that file, next to the scenario: of a train's
-model, of the line, of anything that the library has entries for.  ``gradients_file`` and
-``curve_file`` stand for rows in CSV, and ``timetables`` for entries of the traffic.  A scenario then
-holds everything that it says, and its faults are traced back to the files that contain them.
+model, of the line, of anything that the library has entries for.  ``gradients_file``,
+``speed_limits_file``, ``stations_file`` and ``curve_file`` stand for tables in CSV or in a workbook, and
+``timetables`` for entries of the traffic.  A scenario then holds everything that it says, and its faults
+are traced back to the files that contain them.
 """
 
 import marshal
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.clock import start_of
-from tpss.scenario.files import GRADIENTS, LOSSES, Columns, Profile, read_profile, read_toml
+from tpss.scenario.curve_files import CurveOfFile, read_braking, read_effort
+from tpss.scenario.files import read_toml
+from tpss.scenario.inlined import Inlined, Location
 from tpss.scenario.override import copy_of
+from tpss.scenario.profiles import (
+    Profile,
+    read_gradients,
+    read_losses,
+    read_speed_limits,
+    read_stations,
+)
 from tpss.scenario.rolling_stock import completed
-from tpss.scenario.timetable import Defaults, TimetabledTrain, read_timetable
+from tpss.scenario.timetable import Defaults, read_timetable
 from tpss.scenario.timetable_density import at_density, density_of
-
-Location = tuple[int | str, ...]
 
 SUFFIX = ".toml"
 
@@ -56,50 +64,30 @@ LOSSES_OF = (
 )
 """Where losses may name a CSV file with their curve."""
 
+CURVES: Mapping[str, Callable[[Path, str], CurveOfFile]] = {
+    "tractive_effort": read_effort,
+    "max_retardation_m_s2": read_braking,
+}
+"""Keys of a train whose tables may name a file with their curve, and what reads it."""
+
+OF_TRAINS = (("trains", "*"), ("trains", "*", "by_system", "*"))
+"""Where these keys stand."""
+
+CURVE_FILE = "curve_file"
+SMOOTHED = "gradients_smoothed_over_km"
+
 LEVEL = ({"from_km": 0.0, "permille": 0.0},)
+SLOW = ({"from_km": 0.0, "speed_kmh": 1.0},)
+NOWHERE = ()
 LOSSLESS = ({"load_percent": 0.0, "loss_kw": 0.0}, {"load_percent": 100.0, "loss_kw": 0.0})
 """Rows that allow the rest of a document to be checked, in place of those that cannot be read."""
 
-
-@dataclass
-class Inlined:
-    """A document without file names, and where its parts came from."""
-
-    document: dict[str, Any]
-    source: Path
-    findings: list[Finding] = field(default_factory=list)
-    files: dict[Location, Path] = field(default_factory=dict)
-    """Files by the tables that they gave."""
-    own: dict[Location, set[str]] = field(default_factory=dict)
-    """Keys of such a table that the scenario itself gives."""
-    unread: set[Location] = field(default_factory=set)
-    """Tables whose file could not be read."""
-    profiles: dict[Location, Profile] = field(default_factory=dict)
-    """Lists that came from CSV files, by their places."""
-
-    timetabled: dict[int, TimetabledTrain] = field(default_factory=dict)
-    """Trains that came from timetables, by the numbers of their entries of the traffic."""
-
-    def origin(self, location: Location) -> tuple[Path, Location]:
-        """File that holds a value, and the value's place in it."""
-        for rows, profile in self.profiles.items():
-            if location[: len(rows)] == rows and len(location) > len(rows) + 1:
-                row, key = location[len(rows) : len(rows) + 2]
-                return profile.path, (profile.place(int(row), str(key)),)
-        if location[:1] == ("traffic",) and location[1:]:
-            train = self.timetabled.get(int(location[1]))
-            if train is not None:
-                path, place = train.origin(location[2:])
-                return path or self.source, place
-        for table, file in self.files.items():
-            below = location[len(table) :]
-            if below and location[: len(table)] == table and below[0] not in self.own[table]:
-                return file, below
-        return self.source, location
-
-    def is_unread(self, location: Location) -> bool:
-        """Whether a location lies in a table whose file could not be read."""
-        return any(location[: len(table)] == table for table in self.unread)
+OF_LINES: Mapping[str, tuple[Callable[[Path, str], Profile], Sequence[dict[str, float]]]] = {
+    "speed_limits": (read_speed_limits, SLOW),
+    "speed_limits_down": (read_speed_limits, SLOW),
+    "stations": (read_stations, NOWHERE),
+}
+"""Lists of a line that may stand in files, what reads them, and what stands for those with faults."""
 
 
 def inline_files(document: dict[str, Any], source: Path) -> Inlined:
@@ -115,9 +103,16 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
             else:
                 _insert_table(container, key, location, inlined)
     for location, line in lines_of(document).items():
-        _insert_rows(line, location, "gradients", GRADIENTS, LEVEL, inlined)
-    for location, losses in _losses_of(document).items():
-        _insert_rows(losses, location, "curve", LOSSES, LOSSLESS, inlined)
+        smoothed = line.pop(SMOOTHED, None) if "gradients_file" in line else None
+        gradients = _reader_of_gradients(smoothed, location, inlined)
+        _insert_rows(line, location, "gradients", gradients, LEVEL, inlined)
+        for name, (reader, instead) in OF_LINES.items():
+            _insert_rows(line, location, name, reader, instead, inlined)
+    for location, losses in _tables_at(document, LOSSES_OF).items():
+        _insert_rows(losses, location, "curve", read_losses, LOSSLESS, inlined)
+    for location, train in _tables_at(document, OF_TRAINS).items():
+        for name in CURVES:
+            _insert_curve(train, location, name, inlined)
     _insert_timetables(inlined)
     return inlined
 
@@ -148,7 +143,7 @@ def with_timetables(
     return document
 
 
-_NAMES = (SUFFIX.encode(), b"gradients_file", b"curve_file", b"timetables")
+_NAMES = (SUFFIX.encode(), b"_file", b"timetables")
 """What stands in a document that names files: ends of their names, and keys."""
 
 
@@ -160,9 +155,15 @@ def _names_files(document: dict[str, Any]) -> bool:
     # Of many cases none does: to look through all their text takes a tenth of a look at the places.
     if not any(name in whole for name in _NAMES):
         return False
+    of_lines = {f"{name}_file" for name in ("gradients", *OF_LINES)}
     return (
-        any("gradients_file" in line for line in lines_of(document).values())
-        or any("curve_file" in losses for losses in _losses_of(document).values())
+        any(of_lines & line.keys() for line in lines_of(document).values())
+        or any(CURVE_FILE in losses for losses in _tables_at(document, LOSSES_OF).values())
+        or any(
+            isinstance(train.get(name), dict) and CURVE_FILE in train[name]
+            for train in _tables_at(document, OF_TRAINS).values()
+            for name in CURVES
+        )
         or bool(document.get("timetables"))
         or any(True for place in PLACES for _ in _named_files(document, place, ()))
     )
@@ -247,25 +248,43 @@ def lines_of(document: Mapping[str, Any]) -> dict[Location, dict[str, Any]]:
     return {place: line for place, line in tables.items() if isinstance(line, dict)}
 
 
-def _losses_of(document: Mapping[str, Any]) -> dict[Location, dict[str, Any]]:
-    """The tables of losses of a document, by their places."""
+def _tables_at(
+    document: Mapping[str, Any], places: Sequence[tuple[str, ...]]
+) -> dict[Location, dict[str, Any]]:
+    """The tables of a document at some places."""
     return {
         location: container[key]
-        for place in LOSSES_OF
+        for place in places
         for container, key, location in _items_at(document, place, ())
         if isinstance(container[key], dict)
     }
+
+
+def _reader_of_gradients(
+    smoothed_over_km: object, line: Location, inlined: Inlined
+) -> Callable[[Path, str], Profile]:
+    """What reads the gradients of a line, their altitudes averaged over a length if one is given."""
+    if smoothed_over_km is None:
+        return read_gradients
+    is_number = isinstance(smoothed_over_km, int | float) and not isinstance(smoothed_over_km, bool)
+    if is_number and 0.01 <= smoothed_over_km <= 100.0:  # type: ignore[operator]
+        return partial(read_gradients, smoothed_over_km=float(smoothed_over_km))  # type: ignore[arg-type]
+    file, place = inlined.origin((*line, SMOOTHED))
+    key = ".".join(str(part) for part in place)
+    problem, remedy = "not a length from 0.01 to 100 km", "write a number in km, or leave it out"
+    inlined.findings.append(Finding(str(file), key, repr(smoothed_over_km), problem, remedy))
+    return read_gradients
 
 
 def _insert_rows(
     table: dict[str, Any],
     place: Location,
     name: str,
-    columns: Columns,
+    reader: Callable[[Path, str], Profile],
     instead: Sequence[dict[str, float]],
     inlined: Inlined,
 ) -> None:
-    """Read the CSV file that a table names as ``<name>_file`` into its list of that name.
+    """Read the file that a table names as ``<name>_file`` into its list of that name.
 
     Parameters
     ----------
@@ -274,8 +293,8 @@ def _insert_rows(
         Where the table is.
     name : str
         Of the list.
-    columns : Columns
-        Of the file.
+    reader : callable
+        Reads the file.
     instead : sequence of dict
         Rows that are put in if those of the file have faults.
     inlined : Inlined
@@ -294,12 +313,41 @@ def _insert_rows(
         return
     del table[of_file]
     try:
-        rows = read_profile(file.parent / value, ".".join(map(str, (*place, of_file))), columns)
+        rows = reader(file.parent / value, ".".join(map(str, (*place, of_file))))
         inlined.profiles[*place, name] = rows
+        inlined.notes += rows.notes
         table[name] = rows.rows
     except ScenarioError as error:
         table[name] = list(instead)
+        if name in OF_LINES:  # what else depends on them cannot be judged
+            inlined.unread.add((*place, name))
         inlined.findings += error.findings
+
+
+def _insert_curve(train: dict[str, Any], place: Location, name: str, inlined: Inlined) -> None:
+    """Read the file with the curve that a train's table of a name gives in place of its lists."""
+    table = train.get(name)
+    if not isinstance(table, dict) or not isinstance(table.get(CURVE_FILE), str):
+        return
+    location = (*place, name)
+    file, at = inlined.origin((*location, CURVE_FILE))
+    value = table[CURVE_FILE]
+    if others := [key for key in table if key != CURVE_FILE]:
+        key = ".".join(str(part) for part in at)
+        problem = f"the curve is given twice, as a file and by {', '.join(others)}"
+        remedy = f"leave out {CURVE_FILE}, or the others"
+        inlined.findings.append(Finding(str(file), key, repr(value), problem, remedy))
+        inlined.unread.add(location)
+        return
+    try:
+        curve = CURVES[name](file.parent / value, ".".join(map(str, (*location, CURVE_FILE))))
+    except ScenarioError as error:
+        inlined.findings += error.findings
+        inlined.unread.add(location)
+        return
+    inlined.curves[location] = curve
+    inlined.notes += curve.notes
+    train[name] = dict(curve.lists)
 
 
 def _insert_timetables(inlined: Inlined, texts: Mapping[str, str] | None = None) -> None:
@@ -319,10 +367,13 @@ def _insert_timetables(inlined: Inlined, texts: Mapping[str, str] | None = None)
         path, defaults = source.parent / table["file"], Defaults.of(i, table)
         text = (texts or {}).get(table["file"])
         try:
-            trains = read_timetable(path, start_of(document), defaults, inlined.findings, text)
+            trains, notes = read_timetable(
+                path, start_of(document), defaults, inlined.findings, text
+            )
         except ScenarioError as error:
             inlined.findings += error.findings
             continue
+        inlined.notes += notes
         for train in at_density(trains, density_of(table)):
             if train.entry["name"] in names:
                 inlined.findings.append(train.named_twice)

@@ -5,8 +5,17 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    field_validator,
+    model_validator,
+)
 from pydantic.dataclasses import dataclass
+from pydantic.json_schema import JsonSchemaValue
 
 from tpss.scenario.fields import (
     Flag,
@@ -17,7 +26,6 @@ from tpss.scenario.fields import (
     Whole,
     ascending,
     fault,
-    one_of,
     unique,
 )
 from tpss.units import kilometres
@@ -146,10 +154,22 @@ class Station(Part):
     )
 
 
+IN_FILES = ("gradients", "speed_limits", "stations")
+"""Lists that a line needs, and that may stand in files of their own."""
+
+
+def _of_files(schema: JsonSchemaValue) -> None:
+    """For the JSON Schema: lists that stand in the line's table, or in files that it names."""
+    schema["required"] = [key for key in schema["required"] if key not in IN_FILES]
+    schema["allOf"] = [
+        {"oneOf": [{"required": [key]}, {"required": [f"{key}_file"]}]} for key in IN_FILES
+    ]
+
+
 class Line(Part):
     """A railway line from the kilometre where it begins, over its length; nothing lies outside."""
 
-    model_config = ConfigDict(json_schema_extra=one_of("gradients", "gradients_file"))
+    model_config = ConfigDict(json_schema_extra=_of_files)
 
     begins_at_km: Real = Field(
         default=0.0,
@@ -162,11 +182,23 @@ class Line(Part):
     )
     gradients_file: str | None = Field(
         default=None,
-        description="CSV file next to the scenario with the columns position_km and "
-        "gradient_permille, in place of `gradients`.",
+        description="CSV file or workbook next to the scenario with the columns position_km and "
+        "gradient_permille, or altitude_m, in place of `gradients`.",
+    )
+    gradients_smoothed_over_km: Real | None = Field(
+        default=None,
+        ge=0.01,
+        le=100,
+        description="Length over which altitudes of `gradients_file` are averaged before gradients are "
+        "derived from them, one a length; leave it out: they are taken as they are.",
     )
     gradients: Annotated[tuple[Gradient, ...], Field(min_length=1), ascending("from_km")] = Field(
         description="Gradients; the outer ones continue beyond the ends of the profile."
+    )
+    speed_limits_file: str | None = Field(
+        default=None,
+        description="CSV file or workbook with the columns position_km and speed_kmh, in place of "
+        "`speed_limits`; with to_km limits have ends, and of several the lowest holds.",
     )
     speed_limits: Annotated[tuple[SpeedLimit, ...], Field(min_length=1), ascending("from_km")] = (
         Field(description="Speed limits; the first one begins where the line does.")
@@ -175,6 +207,9 @@ class Line(Part):
         default=(),
         description="Speed limits of trains that run towards falling kilometres, if they are others; in "
         "rising kilometres too.",
+    )
+    speed_limits_down_file: str | None = Field(
+        default=None, description="Likewise, in place of `speed_limits_down`."
     )
     tracks: Tracks = Field(
         default=1,
@@ -190,9 +225,21 @@ class Line(Part):
     curve_resistance: CurveResistance | None = Field(
         default=None, description="Formula for their resistance; leave it out: that of Röckl."
     )
+    stations_file: str | None = Field(
+        default=None,
+        description="CSV file or workbook with the columns name and position_km, and perhaps tracks and "
+        "track_length_m, in place of `stations`.",
+    )
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
     ] = Field(description="Stations, at least two.")
+
+    @field_validator("gradients_smoothed_over_km")
+    @classmethod
+    def _smooths_a_file(cls, value: float | None) -> float | None:
+        if value is not None:  # with a file, the key has gone where the file has
+            raise fault("no gradients_file is given whose altitudes it smooths", "leave it out")
+        return value
 
     @property
     def end_km(self) -> float:

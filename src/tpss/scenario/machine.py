@@ -3,7 +3,16 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+from pydantic.json_schema import JsonSchemaValue
 
 from tpss.scenario.fields import Part, Real, ascending, fault
 
@@ -54,6 +63,11 @@ class AdhesionCurve(Curve):
     value: tuple[Coefficient, ...] = Field(description="Coefficients at these speeds.")
 
 
+def _or_in_a_file(schema: JsonSchemaValue) -> None:
+    """For the JSON Schema of a curve: its lists, or a file with them."""
+    schema["anyOf"] = [{"required": schema.pop("required")}, {"required": ["curve_file"]}]
+
+
 def _is_a_table(value: object) -> bool:
     return isinstance(value, dict | Part)
 
@@ -75,6 +89,13 @@ AdhesionOverSpeed = Annotated[
 class RetardationBands(Part):
     """A highest retardation by bands of speed, each from its speed up to that of the next one."""
 
+    model_config = ConfigDict(json_schema_extra=_or_in_a_file)
+
+    curve_file: str | None = Field(
+        default=None,
+        description="CSV file or workbook in place of the lists, with the columns speed_kmh and "
+        "retardation_m_s2.",
+    )
     from_speed_kmh: Annotated[
         tuple[Annotated[Real, Field(ge=0, le=500)], ...],
         Field(min_length=1, max_length=MOST_BANDS),
@@ -141,6 +162,13 @@ class EffortTable(Part):
     voltages the outer values hold, and the steps in which they did are counted in the result.
     """
 
+    model_config = ConfigDict(json_schema_extra=_or_in_a_file)
+
+    curve_file: str | None = Field(
+        default=None,
+        description="CSV file or workbook in place of the lists, with the columns speed_kmh and "
+        "force_kn, and perhaps voltage_kv.",
+    )
     speed_kmh: Speeds = Field(description="Speeds, ascending.")
     voltage_kv: Voltages | None = Field(
         default=None, description="Voltages at the pantograph; `force_kn` has a row for each."
@@ -279,7 +307,7 @@ class CurrentLimitation(Part):
         return self
 
 
-_OF_A_TABLE = {"speed_kmh", "force_kn", "voltage_kv", "motor_current_a"}
+_OF_A_TABLE = {"speed_kmh", "force_kn", "voltage_kv", "motor_current_a", "curve_file"}
 
 
 def _type_of_effort(value: object) -> str | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpss.errors import Finding, ScenarioError
+from tpss.printable import document_in_nfc
 from tpss.scenario.paths import NoSuchPlaceError, places_of
 
 _LEAVES = frozenset((float, int, str, bool, type(None)))
@@ -42,7 +43,7 @@ def override(
 def put_in(document: dict[str, Any], changes: Mapping[str, Any], source: Path) -> None:
     """Set values of a document itself, as `override` does in a copy."""
     findings = []
-    for path, value in changes.items():
+    for path, value in document_in_nfc(changes).items():
         try:
             places, remedy = places_of(document, path), "name tables by their keys"
         except NoSuchPlaceError as error:

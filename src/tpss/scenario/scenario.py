@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
+from tpss.printable import document_in_nfc
 from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.events import Restart
 from tpss.scenario.fields import LINE, Name, OnLine, Part, Version, fault, unique
@@ -29,7 +30,7 @@ from tpss.scenario.supply import Supply
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS
 from tpss.scenario.timetable import Timetable
 from tpss.scenario.traffic import Traffic
-from tpss.scenario.validate import validate
+from tpss.scenario.validate import validate_with_notes
 from tpss.scenario.variants import Variants, apply_variant
 
 READ_IN = ("timetables",)
@@ -121,6 +122,7 @@ class Scenario(Part):
     _document: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: Path = PrivateAttr(default=Path("scenario"))
     _given: str = PrivateAttr(default="scenario")
+    _file_notes: tuple[str, ...] = PrivateAttr(default=())
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], source: str | Path = "scenario") -> Self:
@@ -138,7 +140,7 @@ class Scenario(Part):
         ScenarioError
             The document has faults; the error lists all of them.
         """
-        return cls.from_own_document(copy_of(document), source)
+        return cls.from_own_document(document_in_nfc(copy_of(document)), source)
 
     @classmethod
     def from_own_document(cls, document: dict[str, Any], source: str | Path) -> Self:
@@ -149,7 +151,7 @@ class Scenario(Part):
         ScenarioError
             As `from_document`.
         """
-        scenario = validate(cls, document, Path(source))
+        scenario, notes = validate_with_notes(cls, document, Path(source))
         faults = outage_faults(
             scenario.outages,
             scenario.simulation,
@@ -162,6 +164,7 @@ class Scenario(Part):
         scenario._document = document
         # A change of the working folder must not lead to other files.
         scenario._source, scenario._given = Path(source).absolute(), str(source)
+        scenario._file_notes = notes
         return scenario
 
     @property
@@ -173,6 +176,11 @@ class Scenario(Part):
     def given_source(self) -> str:
         """Its file as it was named, by which findings name it."""
         return self._given
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """What is told of how its files were read, such as gradients derived from altitudes."""
+        return self._file_notes
 
     def with_(self, changes: Mapping[str, Any]) -> Self:
         """Validated copy with some values changed.

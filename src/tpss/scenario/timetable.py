@@ -1,4 +1,4 @@
-"""Timetables: CSV files with a row for each call of a train, in the order of travel.
+"""Timetables: tables in files with a row for each call of a train, in the order of travel.
 
 Each train becomes an entry of the traffic, a service of a single train: all else knows only those.
 """
@@ -23,12 +23,12 @@ Location = tuple[int | str, ...]
 
 
 class Timetable(Part):
-    """A CSV file with the calls of trains, which become entries of the traffic."""
+    """A file with the calls of trains, which become entries of the traffic."""
 
     file: str = Field(
         min_length=1,
-        description="CSV file next to the scenario with the columns name, train, station, arrival, "
-        "departure, min_dwell_s, turn_s, track and kind.",
+        description="CSV file or workbook next to the scenario with the columns name, train, station, "
+        "arrival, departure, min_dwell_s, turn_s, track and kind.",
     )
     train: Name | None = Field(
         default=None,
@@ -143,8 +143,10 @@ def read_timetable(
     defaults: Defaults,
     findings: list[Finding],
     text: str | None = None,
-) -> list[TimetabledTrain]:
-    """Trains of a CSV file; those with faults are left out, and their faults added to the findings.
+) -> tuple[list[TimetabledTrain], list[str]]:
+    """Trains of a file, and what is told of how it was read.
+
+    Trains with faults are left out, and their faults added to the findings.
 
     Parameters
     ----------
@@ -155,14 +157,14 @@ def read_timetable(
     findings : list of Finding
         Of what has been read so far.
     text : str, optional
-        What the file holds, if it has been read before.
+        What the file holds, as CSV, if it has been read before.
 
     Raises
     ------
     ScenarioError
         The file cannot be read, or its header is wrong.
     """
-    rows = read_rows(path, f"timetables.{defaults.table}.file", findings, text)
+    rows, notes = read_rows(path, f"timetables.{defaults.table}.file", findings, text)
     trains, first_line = [], dict[str, int]()
     for name, group in groupby(rows, key=lambda row: row["name"]):
         its_rows = list(group)
@@ -177,7 +179,7 @@ def read_timetable(
         if not faults:
             entry = _entry(its_rows, start_s, defaults)
             trains.append(TimetabledTrain(path, defaults.table, its_rows, entry))
-    return trains
+    return trains, notes
 
 
 def _faults(rows: list[Row], start_s: float | None, train: str | None) -> Iterator[Finding]:

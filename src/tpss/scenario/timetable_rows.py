@@ -1,21 +1,21 @@
-"""Rows of a timetable: CSV with a header, columns in any order, empty cells where nothing is given."""
+"""Rows of a timetable: a table with columns in any order, empty cells where nothing is given."""
 
-import csv
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tpss.errors import Finding, ScenarioError, suggest
-from tpss.scenario.files import read_text
-
-COLUMNS = (
-    "name", "train", "station", "arrival", "departure", "min_dwell_s", "turn_s", "track", "kind",
-)  # fmt: skip
+from tpss.errors import Finding, alike_together, suggest
+from tpss.files.content import content_of
+from tpss.tables.aliases import ALIASES
+from tpss.tables.kinds import TIMETABLE
+from tpss.tables.numbers import COMMA
+from tpss.tables.read import Table, cell_of, sheet_of, sheet_of_text, understood
+from tpss.tables.sheet import UTF_8, csv_of, decoded
+from tpss.tables.workbook import is_workbook, of_workbook
 
 DURATIONS = ("min_dwell_s", "turn_s")
-
-NEEDED = ("name", "station", "departure")
-"""Columns that a timetable cannot be without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +26,8 @@ class Row:
     line: int
     """Number of its line in the file, counted from 1."""
     cells: dict[str, str]
+    headings: Mapping[str, str]
+    """Headings in the file, by the columns that they mean."""
 
     def __getitem__(self, column: str) -> str:
         """Text of a cell; empty where nothing is given."""
@@ -41,7 +43,8 @@ class Row:
 
     def place(self, column: str) -> str:
         """Place of a cell in the file, or of the row."""
-        return f"line {self.line}, {column}" if column else f"line {self.line}"
+        heading = self.headings.get(column, column)
+        return f"line {self.line}, {heading}" if heading else f"line {self.line}"
 
     def finding(self, column: str, problem: str, remedy: str) -> Finding:
         """A fault of a cell, or of the row."""
@@ -90,63 +93,61 @@ KIND_OF_PLACE = {
 
 def read_rows(
     path: Path, named_by: str, findings: list[Finding], text: str | None = None
-) -> list[Row]:
-    """Rows of a timetable; those with faults are left out, and their faults added to the findings.
+) -> tuple[list[Row], list[str]]:
+    """Rows of a timetable, and what is told of how it was read.
 
-    The file is not read where its text is given.
-
-    Lines that begin with # are comments, and semicolons may stand for the commas.
+    Rows with faults are left out, and their faults added to the findings.  The file is not read where
+    its text is given, in CSV.
 
     Raises
     ------
     ScenarioError
         The file cannot be read, or its header is wrong.
     """
-    content = read_text(path, named_by) if text is None else text
-    lines = [
-        (number, line)
-        for number, line in enumerate(content.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    number, header = lines[0] if lines else (1, "")
-    separator = ";" if ";" in header else ","
-    columns = _split(header, separator)
-    faults = list(_faults_of_header(path, number, columns))
-    if not faults and not lines[1:]:
-        remedy = "add rows, one for each station of a train"
-        faults.append(
-            Finding(str(path), f"line {number}", header, "no rows follow the header", remedy)
+    if text is None:
+        sheet = sheet_of(path, content_of(of_workbook(path)[0], named_by), TIMETABLE)
+    else:
+        sheet = sheet_of_text(path, text, UTF_8, TIMETABLE)
+    table, faults = understood(sheet, TIMETABLE)
+    findings += alike_together(faults)
+    columns = table.header.columns
+    rows = [
+        Row(
+            sheet.path,
+            row.line,
+            {ALIASES[name].key: text_of_cell(table, k, name) for name in columns},
+            {ALIASES[name].key: column.heading for name, column in columns.items()},
         )
-    if faults:
-        raise ScenarioError(faults)
-    rows = []
-    for number, line in lines[1:]:
-        cells = _split(line, separator)
-        if len(cells) == len(columns):
-            rows.append(Row(path, number, dict(zip(columns, cells, strict=True))))
-        else:
-            problem = f"{len(cells)} values, expected {len(columns)}"
-            remedy = "write one for each column of the header; those that are not given are empty"
-            findings.append(Finding(str(path), f"line {number}", line, problem, remedy))
-    return rows
+        for k, row in enumerate(table.rows)
+    ]
+    return rows, table.notes
 
 
-def _split(text: str, separator: str) -> list[str]:
-    cells = next(csv.reader([text], delimiter=separator)) if '"' in text else text.split(separator)
-    return [cell.strip() for cell in cells]
+def text_of_timetable(path: Path, named_by: str) -> str:
+    """What is in the file of a timetable, as CSV.
+
+    Raises
+    ------
+    ScenarioError
+        The file cannot be read.
+    """
+    content = content_of(of_workbook(path)[0], named_by)
+    if is_workbook(path):
+        return csv_of(sheet_of(path, content, TIMETABLE))
+    return decoded(path, content)[0]
 
 
-def _faults_of_header(path: Path, number: int, columns: list[str]) -> Iterator[Finding]:
-    place = f"line {number}"
-    if not set(columns) & set(COLUMNS):
-        remedy = f"begin with the line {','.join(COLUMNS)}"
-        yield Finding(str(path), place, ",".join(columns), "not the header of a timetable", remedy)
-        return
-    for column in dict.fromkeys(columns):
-        if columns.count(column) > 1:
-            yield Finding(str(path), place, column, "the column is there twice", "leave one out")
-        if column not in COLUMNS:
-            yield Finding(str(path), place, column, "no such column", suggest(column, COLUMNS))
-    for column in NEEDED:
-        if column not in columns:
-            yield Finding(str(path), place, "", f"the column {column} is missing", "add it")
+_SHORT_DECIMALS = re.compile(r"(\d+),(\d{1,2})")
+"""Minutes with a decimal comma, which is none of thousands."""
+
+
+def text_of_cell(table: Table, row: int, quantity: str) -> str:
+    """A value as a text with a decimal point; as it was written where that has one already."""
+    column, value = table.header.columns[quantity], table.values[quantity][row]
+    cell = cell_of(table.rows[row], column)
+    if isinstance(value, float) and not math.isnan(value):
+        as_it_is = isinstance(cell, str) and COMMA not in cell and column.meaning.factor == 1.0
+        return str(cell) if as_it_is else f"{value:.12g}"
+    if quantity in ("arrival", "departure") and isinstance(value, str):
+        return _SHORT_DECIMALS.sub(r"\1.\2", value) if _SHORT_DECIMALS.fullmatch(value) else value
+    return str(cell) if value is None or isinstance(value, float) else value

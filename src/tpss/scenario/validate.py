@@ -8,12 +8,14 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, Tag, ValidationError
 
 from tpss import units
-from tpss.errors import Finding, ScenarioError, closest, shortened, suggest
+from tpss.errors import Finding, ScenarioError, alike_together, closest, shortened, suggest
 from tpss.scenario.absences import absence_of
 from tpss.scenario.clock import START_S, start_of
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
-from tpss.scenario.inline import SUFFIX, Inlined, Location, inline_files, lines_of
+from tpss.scenario.inline import SUFFIX, inline_files, lines_of
+from tpss.scenario.inlined import Inlined, Location
+from tpss.scenario.line import IN_FILES, Line
 from tpss.scenario.positions import kilometres_fall
 from tpss.scenario.standing import stand_at_stations
 
@@ -51,7 +53,7 @@ _REMEDIES = {
     "model_type": "write a table",
     "string_too_short": "write a name",
     "string_unicode": "write text in UTF-8",
-    "control_character": "write it on one line, without tabs and other control characters",
+    "control_character": "write it on one line, without control characters and others that are not seen",
     "string_pattern_mismatch": "use letters, digits, dots, hyphens and underscores only",
     "too_short": "add at least one more",
     "not_ascending": "put them in ascending order, each value once",
@@ -61,6 +63,19 @@ _REMEDIES = {
 
 def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Model:
     """Validated `model` of a document.
+
+    Raises
+    ------
+    ScenarioError
+        The document has faults; the error lists all of them.
+    """
+    return validate_with_notes(model, document, source)[0]
+
+
+def validate_with_notes(
+    model: type[_Model], document: dict[str, Any], source: Path
+) -> tuple[_Model, tuple[str, ...]]:
+    """Validated `model` of a document, and what is told of how its files were read.
 
     Raises
     ------
@@ -88,8 +103,8 @@ def validate(model: type[_Model], document: dict[str, Any], source: Path) -> _Mo
             _traced(finding, inlined) for finding in cross_check(inlined.document, str(source))
         ]
     if findings or scenario is None:
-        raise ScenarioError(list(dict.fromkeys(findings)))
-    return scenario
+        raise ScenarioError(alike_together(dict.fromkeys(findings)))
+    return scenario, tuple(dict.fromkeys(inlined.notes))
 
 
 def _follows_from_another(
@@ -111,8 +126,8 @@ def _follows_from_another(
     if detail["type"] == "missing" and len(location) == 3 and location[0] == "trains":
         # Without its model, a train lacks all that the library would give it.
         return (*location[:2], "model") in locations
-    if location[-1:] == ("gradients",) and location[:-1] in (lines := lines_of(inlined.document)):
-        return "gradients_file" in lines[location[:-1]] and detail["type"] == "missing"
+    if location[:-1] in (lines := lines_of(inlined.document)) and detail["type"] == "missing":
+        return f"{location[-1]}_file" in lines[location[:-1]]  # which has a fault of its own
     return False
 
 
@@ -178,8 +193,9 @@ def _explain(part: type, place: Location, detail: dict[str, Any]) -> tuple[str, 
     if kind == "too_long":
         most = context["max_length"]
         return f"the list has {context['actual_length']} items", f"leave at most {most}"
-    if kind == "missing" and words[-1:] == ["gradients"]:
-        return "no gradients are given", "add gradients, or gradients_file with a CSV file"
+    if kind == "missing" and issubclass(part, Line) and words[-1] in IN_FILES:
+        name = words[-1]
+        return f"no {name.replace('_', ' ')} are given", f"add {name}, or {name}_file with a table"
     if kind == "missing" and place[0] == "trains" and len(place) == 3:
         return _PROBLEMS[kind], "add it, or name a model that gives it"
     return _PROBLEMS.get(kind, message), _REMEDIES.get(

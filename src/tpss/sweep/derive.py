@@ -85,7 +85,8 @@ def draw_gradients(
     profile -= share @ profile
     spread = math.sqrt(share @ profile**2)
     profile *= deviation / spread if spread > 0.0 else 0.0
-    line.pop("gradients_file", None)
+    for key in ("gradients_file", "gradients_smoothed_over_km"):
+        line.pop(key, None)
     line["gradients"] = [
         {"from_km": begin_km + km, "permille": permille}
         for km, permille in zip(from_begin_km.tolist(), (profile + mean).tolist(), strict=True)

@@ -11,6 +11,7 @@ import pandas as pd
 from filelock import FileLock, Timeout
 
 from tpss.errors import StudyError
+from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import UNFINISHED, write_file
 
@@ -153,7 +154,7 @@ def read_manifest(path: Path) -> dict[str, Any]:
         It is no such folder.
     """
     try:
-        manifest = json.loads((path / MANIFEST).read_text("utf-8"))
+        manifest = read_json_file(path / MANIFEST)
     except (OSError, ValueError) as error:
         raise StudyError(
             f"{path} is not the folder of a study ({MANIFEST}: {reason(error)}); name one that tpss "

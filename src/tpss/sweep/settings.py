@@ -24,7 +24,10 @@ INSTEAD_OF = {
     **{key: tuple(other for other in DEPARTURES if other != key) for key in DEPARTURES},
     "duration_min": ("until",),
     "until": ("duration_min",),
-    "gradients": ("gradients_file",),
+    "gradients": ("gradients_file", "gradients_smoothed_over_km"),
+    "speed_limits": ("speed_limits_file",),
+    "speed_limits_down": ("speed_limits_down_file",),
+    "stations": ("stations_file",),
 }
 """Keys that replace others."""
 

@@ -73,7 +73,7 @@ class StudyFile(Part):
     seed: Whole = Field(default=0, ge=0, description="Seed of the random numbers.")
     set: Settings = Field(default={}, description="Values that all cases share, by key path.")
     vary: dict[str, Variation] = Field(default={}, description="What varies, by key path.")
-    choices: dict[str, Annotated[dict[str, Settings], Field(min_length=1)]] = Field(
+    choices: dict[str, Annotated[dict[Name, Settings], Field(min_length=1)]] = Field(
         default={}, description="Sets of values that vary together, by name and option."
     )
     gradients: Gradients | None = Field(default=None, description="Gradient profiles to draw.")

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from tpss.scenario.files import read_text
 from tpss.scenario.inline import with_timetables
+from tpss.scenario.timetable_rows import text_of_timetable
 from tpss.sweep.settings import Settings, apply
 
 TIMETABLES, FILE = "timetables", "file"
@@ -47,7 +47,7 @@ def texts_of(
         name = value.get(FILE) if isinstance(value, Mapping) else value
         if isinstance(name, str) and (isinstance(value, Mapping) or key.endswith(f".{FILE}")):
             named.setdefault(name, key)
-    return {name: read_text(source.parent / name, key) for name, key in named.items()}
+    return {name: text_of_timetable(source.parent / name, key) for name, key in named.items()}
 
 
 def apply_timetables(

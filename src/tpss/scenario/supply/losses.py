@@ -51,7 +51,7 @@ class ConverterLosses(Part):
     )
     curve_file: str | None = Field(
         default=None,
-        description="CSV file with the curve, of the columns `load_percent,loss_kw`.",
+        description="CSV file or workbook with the curve, of the columns load_percent and loss_kw.",
     )
     origin: Literal["estimate", "measurement"] | None = Field(
         default=None, description="Where the figures come from, told wherever results show losses."

@@ -1,0 +1,136 @@
+"""The header of a table: which of its rows it is, and what its headings mean."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from tpss.errors import Finding, ScenarioError, closest, shortened
+from tpss.tables.aliases import ALIASES, Meaning, meaning_of
+from tpss.tables.kinds import Kind
+from tpss.tables.sheet import Row, Sheet
+
+MOST_ABOVE = 20
+"""Rows, such as a title, that may stand above the header."""
+
+
+class Column(NamedTuple):
+    """A column that is known: its place from 0, its heading and what that means."""
+
+    place: int
+    heading: str
+    meaning: Meaning
+
+
+class Header(NamedTuple):
+    """The header of a table.
+
+    Attributes
+    ----------
+    above : int
+        Number of rows above it.
+    line : int
+    headings : tuple of str
+    columns : dict of str to Column
+        By their quantities.
+    """
+
+    above: int
+    line: int
+    headings: tuple[str, ...]
+    columns: dict[str, Column]
+
+    @property
+    def passed_over(self) -> list[str]:
+        """Headings of the columns that are not used."""
+        used = {column.place for column in self.columns.values()}
+        return [text for k, text in enumerate(self.headings) if k not in used and text]
+
+
+def find_header(rows: Sequence[Row], kind: Kind) -> Header | None:
+    """The first row with all columns that a kind of table needs; None if there is none."""
+    for above, row in enumerate(rows[: MOST_ABOVE + 1]):
+        headings = tuple(cell if isinstance(cell, str) else "" for cell in row.cells)
+        columns = _known(headings, kind)
+        if all(any(each in columns for each in either) for either in kind.needed):
+            _leave_one(columns, kind)
+            return Header(above, row.line, headings, columns)
+    return None
+
+
+def _leave_one(columns: dict[str, Column], kind: Kind) -> None:
+    """Leave, of columns of which one is enough, the first."""
+    for either in kind.needed:
+        given = [each for each in either if each in columns]
+        for each in given[1:]:
+            del columns[each]
+
+
+def _known(headings: Sequence[str], kind: Kind) -> dict[str, Column]:
+    """Columns by their quantities; one that is called as in files of TPSS comes before others."""
+    columns: dict[str, Column] = {}
+    for place, heading in enumerate(headings):
+        meaning = meaning_of(heading, kind.quantities) if heading else None
+        if meaning is None:
+            continue
+        own = heading == ALIASES[meaning.quantity].key
+        if own or meaning.quantity not in columns:
+            columns[meaning.quantity] = Column(place, heading, meaning)
+    return columns
+
+
+def demand_header(sheet: Sheet, kind: Kind) -> Header:
+    """The header of a table of a kind.
+
+    Raises
+    ------
+    ScenarioError
+        There is none, or it does not say what its columns are.
+    """
+    header = find_header(sheet.rows, kind)
+    if header is None:
+        raise ScenarioError([_no_header(sheet, kind)])
+    if findings := list(_faults(sheet, header, kind)):
+        raise ScenarioError(findings)
+    return header
+
+
+def _no_header(sheet: Sheet, kind: Kind) -> Finding:
+    """The fault that no row is a header: what the most likely one lacks."""
+    rows = sheet.rows[: MOST_ABOVE + 1]
+    remedy = f"begin with the line {kind.header}, or see what other headings are known: "
+    remedy += "tpss import csv --headings"
+    if not rows:
+        return Finding(str(sheet.path), "line 1", "", "the file has no rows", remedy)
+    known = [_known([str(cell) for cell in row.cells], kind) for row in rows]
+    best = max(range(len(rows)), key=lambda k: (len(known[k]), -k))
+    lacking = [
+        " or ".join(ALIASES[each].words for each in either)
+        for either in kind.needed
+        if not any(each in known[best] for each in either)
+    ]
+    shown = (sheet.separator or ",").join(str(cell) for cell in rows[best].cells)
+    problem = f"not the expected header: no column is the {' and none the '.join(lacking)}"
+    return Finding(str(sheet.path), f"line {rows[best].line}", shortened(shown), problem, remedy)
+
+
+def _faults(sheet: Sheet, header: Header, kind: Kind) -> Iterator[Finding]:
+    """Headings without a unit that has to be given, or twice, and those that are misspelt."""
+    file, place = str(sheet.path), f"line {header.line}"
+    for name, column in header.columns.items():
+        quantity = ALIASES[name]
+        if quantity.is_number and not column.meaning.unit:
+            units = " or ".join(f"[{names.split()[0]}]" for names in quantity.units)
+            remedy = f"write it behind, as in {quantity.key} or {column.heading} {units}"
+            problem = f"the heading gives no unit of the {quantity.words}"
+            yield Finding(file, place, column.heading, problem, remedy)
+        twice = [
+            other
+            for k, other in enumerate(header.headings)
+            if k != column.place and other == column.heading
+        ]
+        if twice:
+            yield Finding(file, place, column.heading, "the column is there twice", "leave one out")
+    free = [ALIASES[each].key for each in kind.further if each not in header.columns]
+    for heading in header.passed_over:
+        if near := closest(heading, free):
+            remedy = f"did you mean {near}? else give it a name that is not so like it"
+            yield Finding(file, place, heading, "no such column", remedy)
