@@ -93,10 +93,15 @@ _HOME = {
     "write_report": "tpss.report.html",
 }
 
+__version__: str
+"""Version of the package."""
+
 __all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module("importlib.metadata").version("tpss")
     if name not in _HOME:
         raise AttributeError(f"module 'tpss' has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 from tpss.accuracy.check import StepCheck, check_step
 from tpss.accuracy.choose import StepChoice, choose_step
@@ -26,12 +27,13 @@ from tpss.run.protection import run_to_end
 from tpss.run.run import Clock, Progress, Run, outcome_of
 from tpss.run.start import Start
 from tpss.run.stiff import LostTime, lost_to_voltage
+from tpss.scenario.load import load_scenario
 from tpss.scenario.open_step import LADDER_MIN, with_step
 from tpss.scenario.scenario import Scenario
 
 
 def simulate(
-    scenario: Scenario,
+    scenario: Scenario | str | Path,
     progress: Callable[[Progress], None] | None = None,
     *,
     step_check: bool = False,
@@ -41,8 +43,9 @@ def simulate(
 
     Parameters
     ----------
-    scenario : Scenario
-        Without a time step, the longest one is taken whose figures keep close to those at half of it.
+    scenario : Scenario or path
+        A scenario, or its file.  Without a time step, the longest one is taken whose figures keep close
+        to those at half of it.
     progress : callable, optional
         Called several times a second with the `Progress` of the run, and of its check.
     step_check : bool
@@ -61,15 +64,15 @@ def simulate(
     Raises
     ------
     ScenarioError
-        A train that the scenario places on the line could not stop or slow down in time, or scipy
-        is missing for ``load_flow = "least-squares"``.
+        The file has faults, a train that the scenario places on the line could not stop or slow down in
+        time, or scipy is missing for ``load_flow = "least-squares"``.
     """
     prepared = prepare(scenario)
     with interruptible() as interrupted:
         return prepared.run(progress, interrupted, step_check=step_check, lost_time=lost_time)
 
 
-def prepare(scenario: Scenario) -> "Prepared":
+def prepare(scenario: Scenario | str | Path) -> "Prepared":
     """Build the model of a scenario and compile the kernels, all that comes before the first step.
 
     Raises
@@ -77,6 +80,8 @@ def prepare(scenario: Scenario) -> "Prepared":
     ScenarioError, TooLargeError
         As `simulate`.
     """
+    if not isinstance(scenario, Scenario):
+        scenario = load_scenario(scenario)
     return _prepared(scenario, compiled=True)
 
 

@@ -12,7 +12,9 @@ import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
+from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.several import check_files, save_files
+from tpss.files.whole import write_file
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.file_kinds import Kind, Spreadsheet
 from tpss.results.result import Result
@@ -65,6 +67,18 @@ def export(
     check_files(folder, names, force)
     tables = {name: table(result) for name, table in TABLES.items()}
     return save_files(folder, contents_of(tables, kind, WORKBOOK, spreadsheet), force)
+
+
+def export_workbook(result: Result, file: Path, *, force: bool = False) -> Path:
+    """Write the tables of a result into a workbook.  See `Result.to_excel`."""
+    if file.suffix.lower() != ".xlsx":
+        raise ResultError(f"{file} does not end in .xlsx, by which Excel knows a workbook")
+    refuse_to_replace(file, force, "a file", Path.is_file)
+    tables = {name: table(result) for name, table in TABLES.items()}
+    (content,) = contents_of(tables, Kind.XLSX, WORKBOOK).values()
+    with explained(file):
+        write_file(file, content)
+    return file
 
 
 def contents_of(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 import xarray as xr
@@ -12,8 +12,10 @@ import xarray as xr
 from tpss.results import store, tables
 from tpss.results.autotransformers import autotransformers
 from tpss.results.converter_losses import converter_losses
+from tpss.results.file_kinds import Kind
 from tpss.results.judged_rails import JudgedRails
 from tpss.results.regeneration import regeneration
+from tpss.results.shown import as_table, in_a_line
 from tpss.results.standards.evidence import Evidence, gather
 from tpss.results.stops import stops
 from tpss.results.storage import storage
@@ -21,6 +23,9 @@ from tpss.results.thermal.judge import Thermal, thermal_of
 from tpss.results.transformer_losses import transformer_losses
 from tpss.results.waits import waits
 from tpss.scenario.scenario import Scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 STANDARDS = "standards"
 """Part of the summary that takes as long as all else, and is computed on demand."""
@@ -46,6 +51,12 @@ class Result:
     scenario: Scenario
     dataset: xr.Dataset
     figures: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return in_a_line(self.figures, self.dataset.sizes["train"])
+
+    def _repr_html_(self) -> str:
+        return as_table(self.figures, self.dataset.sizes["train"])
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -196,6 +207,90 @@ class Result:
         """
         place = None if folder is None else Path(folder)
         return store.save(self.scenario, self.dataset, self.summary, place, force)
+
+    def to_csv(self, folder: str | Path, *, force: bool = False) -> list[Path]:
+        """Write all tables into a folder, as a CSV file each.
+
+        Parameters
+        ----------
+        folder : path
+            Made if it does not exist.
+        force : bool
+            Whether files of these names may be replaced.
+
+        Raises
+        ------
+        ResultError
+            A file exists, or the folder cannot be written.
+        """
+        from tpss.results.export import export
+
+        return export(self, Kind.CSV, Path(folder), force=force)
+
+    def to_parquet(self, folder: str | Path, *, force: bool = False) -> list[Path]:
+        """Write all tables into a folder, as a Parquet file each; as `to_csv`, and pyarrow is needed."""
+        from tpss.results.export import export
+
+        return export(self, Kind.PARQUET, Path(folder), force=force)
+
+    def to_excel(self, file: str | Path, *, force: bool = False) -> Path:
+        """Write all tables into a workbook of Excel, as a sheet each.
+
+        Parameters
+        ----------
+        file : path
+            Its name ends in ``.xlsx``.
+        force : bool
+            Whether a file that is there may be replaced.
+
+        Raises
+        ------
+        ResultError
+            The file exists or cannot be written, has another ending, or a table is too long for a sheet.
+        """
+        from tpss.results.export import export_workbook
+
+        return export_workbook(self, Path(file), force=force)
+
+    def report(self, file: str | Path, *, force: bool = False) -> Path:
+        """Write a report as one file of HTML; `tpss.write_report` can do more.
+
+        Raises
+        ------
+        ResultError
+            The file exists, or cannot be written.
+        """
+        from tpss.report.html import write_report
+
+        return write_report(self, file, force=force)
+
+    def plot(
+        self, figure: str = "voltage", train: str | None = None, against: str = "distance"
+    ) -> "Figure":
+        """Draw a figure.
+
+        Parameters
+        ----------
+        figure : str
+            As of ``tpss plot --figure``, such as ``"time-distance"``, ``"journey"`` or ``"stations"``.
+        train : str, optional
+            The train of figures of a single one; the studied one by default.
+        against : {"distance", "time"}
+            Quantity of the horizontal axis of a journey.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it; its ``savefig`` writes it.
+
+        Raises
+        ------
+        ResultError
+            The audit failed, or there is no such figure or train, or nothing to draw.
+        """
+        from tpss.report.figures.catalogue import draw
+
+        return draw(figure, self, train, "time" if against == "time" else "distance")
 
 
 def load_result(folder: str | Path) -> Result:

@@ -7,10 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Self
 
+import tomli_w
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
+from tpss.files.refusals import explained, refuse_to_replace
+from tpss.files.whole import write_file
 from tpss.printable import document_in_nfc
 from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.events import Restart
@@ -167,6 +170,18 @@ class Scenario(Part):
         scenario._file_notes = notes
         return scenario
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy with other parts, which are not checked; `with_` checks them."""
+        copy = super().model_copy(update=update, deep=deep)
+        if update:
+            copy._document = {}
+        return copy
+
+    @property
+    def _own_document(self) -> dict[str, Any]:
+        """The document that it was made from; of one that was not, what it says."""
+        return self._document or self.as_document()
+
     @property
     def source(self) -> Path:
         """File that the scenario was read from, or a name in its place."""
@@ -198,7 +213,7 @@ class Scenario(Part):
             The changed scenario has faults.
         """
         with named_as_given(self._source, self._given):
-            document = override(self._document, changes, self._source)
+            document = override(self._own_document, changes, self._source)
             return self._of_own_file(document)
 
     def _of_own_file(self, document: dict[str, Any]) -> Self:
@@ -220,7 +235,7 @@ class Scenario(Part):
             problem = "the scenario has no such variant"
             raise ScenarioError([Finding(self._given, "variants", repr(name), problem, remedy)])
         with named_as_given(self._source, self._given):
-            document = apply_variant(self._document, name, self.variants[name], self._source)
+            document = apply_variant(self._own_document, name, self.variants[name], self._source)
         try:
             return self._of_own_file(document)
         except ScenarioError as error:
@@ -282,6 +297,41 @@ class Scenario(Part):
 
     def __hash__(self) -> int:
         return hash(json.dumps(self.as_document(), sort_keys=True))
+
+    def __repr__(self) -> str:
+        stations = sum(len(line.stations) for line in self.lines_by_name.values())
+        parts = (
+            (len(self.lines_by_name), "line"), (stations, "station"),
+            (len(self.supply.stations), "feeding station"), (len(self.traffic), "service"),
+        )  # fmt: skip
+        told = ", ".join(f"{count} {what}{'s' * (count != 1)}" for count, what in parts)
+        return f"<Scenario {self.name!r}: {told}>"
+
+    __str__ = __repr__
+
+    def to_toml(self) -> str:
+        """The scenario as run, with everything it took from files, library and defaults, as TOML."""
+        return tomli_w.dumps(self.as_document())
+
+    def save(self, file: str | Path, *, force: bool = False) -> Path:
+        """Write `to_toml` into a file, which `tpss.load_scenario` and the command line read.
+
+        Parameters
+        ----------
+        file : path
+        force : bool
+            Whether a file that is there may be replaced.
+
+        Raises
+        ------
+        ResultError
+            The file exists, or cannot be written.
+        """
+        place = Path(file)
+        refuse_to_replace(place, force, "a file", Path.is_file)
+        with explained(place):
+            write_file(place, self.to_toml().encode())
+        return place
 
     def digest(self) -> str:
         """Digest of all that the scenario says, wherever it was read from, its name left out."""
