@@ -82,6 +82,13 @@ COLUMNS = {
     "lowest_voltage_kv": "lowest voltage at a pantograph in the window",
     "mean_useful_voltage_kv": "lowest mean useful voltage of a zone, EN 50388, in the window",
     "peak_loading": "highest loading of a station's running units in the window",
+    "unbalance_percent": "highest unbalance of a busbar of the grid over 10 min in the window; null "
+    "unless stations tell their `phases`",
+    "rail_permanent_v": "highest mean voltage of rails to earth over 300 s in the window; this and the "
+    "next two are null unless rails are conductors of their own",
+    "rail_short_v": "highest one in a second or a step",
+    "stray_ma_per_m": "highest mean of the current that strays from the rails of a line, over the "
+    "length of its tracks; null of an alternating current",
     "case_digest": "digest of all that decides what comes out",
 }
 

@@ -152,6 +152,13 @@ MEANINGS = {
     "thermal.hot_spot_c": "hottest hot spot of a transformer; null unless its rating has `cooling`",
     "thermal.loss_of_life_min": "longest life that the paper of a transformer lost; null likewise",
     "thermal.over": "pieces of equipment beyond what they bear; null unless something has a rating",
+    "unbalance_percent": "highest unbalance of a busbar of the grid, as a mean over 10 min, of a "
+    "shorter run over all of it; null unless stations tell their `phases`",
+    "rail_permanent_v": "highest voltage of rails to earth, as a mean over 300 s; this and the next two "
+    "are null unless rails are conductors of their own, this one of a shorter run too",
+    "rail_short_v": "highest one in a second or a step",
+    "stray_ma_per_m": "highest mean of the current that strays from the rails of a line, over the "
+    "length of its tracks; null of an alternating current",
     "trips": "how much equipment tripped; null unless `protection` lets it",
     "tripped": "which, in the order of time; null if nothing did",
     "lowest_voltage_kv": "lowest voltage at a pantograph",

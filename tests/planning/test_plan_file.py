@@ -143,6 +143,10 @@ BAD = {
     "an outage that ends": (
         {"require/also_with": ["a while"]}, "require.also_with", "a part of a run", "without from_min",
     ),
+    "a requirement of which the scenario tells nothing": (
+        {"require/rail_short_v": 90.0}, "require.rail_short_v", "the scenario does not tell it",
+        "write supply.conductors, or leave the requirement out",
+    ),
     "itself alike": (
         {"measures/AT/like": "Mid", "measures/Mid/like": "AT"},
         "measures.AT.like", "in a circle", "all its keys",

@@ -245,9 +245,8 @@ def outages(
             "--n-1",
             help="Also take out each single element: every station, every station with one unit fewer, "
             "every transformer of the high-voltage line, every autotransformer, every store at the "
-            "line, every closed post and section break, every feed of a station with several. Not "
-            "the contact line, which rules of n-1 exempt: sections "
-            "of it are outages of the scenario.",
+            "line, every closed post and section break, every feed of a station with several. Not the "
+            "contact line, which rules of n-1 exempt: sections of it are outages of the scenario.",
         ),
     ] = False,
     set_: Assignments = None,

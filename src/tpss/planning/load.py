@@ -15,6 +15,7 @@ from tpss.planning.plan_faults import (
     price_faults,
     renewals_of,
 )
+from tpss.planning.told import not_told
 from tpss.scenario.files import read_toml
 from tpss.scenario.given_path import named_as_given
 from tpss.scenario.load import demand_no_scenario
@@ -142,6 +143,8 @@ def plan_of(document: Mapping[str, Any], source: Path) -> Plan:
         findings += price_faults(file, area.today, str(source))
     if len(areas) == len(_scenarios(file)):
         findings += _of_outages(file, areas, source)
+        scenarios = {area.name: area.today for area in areas}
+        findings += not_told(file.require, scenarios, str(source))
     if findings:
         raise ScenarioError(list(dict.fromkeys(findings)))
     return Plan(file, copy_of(document), source.absolute(), tuple(areas), str(source))

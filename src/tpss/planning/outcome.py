@@ -15,10 +15,12 @@ import numpy.typing as npt
 from tpss.audit.verdict import Audit
 from tpss.planning.plan import Evaluation
 from tpss.planning.steady import FINISHED, SteadyRun, Window, run_steadily
+from tpss.results.grid_and_rails import grid_and_rails, has_own_rails, has_phases
 from tpss.results.grid_side import sides_of
 from tpss.results.key_figures import audit_and_useful_voltage, frame_of
 from tpss.results.recorded_energies import grid_side_w
 from tpss.run.run import Run, arrivals_s
+from tpss.run.run import outcome_of as ended
 from tpss.run.stiff import lost_by_train
 from tpss.scenario.scenario import Scenario
 from tpss.step.recorded import RECORDED
@@ -74,6 +76,7 @@ def outcome_of(
         "window_to_min": window.end_s / 60.0,
         "mean_useful_voltage_kv": useful_kv,
         **_electrical(steady, window),
+        **_grid_and_rails(steady, window),
         **dict(_of_services(steady, window)),
     }
 
@@ -124,6 +127,17 @@ def _electrical(steady: SteadyRun, window: Window) -> dict[str, float]:
         **found,
         **{f"station.{sides[s].name}.converter_losses_mw": float(lost[s]) for s in described},
     }
+
+
+def _grid_and_rails(steady: SteadyRun, window: Window) -> dict[str, float]:
+    """Unbalance of grids, voltages of rails and stray current in the window; nothing without either."""
+    run, scenario = steady.run, steady.scenario
+    if not (has_phases(scenario) or has_own_rails(scenario)):
+        return {}
+    inside = np.flatnonzero(window.weights_s(run) > 0.0)
+    outcome = ended(run, steady.status, steady.start.studied)
+    steps = slice(int(inside[0]), int(inside[-1]) + 1)
+    return grid_and_rails(outcome, run.model, steady.layout, scenario, steps)
 
 
 def _lowest_voltage_v(run: Run, inside: npt.NDArray[np.bool_]) -> float:

@@ -92,6 +92,33 @@ class Requirements(Part):
     peak_loading: Real | None = Field(
         default=None, gt=0, le=10, description="Highest loading of a station's running units."
     )
+    unbalance_percent: Real | None = Field(
+        default=None,
+        gt=0,
+        le=100,
+        description="Highest unbalance of a busbar of the grid, as a mean over 10 min, where stations "
+        "tell their phases.",
+    )
+    rail_permanent_v: Real | None = Field(
+        default=None,
+        gt=0,
+        le=10_000,
+        description="Highest voltage of rails to earth, as a mean over 300 s, where they are conductors "
+        "of their own.",
+    )
+    rail_short_v: Real | None = Field(
+        default=None,
+        gt=0,
+        le=10_000,
+        description="Highest voltage of rails to earth in a second or a step.",
+    )
+    stray_ma_per_m: Real | None = Field(
+        default=None,
+        gt=0,
+        le=1_000,
+        description="Highest mean of the current that strays from the rails of a line, over the length "
+        "of its tracks; of direct current.",
+    )
     also_with: tuple[Name, ...] = Field(
         default=(), description="Outages of the scenario with which it must hold too."
     )

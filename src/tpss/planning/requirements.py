@@ -1,5 +1,6 @@
 """Which traffic a configuration carries: a run that comes through, within what is required."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -19,6 +20,10 @@ LIMITS = (
     ("lowest_voltage_kv", "lowest_voltage_kv", -1.0, "lowest voltage {:.2f} kV"),
     ("mean_useful_voltage_kv", "mean_useful_voltage_kv", -1.0, "mean useful voltage {:.2f} kV"),
     ("peak_loading", "peak_loading", 1.0, "peak loading {:.3f}"),
+    ("unbalance_percent", "unbalance_percent", 1.0, "unbalance {:.2f} %"),
+    ("rail_permanent_v", "rail_permanent_v", 1.0, "rails permanently {:.1f} V"),
+    ("rail_short_v", "rail_short_v", 1.0, "rails shortly {:.1f} V"),
+    ("stray_ma_per_m", "stray_ma_per_m", 1.0, "stray current {:.2f} mA/m"),
 )
 """Keys of the requirements, columns of the outcomes that they limit, the sign of what is too much, and
 how a value is told."""
@@ -38,9 +43,10 @@ def failures(row: Mapping[str, Any], require: Requirements) -> Iterator[str]:
         yield str(row["status"])
         return
     for key, column, sign, words in LIMITS:
-        limit, value = getattr(require, key), row[column]
-        if limit is not None and not sign * value <= sign * limit:
-            yield words.format(value)
+        limit, value = getattr(require, key), row.get(column, math.nan)
+        if limit is None or sign * value <= sign * limit:
+            continue
+        yield f"{words.partition(' {')[0]} not known" if math.isnan(value) else words.format(value)
 
 
 def verdicts(

@@ -15,6 +15,7 @@ from tpss.audit.verdict import JUDGED, Audit, judge, limits_of
 from tpss.kernel import plain
 from tpss.model.build import Layout
 from tpss.powerflow.system import System
+from tpss.results.grid_and_rails import grid_and_rails, has_own_rails, has_phases
 from tpss.results.grid_side import StationSide, sides_of
 from tpss.results.recorded_energies import braking_mwh, grid_side_mwh
 from tpss.results.regeneration import have_rheostats
@@ -24,7 +25,7 @@ from tpss.results.tables import J_PER_MWH
 from tpss.results.thermal.elements import has_ratings
 from tpss.results.thermal.figures import thermal_figures
 from tpss.run.protection import run_to_end
-from tpss.run.run import Clock, Progress, Run, arrivals_s
+from tpss.run.run import Clock, Progress, Run, arrivals_s, outcome_of
 from tpss.run.start import Start
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
@@ -114,6 +115,9 @@ class KeyFigures:
     thermal : dict of str to float
         What equipment with a rating comes to, as of `tpss.results.thermal.figures`; empty where nothing
         has one, or where a `Result` has it.
+    grid_and_rails : dict of str to float
+        Unbalance of grids, voltages of rails, and what strays from them, as of
+        `tpss.results.grid_and_rails`; empty where a scenario has neither, or where a `Result` has them.
     tripped : tuple of str or None
         What tripped, in the order of time; None where nothing can.
     lowest_voltage : LowestVoltage or None
@@ -144,6 +148,7 @@ class KeyFigures:
     fed_back_to_grid_mwh: float
     braking: dict[str, float]
     thermal: dict[str, float]
+    grid_and_rails: dict[str, float]
     tripped: tuple[str, ...] | None
     lowest_voltage: LowestVoltage | None
     mean_useful_voltage_kv: float
@@ -183,6 +188,8 @@ class Frame:
     """Whether the trains of a service burn what the line does not take."""
     rated: Scenario | None
     """The scenario, if something in it has a rating."""
+    apart: tuple[Scenario, Layout] | None
+    """The scenario and its layout, if stations tell their phases, or rails are conductors."""
 
 
 def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
@@ -201,6 +208,7 @@ def frame_of(scenario: Scenario, layout: Layout, model: Model) -> Frame:
         feeds_back=any(train.regeneration is not None for train in scenario.trains.values()),
         rheostats=have_rheostats([service.name for service in scenario.traffic], scenario),
         rated=scenario if has_ratings(scenario) else None,
+        apart=(scenario, layout) if has_phases(scenario) or has_own_rails(scenario) else None,
     )
 
 
@@ -234,13 +242,21 @@ def run_for_figures(
     """
     run, status = run_to_end(start, clock, memory, report, interrupted)
     figures = key_figures_of(run, status, start, frame)
-    if frame.rated is None or not run.step:
-        return figures
-    return replace(figures, thermal=thermal_figures(run, frame.rated))
+    if frame.rated is not None and run.step:
+        figures = replace(figures, thermal=thermal_figures(run, frame.rated))
+    if frame.apart is not None and run.step:
+        scenario, layout = frame.apart
+        outcome = outcome_of(run, status, start.studied)
+        found = grid_and_rails(outcome, run.model, layout, scenario)
+        figures = replace(figures, grid_and_rails=found)
+    return figures
 
 
 def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
-    """Key figures of a run that has ended with a status, without `thermal`, which takes its time."""
+    """Key figures of a run that has ended with a status, but for those that take their time.
+
+    These are `thermal` and `grid_and_rails`.
+    """
     figures = _gather(run, frame)
     whole = _of_whole_run(figures)
     studied = start.studied if start.studied < run.departed else -1
@@ -260,6 +276,7 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         **grid_side_mwh(run, frame.sides, frame.feeds_back),
         braking=braking_mwh(run, frame.sides, frame.rheostats),
         thermal={},
+        grid_and_rails={},
         tripped=tuple(trip.protected.name for trip in run.trips) if start.relays else None,
         lowest_voltage=_lowest_voltage(run, whole, frame),
         mean_useful_voltage_kv=_lowest_zone_kv(figures),

@@ -8,6 +8,7 @@ from typing import Any, get_type_hints
 import pyarrow as pa
 
 from tpss.audit.verdict import JUDGED
+from tpss.results import grid_and_rails
 from tpss.results.key_figures import LIMITED, KeyFigures, ServiceFigures, StationFigures
 from tpss.results.regeneration import TOTALS
 from tpss.results.thermal.figures import FIGURES
@@ -43,6 +44,7 @@ OUTPUTS = {
     "fed_back_to_grid_mwh": pa.float64(),
     **{f"braking.{name}": pa.float64() for name in TOTALS},
     **{f"thermal.{name}": pa.float64() for name in FIGURES},
+    **{name: pa.float64() for name in grid_and_rails.FIGURES},
     "trips": pa.int64(),
     "tripped": pa.string(),
     "lowest_voltage_kv": pa.float64(),
@@ -133,6 +135,7 @@ def output_columns(figures: KeyFigures) -> dict[str, Any]:
         **{f"limited.{name}": count for name, count in figures.limited.items()},
         **{f"braking.{name}": energy for name, energy in figures.braking.items()},
         **{f"thermal.{name}": value for name, value in figures.thermal.items()},
+        **figures.grid_and_rails,
         "trips": None if figures.tripped is None else len(figures.tripped),
         "tripped": "; ".join(figures.tripped or ()) or None,
         **_figures_of_each("station", figures.stations),
