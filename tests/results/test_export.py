@@ -208,13 +208,20 @@ def test_csv_for_a_spreadsheet_has_no_formulas_and_its_numbers_are_untouched():
     lines = as_csv(FORMULAS, Spreadsheet.POINT).split("\r\n")
     assert lines[0] == "\ufefftrain,'=heading"
     assert lines[1:8] == [
-        "'=1+1,-1.5", "'+a,2", "'-b,0.25", "'@c,0.25", "'\td,0.25", "plain,0.25", ",0.25",
+        "'=1+1,-1.5", "'+a,2", "'-b,0.25", "'@c,0.25", "\\td,0.25", "plain,0.25", ",0.25",
     ]  # fmt: skip
 
 
 def test_csv_for_a_spreadsheet_with_decimal_commas_is_separated_by_semicolons():
     lines = as_csv(FORMULAS, Spreadsheet.COMMA).split("\r\n")
     assert lines[1:3] == ["'=1+1;-1,5", "'+a;2"]
+
+
+def test_texts_of_csv_show_what_steers_as_its_code():
+    table = pd.DataFrame(
+        {"train": ["a\u202eb", "plain", None, "a\u202eb"], "=a": [1.0, 2.0, 3.0, 4.0]}
+    )
+    assert as_csv(table, None) == "train,=a\na\\u202eb,1\nplain,2\n,3\na\\u202eb,4\n"
 
 
 def test_csv_for_programs_is_left_as_it_is():

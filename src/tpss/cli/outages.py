@@ -108,7 +108,9 @@ def _exit_code(found: "Comparison") -> int:
 
 def _save(found: "Comparison", name: str, out: Path | None, force: bool) -> Path:
     """Write the table, whole or not at all; into the first free place if none is named."""
-    content = found.table().to_csv(index=False).encode()
+    from tpss.results.csv_texts import csv_of
+
+    content = csv_of(found.table())
     try:
         return _write(content, name, out, force)
     except ResultError:

@@ -29,7 +29,9 @@ def demand_room(out: Path | None, plot: Path | None, force: bool) -> None:
 
 def write_table(file: Path, table: pd.DataFrame) -> None:
     """Write a table as CSV, and say where."""
-    _write(file, table.to_csv(index=False).encode())
+    from tpss.results.csv_texts import csv_of
+
+    _write(file, csv_of(table))
 
 
 def write_picture(file: Path, drawing: "Drawing") -> None:

@@ -28,6 +28,7 @@ from tpss.planning.sentence import sentences
 from tpss.planning.solve import Model, model_of
 from tpss.planning.turning import Turn
 from tpss.planning.uncounted import estimated, uncounted, unknown
+from tpss.results.csv_texts import csv_of
 from tpss.scenario.given_path import from_here, named_as_given
 from tpss.sweep.folder import REMEDY
 from tpss.sweep.versions import versions
@@ -75,7 +76,10 @@ def write_answer(
     with explained(folder, REMEDY, PlanError, within=True):
         (folder / TABLES).mkdir(exist_ok=True)
         for name, table in found.items():
-            write_file(folder / TABLES / f"{name}.csv", table.to_csv(index=False).encode())
+            write_file(
+                folder / TABLES / f"{name}.csv",
+                csv_of(table),
+            )
         write_file(folder / TABLES / WORKBOOK, excel_of(found, answer.model.plan.file.economics))
         document = _as_json(answer, turns, found) | {"finer": finer_sentences(answer, finer)}
         write_file(folder / PLAN, json.dumps(document, indent=1, allow_nan=False).encode())

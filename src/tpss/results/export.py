@@ -16,9 +16,9 @@ from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.several import check_files, save_files
 from tpss.files.whole import write_file
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
+from tpss.results.csv_texts import with_shown_texts, without_formulas
 from tpss.results.file_kinds import Kind, Spreadsheet
 from tpss.results.result import Result
-from tpss.results.spreadsheet import without_formulas
 from tpss.results.workbook import MOST_ROWS, workbook
 
 TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
@@ -122,6 +122,7 @@ def _demand_package(kind: Kind) -> None:
 def _bytes(table: pd.DataFrame, kind: Kind, spreadsheet: Spreadsheet | None) -> bytes:
     if kind is Kind.PARQUET:
         return table.to_parquet(index=False, engine="pyarrow")
+    table = with_shown_texts(table)
     if spreadsheet is None:
         return table.to_csv(index=False, float_format="%.10g", lineterminator="\n").encode()
     separator, decimal = (";", ",") if spreadsheet is Spreadsheet.COMMA else (",", ".")
