@@ -19,11 +19,14 @@ import numba
 import numba.extending
 import numpy as np
 
+from tpss.kernel_cache import KernelCache
+
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _Int = TypeVar("_Int", bound=int)
 
 _config: Any = numba.config
 _njit: Any = numba.njit
+_cache_of: Any = KernelCache
 _overload: Any = numba.extending.overload
 
 _OPTIONS: dict[str, Any] = {
@@ -145,6 +148,8 @@ def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     _config.CACHE_DIR = str(cache_folder())
     try:
         compiled: _Function = _njit(inline=inline, **options)(function)
+        if not _config.DISABLE_JIT:
+            setattr(compiled, "_cache", _cache_of(function))  # noqa: B010
     finally:
         _config.CACHE_DIR = folder_before
     return compiled
