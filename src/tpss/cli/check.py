@@ -14,8 +14,10 @@ from tpss.cli.notes import notes, stuck
 from tpss.cli.terminal import Console, say
 from tpss.model.build import build_model
 from tpss.model.outages import service_of
+from tpss.model.start import given_steps
 from tpss.model.traffic import build_services
 from tpss.run.clocks import clock_of
+from tpss.run.start import demand_room_to_depart
 from tpss.scenario import Scenario, load_scenario
 from tpss.scenario.clock import clock_at
 from tpss.scenario.direct_current import without_reactive_power
@@ -52,10 +54,12 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     ------
     ScenarioError
         It has faults; all are listed.
+    TooLargeError
+        Its run would not fit into memory.
     """
     scenario = load_scenario(file, dict(parse_assignment(text) for text in assignments))
     model, _ = build_model(with_step(scenario))
-    build_services(scenario, model)
+    demand_room_to_depart(model, build_services(scenario, model), given_steps(scenario, model))
     clock_of(scenario.simulation.load_flow, scenario.given_source)
     for outage in scenario.outages:
         service_of(scenario, outage)

@@ -14,6 +14,13 @@ from tpss.step.model import Model
 from tpss.units import si
 
 
+def given_steps(scenario: Scenario, model: Model) -> int | None:
+    """Number of steps of the duration that a scenario gives; None: it ends with an arrival."""
+    if scenario.simulation.duration_min is None:
+        return None
+    return steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
+
+
 def start_of(scenario: Scenario, model: Model) -> Start:
     """Services, trains on the line and number of steps of a run, at the model's time step.
 
@@ -26,10 +33,7 @@ def start_of(scenario: Scenario, model: Model) -> Start:
         The recording would not fit into memory, or trains already running would take too long.
     """
     model, services = with_supplements(scenario, model, build_services(scenario, model))
-    steps = None
-    if scenario.simulation.duration_min is not None:
-        steps = steps_of(si(scenario.simulation, "duration_min"), model.options.step_s)
-    start = begin(model, services, steps, service_of(scenario).switchings)
+    start = begin(model, services, given_steps(scenario, model), service_of(scenario).switchings)
     start = with_relays(start, scenario, scenario.outage)
     try:
         return with_order(start)

@@ -62,6 +62,26 @@ class Start:
         return replace(self, switchings=self.cut(trips))
 
 
+def demand_room_to_depart(
+    model: Model, services: list[Service], steps: int | None
+) -> tuple[int, int]:
+    """Number of steps that a run is foreseen to have, and of trains that depart in them.
+
+    Parameters are those of `begin`.
+
+    Raises
+    ------
+    TooLargeError
+        The recording of these trains would not fit into memory.
+    """
+    h = model.options.step_s
+    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
+    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
+    departures = sum(service.departures_before(capacity * h) for service in services)
+    demand_room(model, capacity, departures)
+    return capacity, departures
+
+
 def begin(
     model: Model,
     services: list[Service],
@@ -85,12 +105,8 @@ def begin(
     TooLargeError
         The recording would not fit into memory.
     """
-    h = model.options.step_s
-    first_s = next(services[0].departure_times_s(math.inf)) + services[0].delay_s(1)
-    capacity = steps or foreseen_steps(model, services[0]) + math.ceil(first_s / h)
-    departures = sum(service.departures_before(capacity * h) for service in services)
     # Too many steps are told before trains run by all of them to find out which are on the line.
-    demand_room(model, capacity, departures)
+    capacity, departures = demand_room_to_depart(model, services, steps)
     on_line = trains_on_line(model, services)
     demand_room(model, capacity, len(on_line) + departures)
     trains = [*on_line, *departing_trains(services, model.options, 0, capacity)]
