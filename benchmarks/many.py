@@ -1,4 +1,4 @@
-"""Time many scenarios: in threads by `tpss.simulate_many`, and as a study on a local Dask cluster.
+"""Time many scenarios: in threads by `tpss.simulate_many`, as a study, and as cases of a plan.
 
 Usage: python benchmarks/many.py [--cases N] [--publish]
 """
@@ -7,6 +7,7 @@ import os
 import resource
 import tempfile
 import time
+import tomllib
 from collections.abc import Iterable
 from itertools import repeat
 from pathlib import Path
@@ -15,6 +16,9 @@ from typing import Any
 import tomli_w
 
 import tpss
+from tpss.planning.cases import CaseList, distinct
+from tpss.planning.documents import run_documents, warm_up
+from tpss.planning.load import load_plan
 
 from report import arguments, caption, deliver, machine, table
 
@@ -44,6 +48,10 @@ STUDY: dict[str, Any] = {
     },
 }
 """Cases of about ten trains on 160 km, each with a gradient profile of its own."""
+
+HEADWAYS_MIN = (20.0, 24.0, 30.0, 32.0, 36.0, 40.0, 45.0, 48.0, 50.0, 54.0, 60.0, 64.0, 72.0, 75.0,
+                80.0, 90.0, 96.0, 100.0, 120.0, 144.0)  # fmt: skip
+"""Traffic of a plan's cases."""
 
 
 def peak_mib() -> float:
@@ -103,25 +111,64 @@ def as_study(cases: int) -> dict[str, float]:
     }
 
 
+def as_plan() -> dict[str, float]:
+    """Cases of a plan a second of one core's time: 16 supplies of 320 km, intact and with an outage."""
+    document = tomllib.loads((EXAMPLES / "plan_320km.toml").read_text("utf-8"))
+    document["scenario"] = str(EXAMPLES / document["scenario"])
+    stages = len(document["stages"]["start"])
+    share = 1.0 / len(HEADWAYS_MIN)
+    document["scenarios"] = {
+        f"every-{headway:g}-min": {
+            "probability": share,
+            "traffic": {"eastbound": {"headway_min": [headway] * stages}},
+        }
+        for headway in HEADWAYS_MIN
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "plan.toml"
+        file.write_text(tomli_w.dumps(document), "utf-8")
+        cases = CaseList(load_plan(file))
+        wanted = distinct(cases.cases)
+        sent = [(case, cases.document(case)) for case in wanted]
+    how = cases.plan.file.evaluate.model_dump_json()
+    warm_up(sent[:1], how)
+    times_s = []
+    for _ in range(3):
+        started = time.process_time()
+        rows = run_documents(sent, how)
+        times_s.append(time.process_time() - started)
+    return {
+        "cases": len(wanted),
+        "steps of a case": sum(row["steps"] for row in rows) / len(rows),
+        "cases a second and core": len(wanted) / min(times_s),
+    }
+
+
 def main() -> None:
     options = arguments(__doc__, cases=2000)
-    threads, study, where = (
+    threads, study, plan, where = (
         in_threads(options.cases),
         as_study(4 * options.cases),
+        as_plan(),
         machine("distributed"),
     )
     head = ("case", *next(iter(threads.values())))
     rows = [
         (name, *(f"{value:,.0f}" for value in found.values())) for name, found in threads.items()
     ]
-    of_study = [tuple(f"{value:,.4g}" for value in study.values())]
+    of_study, of_plan = (
+        [tuple(f"{value:,.4g}" for value in each.values())] for each in (study, plan)
+    )
     text = (
         f"Cases a second by `tpss.simulate_many`, about ten trains, audit included:\n\n"
         f"{table(head, rows)}\n\n"
         "A study of `tpss sweep`, 160 km in steps of 1 min, each case another scenario with a "
-        f"gradient profile of its own:\n\n{table(tuple(study), of_study)}\n\n{caption(where)}"
+        f"gradient profile of its own:\n\n{table(tuple(study), of_study)}\n\n"
+        "Cases of a plan in one process, 320 km in steps of 1 min, 16 supplies, intact and with an "
+        f"outage, each run to its steady state:\n\n{table(tuple(plan), of_plan)}\n\n{caption(where)}"
     )
-    deliver("many", {"machine": where, "threads": threads, "study": study}, text, options.publish)
+    found = {"machine": where, "threads": threads, "study": study, "plan": plan}
+    deliver("many", found, text, options.publish)
 
 
 if __name__ == "__main__":

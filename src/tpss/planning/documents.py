@@ -1,6 +1,5 @@
 """Cases as documents, which can be sent to other processes and computers, and rows that come back."""
 
-import gc
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ from tpss.planning.cases import Case
 from tpss.planning.plan import Evaluation
 from tpss.planning.rows import row_of
 from tpss.scenario.scenario import Scenario
+from tpss.sweep.collector import spare_the_collector
 
 Sent = tuple[Case, dict[str, Any]]
 """A case, and the document of its scenario."""
@@ -18,14 +18,9 @@ Row = dict[str, Any]
 
 
 def warm_up(sent: list[Sent], evaluation: str) -> None:
-    """Prepare a process: a case compiles the kernels, or loads them.
-
-    The objects that exist then are permanent, and excluded from garbage collection, which the many
-    objects of cases trigger and which would take a tenth of a second each time.
-    """
+    """Prepare a process: a case compiles the kernels, or loads them."""
     run_documents(sent, evaluation)
-    gc.collect()
-    gc.freeze()
+    spare_the_collector()
 
 
 def run_documents(sent: list[Sent], evaluation: str) -> list[Row]:

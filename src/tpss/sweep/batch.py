@@ -1,7 +1,6 @@
 """Successive cases, simulated in one process: the task of a worker."""
 
 import datetime as dt
-import gc
 import io
 import time
 from collections.abc import Sequence
@@ -15,6 +14,7 @@ import pyarrow.parquet as pq
 from tpss.api import build
 from tpss.errors import TpssError
 from tpss.many import key_figures
+from tpss.sweep.collector import spare_the_collector
 from tpss.sweep.columns import (
     FAILED,
     INVALID,
@@ -85,14 +85,9 @@ def batch_size(left: int, case_s: float, workers: int) -> int:
 
 
 def warm_up(plan: Plan) -> None:
-    """Prepare a process: the first case compiles the kernels, or loads them.
-
-    The objects that exist then are permanent, and excluded from garbage collection, which the many
-    objects of cases trigger and which would take a tenth of a second each time.
-    """
+    """Prepare a process: the first case compiles the kernels, or loads them."""
     run_batch(plan, 0, 1)
-    gc.collect()
-    gc.freeze()
+    spare_the_collector()
 
 
 def run_case(design: Design, case: int) -> dict[str, Any]:
