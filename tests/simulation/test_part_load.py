@@ -16,6 +16,7 @@ import tpss
 from grades import A_N, EFFICIENCY, SPEED_M_S, WEIGHT_N, document, values
 from lines import run
 
+from conftest import EXAMPLES
 from scenarios import short_line
 from slow_audit import assert_agree, audit_of
 
@@ -109,3 +110,15 @@ def test_loads_beyond_the_curve_are_counted() -> None:
     for curve, counts in ((beyond, True), (UP_AND_DOWN, False)):
         limited = run(over_load(10.0, curve)).summary["limited"]
         assert (limited["efficiency_extrapolated"] > 0) == counts
+
+
+def test_trams_on_their_own_stores_follow_their_load_too() -> None:
+    """What a store gives beyond the auxiliaries moves the tram, less what its drive wastes then."""
+    scenario = tpss.load_scenario(EXAMPLES / "tram_750v.toml").with_(
+        {"trains.tram.efficiency_over_load": UNEVEN, "simulation.duration_min": 20.0}
+    )
+    result = tpss.simulate(scenario)
+    assert result.audit["passed"], result.audit["failures"]
+    expected, limits = audit_of(scenario)
+    found = type(expected)(**{name: result.audit[name] for name in vars(expected)})
+    assert_agree(found, expected, limits)
