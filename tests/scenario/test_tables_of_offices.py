@@ -81,6 +81,17 @@ def test_what_is_assumed_and_passed_over_is_told(write):
     )
 
 
+def test_of_several_columns_the_one_that_is_called_as_in_files_of_tpss_counts(write):
+    file = write("km;Neigung;gradient_permille\n0;7;1\n1;8;2\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 2.0)]
+    assert load_scenario(file).file_notes == ("table.csv: columns passed over: Neigung",)
+
+
+def test_gradients_come_before_altitudes(write):
+    file = write("km;Höhe;Neigung [‰]\n0;7;1\n1;8;2\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 2.0)]
+
+
 def test_a_changed_copy_tells_the_same(write):
     scenario = load_scenario(write("km;Neigung\n0;1\n1;2\n"))
     assert scenario.with_({"traffic.0.headway_min": 30.0}).file_notes == scenario.file_notes
@@ -124,10 +135,11 @@ def test_altitudes_may_be_smoothed(write):
         ("km;Höhe\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points and some"),
         ("km;Höhe\n1,234;1\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points"),
         ("km;Höhe\n-1+500;1\n2+500;2\n", {}, "line 2, km", "not a number"),
-        ("km;Höhe;Kilometer;km\n1;1;1;1\n", {}, "line 1", "the column is there twice"),
+        ("km;Höhe;km\n1;1;1\n", {}, "line 1", "the column is there twice"),
         ("km,Höhe\n0,5,100,5\n1,5,101,0\n", {}, "line 2", "4 values, expected 2; and 1 more like it"),
         ("km;Höhe\n0;1\n2;2\n1;3\n", {}, "line 4, km", "does not increase"),
         ("\0\1\2", {}, "", "neither text"),
+        ("km;Höhe;Höhenlage\n0;1;2\n1;2;3\n", {}, "line 1", "the column Höhe may be the altitude too"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_names_the_place(write, text, more, key, words):

@@ -129,8 +129,22 @@ def _faults(sheet: Sheet, header: Header, kind: Kind) -> Iterator[Finding]:
         ]
         if twice:
             yield Finding(file, place, column.heading, "the column is there twice", "leave one out")
+    yield from _faults_of_rivals(sheet, header, kind)
     free = [ALIASES[each].key for each in kind.further if each not in header.columns]
     for heading in header.passed_over:
         if near := closest(heading, free):
             remedy = f"did you mean {near}? else give it a name that is not so like it"
             yield Finding(file, place, heading, "no such column", remedy)
+
+
+def _faults_of_rivals(sheet: Sheet, header: Header, kind: Kind) -> Iterator[Finding]:
+    """Several columns that may be the same thing, none of them called as in files of TPSS."""
+    for heading in header.passed_over:
+        meaning = meaning_of(heading, kind.quantities)
+        column = header.columns.get(meaning.quantity) if meaning is not None else None
+        if column is None or column.heading in (heading, ALIASES[column.meaning.quantity].key):
+            continue
+        quantity = ALIASES[column.meaning.quantity]
+        problem = f"the column {column.heading} may be the {quantity.words} too"
+        remedy = f"call the one that counts {quantity.key}; the other one is then passed over"
+        yield Finding(str(sheet.path), f"line {header.line}", heading, problem, remedy)
