@@ -54,8 +54,12 @@ def faults(file):
         "km,gradient [%]\r\n0,0\r\n0.5,0.5\r\n20,-0.25\r\n",
         "km;Neigung\n0+000;0\n0+500;5\n20+000;-2,5\n",
         "km;Neigung;\n0,0;0;\n0,5;5;\n;;\n20,0;-2,5;\n",
+        "Position;Neigung\n[m];[%]\n0;0\n500;0,5\n20000;-0,25\n",
+        "Von;Neigung [‰]\n0+000;0\n0+500;5\n20+000;-2,5\n",
+        "km;Neigung;Höhe\nkm;‰;m\n0;0;\n0,5;5;7\n20;-2,5;\n",
     ],
-    ids=["own", "german", "tabs", "told-separator", "title", "metres", "percent", "posts", "empty"],
+    ids=["own", "german", "tabs", "told-separator", "title", "metres", "percent", "posts", "empty",
+         "units-below", "posts-without-unit", "altitude-too"],
 )  # fmt: skip
 def test_the_same_profile_in_other_clothes(write, text):
     assert profile(write(text)) == PROFILE
@@ -87,7 +91,9 @@ def test_of_several_columns_the_one_that_is_called_as_in_files_of_tpss_counts(wr
     assert load_scenario(file).file_notes == ("table.csv: columns passed over: Neigung",)
 
 
-def test_gradients_come_before_altitudes(write):
+def test_gradients_come_before_altitudes_unless_there_are_none(write):
+    file = write("km;Neigung;Höhe\n;‰;[m ü. NN]\n0;;7\n1;;8\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 1.0)]
     file = write("km;Höhe;Neigung [‰]\n0;7;1\n1;8;2\n")
     assert profile(file) == [(0.0, 1.0), (1.0, 2.0)]
 
