@@ -254,6 +254,11 @@ def test_a_workbook_gives_its_first_sheet_or_the_one_that_is_named(tmp_path, wri
     assert "did you mean Other?" in finding.remedy
 
 
+def test_the_name_of_a_sheet_may_have_the_mark_too(tmp_path, write):
+    content = workbook(tmp_path, a=[("x",)], **{"No#2": [("km", "Neigung"), (0, 7)]})
+    assert profile(write(content, "profile.xlsx", sheet="#No#2")) == [(0.0, 7.0)]
+
+
 def test_a_number_of_a_workbook_has_its_decimals_whatever_it_looks_like(tmp_path, write):
     """1.234 of a workbook is a number, not 1234."""
     content = workbook(tmp_path, a=[("km", "Neigung"), (0, 1.234), (1.234, 2.345)])
