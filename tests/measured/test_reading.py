@@ -50,6 +50,15 @@ def test_decimal_commas_beside_semicolons(result, file):
     assert error_of(result, path) == 0.0
 
 
+def test_commas_that_may_part_thousands_are_told(result, file):
+    values = [f"{value},000" for value in VALUES[1:4]]
+    found = compare(result, file(at(range(3), "time [min]", ";", values)))
+    assert any("1,234 as 1.234" in note for note in found.notes)
+    values[0] = "2,00"
+    found = compare(result, file(at(range(3), "time [min]", ";", values)))
+    assert not any("1,234 as 1.234" in note for note in found.notes)
+
+
 def test_lines_that_end_with_a_separator(result, file):
     path = file(at(range(10), "time [min]", ";").replace("\n", ";\n"))
     assert error_of(result, path) == 0.0

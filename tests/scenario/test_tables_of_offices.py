@@ -54,8 +54,12 @@ def faults(file):
         "km,gradient [%]\r\n0,0\r\n0.5,0.5\r\n20,-0.25\r\n",
         "km;Neigung\n0+000;0\n0+500;5\n20+000;-2,5\n",
         "km;Neigung;\n0,0;0;\n0,5;5;\n;;\n20,0;-2,5;\n",
+        "Position;Neigung\n[m];[%]\n0;0\n500;0,5\n20000;-0,25\n",
+        "Von;Neigung [‰]\n0+000;0\n0+500;5\n20+000;-2,5\n",
+        "km;Neigung;Höhe\nkm;‰;m\n0;0;\n0,5;5;7\n20;-2,5;\n",
     ],
-    ids=["own", "german", "tabs", "told-separator", "title", "metres", "percent", "posts", "empty"],
+    ids=["own", "german", "tabs", "told-separator", "title", "metres", "percent", "posts", "empty",
+         "units-below", "posts-without-unit", "altitude-too"],
 )  # fmt: skip
 def test_the_same_profile_in_other_clothes(write, text):
     assert profile(write(text)) == PROFILE
@@ -79,6 +83,19 @@ def test_what_is_assumed_and_passed_over_is_told(write):
         "table.csv: columns passed over: Bemerkung",
         "table.csv: Neigung gives no unit and is read in ‰",
     )
+
+
+def test_of_several_columns_the_one_that_is_called_as_in_files_of_tpss_counts(write):
+    file = write("km;Neigung;gradient_permille\n0;7;1\n1;8;2\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 2.0)]
+    assert load_scenario(file).file_notes == ("table.csv: columns passed over: Neigung",)
+
+
+def test_gradients_come_before_altitudes_unless_there_are_none(write):
+    file = write("km;Neigung;Höhe\n;‰;[m ü. NN]\n0;;7\n1;;8\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 1.0)]
+    file = write("km;Höhe;Neigung [‰]\n0;7;1\n1;8;2\n")
+    assert profile(file) == [(0.0, 1.0), (1.0, 2.0)]
 
 
 def test_a_changed_copy_tells_the_same(write):
@@ -124,10 +141,11 @@ def test_altitudes_may_be_smoothed(write):
         ("km;Höhe\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points and some"),
         ("km;Höhe\n1,234;1\n1,5;1\n2.5;2\n", {}, "column 'km'", "some numbers have decimal points"),
         ("km;Höhe\n-1+500;1\n2+500;2\n", {}, "line 2, km", "not a number"),
-        ("km;Höhe;Kilometer;km\n1;1;1;1\n", {}, "line 1", "the column is there twice"),
+        ("km;Höhe;km\n1;1;1\n", {}, "line 1", "the column is there twice"),
         ("km,Höhe\n0,5,100,5\n1,5,101,0\n", {}, "line 2", "4 values, expected 2; and 1 more like it"),
         ("km;Höhe\n0;1\n2;2\n1;3\n", {}, "line 4, km", "does not increase"),
         ("\0\1\2", {}, "", "neither text"),
+        ("km;Höhe;Höhenlage\n0;1;2\n1;2;3\n", {}, "line 1", "the column Höhe may be the altitude too"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_names_the_place(write, text, more, key, words):
@@ -234,6 +252,11 @@ def test_a_workbook_gives_its_first_sheet_or_the_one_that_is_named(tmp_path, wri
     (finding,) = faults(write(content, "profile.xlsx", sheet="#Othre"))
     assert (finding.key, finding.value) == ("sheet", "Othre")
     assert "did you mean Other?" in finding.remedy
+
+
+def test_the_name_of_a_sheet_may_have_the_mark_too(tmp_path, write):
+    content = workbook(tmp_path, a=[("x",)], **{"No#2": [("km", "Neigung"), (0, 7)]})
+    assert profile(write(content, "profile.xlsx", sheet="#No#2")) == [(0.0, 7.0)]
 
 
 def test_a_number_of_a_workbook_has_its_decimals_whatever_it_looks_like(tmp_path, write):

@@ -17,7 +17,7 @@ from tpss.units import kilometres
 
 
 def export_result(
-    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None
+    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None = None
 ) -> None:
     """Export the tables of a result, and print where they are.
 

@@ -18,9 +18,9 @@ from tpss.importers.office_tables import (
 )
 from tpss.importers.texts import write
 from tpss.tables.aliases import ALIASES
+from tpss.tables.header import cell_of
 from tpss.tables.kinds import KINDS
 from tpss.tables.numbers import IN_WORDS
-from tpss.tables.read import cell_of
 
 
 def import_tables(

@@ -66,7 +66,7 @@ def write_case(place: Path, case: int, out: Path | None, force: bool) -> None:
 
 
 def export_study(
-    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None
+    folder: Path, kind: Kind, out: Path | None, force: bool, spreadsheet: Spreadsheet | None = None
 ) -> None:
     """Export the table of a study, and print where it is.
 

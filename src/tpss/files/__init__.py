@@ -1,1 +1,1 @@
-"""Files and folders that are written whole or not at all, and what is refused before."""
+"""Files that are read within bounds, and files and folders that are written whole or not at all."""

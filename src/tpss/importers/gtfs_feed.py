@@ -89,7 +89,7 @@ class Feed:
             with zipfile.ZipFile(path) as archive:
                 names = [name for name in archive.namelist() if name.endswith(".txt")]
         except (OSError, zipfile.BadZipFile) as error:
-            problem = "neither a folder nor a zip file of a feed"
+            problem = f"neither a folder nor a zip file that can be read: {reason(error)}"
             remedy = (
                 "name a folder with the tables of a GTFS feed, such as stops.txt, or its zip file"
             )

@@ -21,6 +21,10 @@ SEPARATORS = ("\t", ";", ",")
 MOST_BYTES = 1_000 * MEGABYTE
 """Longest file that is read: recorders write less in months. [byte]"""
 
+COMMA_NUMBER = r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"
+DECISIVE = rf"(?![+-]?[1-9]\d{{0,2}},\d{{3}}$){COMMA_NUMBER}"
+"""A number with a decimal comma, and one whose comma cannot part thousands."""
+
 GAPS = ("", "nan", "na")
 """Texts of cells, in small letters, that are no values."""
 
@@ -87,7 +91,9 @@ def read_table(path: Path) -> Table:
         raise ScenarioError(findings)
     cells = pd.DataFrame([row[: len(header)] for _, row in rows], columns=header, dtype=str)
     numbers = np.array([number for number, _ in rows], dtype=np.int64)
-    decimal = "," if separator != "," and _has_decimal_commas(cells) else "."
+    decimal = "," if separator != "," and _has(COMMA_NUMBER, cells) else "."
+    if decimal == "," and not _has(DECISIVE, cells):
+        notes = (*notes, f"{path.name}: commas are read as those of decimals, 1,234 as 1.234")
     return Table(path, cells, numbers, decimal, notes)
 
 
@@ -130,8 +136,8 @@ def _faults(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) ->
         yield Finding(str(path), f"line {number}", value, problem, remedy)
 
 
-def _has_decimal_commas(cells: pd.DataFrame) -> bool:
-    pattern = r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"
+def _has(pattern: str, cells: pd.DataFrame) -> bool:
+    """Whether a cell is written like this."""
     return any(cells[name].str.fullmatch(pattern).any() for name in cells.columns)
 
 

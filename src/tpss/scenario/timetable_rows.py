@@ -9,9 +9,10 @@ from pathlib import Path
 from tpss.errors import Finding, alike_together, suggest
 from tpss.files.content import content_of
 from tpss.tables.aliases import ALIASES
+from tpss.tables.header import cell_of
 from tpss.tables.kinds import TIMETABLE
 from tpss.tables.numbers import COMMA
-from tpss.tables.read import Table, cell_of, sheet_of, sheet_of_text, understood
+from tpss.tables.read import Table, sheet_of, sheet_of_text, understood
 from tpss.tables.sheet import UTF_8, csv_of, decoded
 from tpss.tables.workbook import is_workbook, of_workbook
 

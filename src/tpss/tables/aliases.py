@@ -11,6 +11,8 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import NamedTuple
 
+from tpss import units
+
 KM = "km kilometer kilometern kilometre kilometres kilometrierung streckenkilometer bahnkilometer"
 METRES = "m meter metern metre metres"
 
@@ -51,7 +53,7 @@ class Quantity(NamedTuple):
     @property
     def words(self) -> str:
         """What it is, without its unit."""
-        return self.key.rpartition("_")[0].replace("_", " ") if self.units else self.key
+        return "end" if self.key == "to_km" else units.words(self.key)
 
 
 def _of_position(key: str, *names: str) -> Quantity:
@@ -173,7 +175,7 @@ def folded(text: str) -> tuple[str, ...]:
 @cache
 def _names(quantity: str) -> frozenset[str]:
     each = ALIASES[quantity]
-    own = " ".join(folded(each.words))
+    own = " ".join(folded(units.words(each.key)))
     return frozenset({own, *(" ".join(folded(name)) for name in each.names)})
 
 
@@ -214,6 +216,12 @@ def meaning_of(heading: str, among: Iterable[str]) -> Meaning | None:
     if "position" in bare and "end" in bare:
         bare.remove("end")
     return Meaning(bare[0], *_units(bare[0])["".join(words)], True) if len(bare) == 1 else None
+
+
+def unit_named(text: str, quantity: str) -> Meaning | None:
+    """Meaning of a quantity whose unit stands alone, as in a row of units; None: it is none of its."""
+    found = _units(quantity).get("".join(folded(text)))
+    return Meaning(quantity, *found, True) if found else None
 
 
 def _parted(words: tuple[str, ...]) -> list[tuple[str, str]]:

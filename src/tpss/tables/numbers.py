@@ -48,6 +48,22 @@ def number(text: str, decimal: str) -> float:
         return math.nan
 
 
+_POST = re.compile(r"(\d+(?:[.,]\d+)?)\s*\+\s*(\d{1,4}(?:[.,]\d+)?)")
+
+
+def is_post(text: str) -> bool:
+    """Whether a text is a post of the line, metres behind a kilometre: 438+500, or 12,4 + 35."""
+    return "+" in text and _POST.fullmatch(text) is not None
+
+
+def post_km(text: str) -> float:
+    """Position of a post. [km]"""
+    match = _POST.fullmatch(text)
+    assert match is not None, "it is one"
+    km, metres = (float(part.replace(",", ".")) for part in match.groups())
+    return float(f"{km + metres * 1e-3:.13g}")
+
+
 class Readings(NamedTuple):
     """How the numbers of a column may be read.
 

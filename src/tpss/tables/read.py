@@ -1,7 +1,6 @@
 """Tables whose columns are understood: values by what they are, in the units of TPSS, and notes."""
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +9,18 @@ from tpss import units
 from tpss.errors import Finding, ScenarioError, alike_together, shortened
 from tpss.files.content import content_of
 from tpss.tables.aliases import ALIASES
-from tpss.tables.header import MOST_ABOVE, Column, Header, demand_header, find_header
+from tpss.tables.header import MOST_ABOVE, Column, Header, cell_of, demand_header, find_header
 from tpss.tables.kinds import Kind
-from tpss.tables.numbers import COMMA, IN_WORDS, number, plain, readings_of, signs_of
+from tpss.tables.numbers import (
+    COMMA,
+    IN_WORDS,
+    is_post,
+    number,
+    plain,
+    post_km,
+    readings_of,
+    signs_of,
+)
 from tpss.tables.sheet import (
     SEPARATORS,
     UTF_8,
@@ -28,9 +36,6 @@ from tpss.tables.workbook import is_workbook, of_workbook, read_sheet
 
 Value = float | str | None
 """None: the cell is empty."""
-
-_METRES_BEHIND = re.compile(r"(\d+(?:[.,]\d+)?)\s*\+\s*(\d{1,4}(?:[.,]\d+)?)")
-"""Positions as km 438+500 or km 12,4 + 35: metres behind a kilometre."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +176,7 @@ def understood(sheet: Sheet, kind: Kind, decimal: str = "") -> tuple[Table, list
         There is no header.
     """
     header = demand_header(sheet, kind)
-    rows = sheet.rows[header.above + 1 :]
+    rows = sheet.rows[header.first :]
     findings = list(_faults_of_rows(sheet, header, rows, kind))
     whole = [row for row in rows if not _is_odd(row, sheet, header)]
     signs, told = _signs(sheet, header, whole, decimal, findings)
@@ -213,11 +218,6 @@ def _is_odd(row: Row, sheet: Sheet, header: Header) -> bool:
     return any(row.cells[count:]) or (sheet.separator != "" and len(row.cells) < count)
 
 
-def cell_of(row: Row, column: Column) -> Cell:
-    """Cell of a row in a column; empty where a row of a workbook ends before."""
-    return row.cells[column.place] if column.place < len(row.cells) else ""
-
-
 def _signs(
     sheet: Sheet, header: Header, rows: Sequence[Row], decimal: str, findings: list[Finding]
 ) -> tuple[dict[str, str], list[str]]:
@@ -227,7 +227,7 @@ def _signs(
     for name, column in numeric.items():
         cells = [cell_of(row, column) for row in rows]
         own = [plain(each) for each in cells if isinstance(each, str)]
-        texts[column.heading] = [each for each in own if not _has_metres_behind(each)]
+        texts[column.heading] = [each for each in own if not is_post(each)]
         quantity, factor = ALIASES[name], column.meaning.factor
         ranges[column.heading] = (quantity.low / factor, quantity.high / factor)
     if decimal:
@@ -238,10 +238,6 @@ def _signs(
             findings.append(_unclear(sheet, column, texts[column.heading]))
             signs[column.heading] = ""
     return {name: signs[column.heading] for name, column in numeric.items()}, told
-
-
-def _has_metres_behind(text: str) -> bool:
-    return "+" in text and _METRES_BEHIND.fullmatch(text) is not None
 
 
 def _unclear(sheet: Sheet, column: Column, texts: Sequence[str]) -> Finding:
@@ -276,11 +272,9 @@ def _value(column: Column, cell: Cell, sign: str) -> Value:
 
 
 def _number(text: str, sign: str, is_position: bool) -> float:
-    behind = _METRES_BEHIND.fullmatch(text) if is_position and "+" in text else None
-    if behind is None:
-        return number(text, sign) if sign else 0.0  # whose column has a fault of its own
-    km, metres = (float(part.replace(",", ".")) for part in behind.groups())
-    return float(f"{km + metres * 1e-3:.13g}")
+    if is_position and is_post(text):
+        return post_km(text)
+    return number(text, sign) if sign else 0.0  # whose column has a fault of its own
 
 
 def _faults_of_cells(table: Table) -> Iterator[Finding]:

@@ -1,6 +1,7 @@
 """Sheets of Excel's workbooks (.xlsx), with bounds on what they unpack to."""
 
 import io
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,8 +16,8 @@ from tpss.tables.sheet import COMMENT, Cell, Row, Sheet
 
 SUFFIXES = (".xlsx", ".xlsm")
 
-MARK = "#"
-"""Stands between the name of a file and that of a sheet."""
+_WITH_SHEET = re.compile(r"(.+?\.xls[xm])#(.*)", re.IGNORECASE)
+"""Name of a file, and behind the mark that of a sheet."""
 
 MOST_UNPACKED = 200_000_000
 """Of the parts of a workbook together. [byte]"""
@@ -27,10 +28,8 @@ MOST_CELLS = 5_000_000
 
 def of_workbook(path: Path) -> tuple[Path, str]:
     """File of a workbook and the name of its sheet, empty for the first; of other files the path."""
-    file, mark, sheet = path.name.rpartition(MARK)
-    if mark and file.lower().endswith(SUFFIXES):
-        return path.with_name(file), sheet
-    return path, ""
+    match = _WITH_SHEET.fullmatch(path.name)
+    return (path.with_name(match[1]), match[2]) if match else (path, "")
 
 
 def is_workbook(path: Path) -> bool:
