@@ -29,14 +29,16 @@ headway_min = 60.0
 
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_more_than_the_machine_has_is_refused(tpss_command, tmp_path, monkeypatch, command):
-    """168 trains in 201,601 instants, each of 145 bytes and more: 4.6 GiB, and 11.4 with what is saved."""
+    """168 trains in 201,601 instants of 145 bytes and more: 4.6 GiB, and 11.4 with what is saved."""
     file = tmp_path / "week.toml"
     file.write_text(WEEK)
     monkeypatch.setattr(limits, "memory_of_machine", lambda: 8.0 * limits.GIB)
     said = tpss_command(command, str(file))
     assert (said.code, said.out) == (2, "")
     assert "201600 steps with 168 trains need 11." in said.err
-    assert "4.6 of them for what is recorded, and 8.0 are there; take a longer time step" in said.err
+    assert (
+        "4.6 of them for what is recorded, and 8.0 are there; take a longer time step" in said.err
+    )
 
 
 def test_what_fits_is_checked(tpss_command, tmp_path, monkeypatch):
