@@ -12,7 +12,7 @@ from functools import partial
 from tpss.many import in_threads
 from tpss.planning.cases import Case, CaseList
 from tpss.planning.documents import Row, Sent, run_documents, warm_up
-from tpss.planning.rows import row_of
+from tpss.planning.rows import row_of, row_of_killer
 
 TRIED = 2
 """Cases that are simulated first, in turn: the first compiles the kernels, the last one is measured."""
@@ -75,6 +75,10 @@ def _in_processes(
         warm_up=partial(warm_up, sent(cases[:1]), how),
         run=partial(run_documents, evaluation=how),
         name=lambda batch: f"{len(batch)} cases",
+        parts=lambda batch: (
+            [batch[: len(batch) // 2], batch[len(batch) // 2 :]] if len(batch) > 1 else []
+        ),
+        rows_of_killer=lambda batch: [row_of_killer(batch[0][0])],
     )
     for _, rows in in_processes(work, batches, count):
         yield from rows

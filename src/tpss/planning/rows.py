@@ -43,4 +43,16 @@ def row_of(case: Case, scenario: Callable[[], Scenario], evaluation: Evaluation)
     return row
 
 
+def row_of_killer(case: Case) -> dict[str, Any]:
+    """Row of a case that ends the process that runs it."""
+    from tpss.sweep.batch import KILLER  # Parquet takes long to import
+
+    return {
+        DIGEST: case.digest,
+        "status": FAILED,
+        "problem": KILLER,
+        "timing.ended": dt.datetime.now(dt.UTC),
+    }
+
+
 _of_this_thread = threading.local()

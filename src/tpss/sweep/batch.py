@@ -35,6 +35,9 @@ BATCH_S = 1.0
 
 MOST_IN_BATCH = 5_000
 
+KILLER = "the process that ran it ended, also with nothing beside it: it may need too much memory"
+"""What is said of a case that ends the process that runs it."""
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -67,9 +70,22 @@ def _open(plan: Plan) -> _Opened:
 def run_batch(plan: Plan, first: int, end: int) -> bytes:
     """Simulate the cases from `first` to `end` - 1; return their rows as a file of Parquet."""
     opened = _open(plan)
-    rows = [run_case(opened.design, case) | opened.made_by for case in range(first, end)]
+    return _file_of([run_case(opened.design, case) for case in range(first, end)], opened)
+
+
+def file_of_killer(plan: Plan, case: int) -> bytes:
+    """The row of a case that ends the process that runs it, as a file of Parquet."""
+    opened = _open(plan)
+    values = opened.design.values(case)
+    row = {"case": case, **parameter_columns(opened.design.parameters, values)}
+    row |= {"status": FAILED, "problem": KILLER, "timing.ended": dt.datetime.now(dt.UTC)}
+    return _file_of([row], opened)
+
+
+def _file_of(rows: list[dict[str, Any]], opened: _Opened) -> bytes:
     file = io.BytesIO()
-    pq.write_table(table_of(rows, opened.schema), file, compression="zstd")
+    made = [row | opened.made_by for row in rows]
+    pq.write_table(table_of(made, opened.schema), file, compression="zstd")
     return file.getvalue()
 
 

@@ -6,13 +6,21 @@ number of cases.
 
 import os
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tpss.sweep.batch import Plan, batch_size, run_batch, run_case, run_cases, warm_up
+from tpss.sweep.batch import (
+    Plan,
+    batch_size,
+    file_of_killer,
+    run_batch,
+    run_case,
+    run_cases,
+    warm_up,
+)
 from tpss.sweep.check import TRIAL_CASES, TRIAL_S, check, spread, time_per_case
 from tpss.sweep.design import Design, design_of
 from tpss.sweep.folder import (
@@ -170,12 +178,23 @@ def _results(
     if count == 1:
         yield from ((first, end, run_batch(plan, first, end)) for first, end in cut)
     else:
-        work = Work(partial(warm_up, plan), partial(_batch, plan), _name)
+        killer = partial(_rows_of_killer, plan)
+        work = Work(partial(warm_up, plan), partial(_batch, plan), _name, _halves, killer)
         yield from ((*batch, rows) for batch, rows in in_processes(work, cut, count))
 
 
 def _batch(plan: Plan, batch: tuple[int, int]) -> bytes:
     return run_batch(plan, *batch)
+
+
+def _halves(batch: tuple[int, int]) -> Sequence[tuple[int, int]]:
+    first, end = batch
+    middle = (first + end) // 2
+    return ((first, middle), (middle, end)) if middle > first else ()
+
+
+def _rows_of_killer(plan: Plan, batch: tuple[int, int]) -> bytes:
+    return file_of_killer(plan, batch[0])
 
 
 def _name(batch: tuple[int, int]) -> str:

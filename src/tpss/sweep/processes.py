@@ -21,7 +21,7 @@ READY_S = 0.05
 """How long each process sleeps once it has started, so that none takes the place of another. [s]"""
 
 MOST_LOSSES = 3
-"""How often processes may be lost without a finished batch in between."""
+"""How often a process may end before it is ready."""
 
 Batch = TypeVar("Batch")
 Rows = TypeVar("Rows")
@@ -37,6 +37,10 @@ class Work(Generic[Batch, Rows]):
     """Simulates a batch."""
     name: Callable[[Batch], str]
     """What a batch is called if it cannot be run; it is not sent."""
+    parts: Callable[[Batch], Sequence[Batch]]
+    """Halves of a batch; nothing of a single case.  It is not sent."""
+    rows_of_killer: Callable[[Batch], Rows]
+    """Rows of a single case that ends the process that runs it.  It is not sent."""
 
 
 def in_processes(
@@ -44,7 +48,8 @@ def in_processes(
 ) -> Iterator[tuple[Batch, Rows]]:
     """Batches of cases with their rows, as they are done.
 
-    A process that is killed loses its batch only, which another one runs.
+    Where a process is killed, the batches that were under way are run by themselves, one by one: one
+    that kills again is cut in halves, until the case is alone that does so, which is marked.
 
     Parameters
     ----------
@@ -57,27 +62,47 @@ def in_processes(
     Raises
     ------
     StudyError
-        A batch could not be run, or processes are lost again and again.
+        A batch could not be run, or processes end before they run any.
     """
-    lost: list[Batch] = []
-    losses = 0
+    suspects: list[Batch] = []
     while True:
-        with _pool(work.warm_up, count) as pool:
-            running: dict[Future[Rows], Batch] = {}
-            try:
-                for done in _as_done(pool, work, _first(lost, batches), count, running):
-                    losses = 0
-                    yield done
-                return
-            except BrokenProcessPool as error:
-                losses += 1
-                lost = list(running.values())
-                if losses == MOST_LOSSES:
-                    raise StudyError(
-                        "the processes that run the cases end again and again; run it with fewer "
-                        "--workers if memory is short, and call run_study or run_plan of a script of "
-                        'your own below if __name__ == "__main__":'
-                    ) from error
+        yield from _one_by_one(work, suspects)
+        running: dict[Future[Rows], Batch] = {}
+        try:
+            with _pool(work.warm_up, count) as pool:
+                yield from _as_done(pool, work, batches, count, running)
+            return
+        except BrokenProcessPool:
+            suspects = list(running.values())
+
+
+def _one_by_one(work: Work[Batch, Rows], suspects: list[Batch]) -> Iterator[tuple[Batch, Rows]]:
+    """Batches one of which may have killed a process, each with nothing beside it; all are taken out."""
+    unready = 0
+    while suspects:
+        is_ready = False
+        try:
+            with _pool(work.warm_up, 1) as pool:
+                pool.submit(time.sleep, 0.0).result()
+                is_ready, unready = True, 0
+                while suspects:
+                    rows = _result(pool.submit(work.run, suspects[0]), work, suspects[0])
+                    yield suspects.pop(0), rows
+        except BrokenProcessPool as error:
+            if is_ready:
+                killer = suspects.pop(0)
+                parts = work.parts(killer)
+                suspects[:0] = parts
+                if not parts:
+                    yield killer, work.rows_of_killer(killer)
+                continue
+            unready += 1
+            if unready == MOST_LOSSES:
+                raise StudyError(
+                    "the processes that run the cases end before they run any; run it with fewer "
+                    "--workers if memory is short, and call run_study or run_plan of a script of "
+                    'your own below if __name__ == "__main__":'
+                ) from error
 
 
 def trial(
@@ -111,11 +136,6 @@ def trial(
     return started - begun - READY_S, (done - started) * count / len(cases)
 
 
-def _first(lost: list[Batch], batches: Iterator[Batch]) -> Iterator[Batch]:
-    yield from lost
-    yield from batches
-
-
 def _as_done(
     pool: ProcessPoolExecutor,
     work: Work[Batch, Rows],
@@ -128,25 +148,42 @@ def _as_done(
     def submit() -> None:
         batch = next(batches, None)
         if batch is not None:
-            running[pool.submit(work.run, batch)] = batch
+            try:
+                running[pool.submit(work.run, batch)] = batch
+            except BrokenProcessPool:
+                running[Future()] = batch  # so that it is not lost
+                raise
 
     for _ in range(AHEAD * count):
         submit()
     while running:
         for future in wait(running, return_when=FIRST_COMPLETED).done:
             batch = running[future]
-            try:
-                rows = future.result()
-            except BrokenProcessPool:
-                raise
-            except Exception as error:
-                raise StudyError(
-                    f"{work.name(batch)} could not be run ({type(error).__name__}: {error}); "
-                    "the others are kept, and the same command continues from there"
-                ) from error
+            rows = _result(future, work, batch)
             del running[future]
             submit()
             yield batch, rows
+
+
+def _result(future: "Future[Rows]", work: Work[Batch, Rows], batch: Batch) -> Rows:
+    """Rows of a batch.
+
+    Raises
+    ------
+    StudyError
+        It could not be run.
+    BrokenProcessPool
+        A process was killed.
+    """
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        raise
+    except Exception as error:
+        raise StudyError(
+            f"{work.name(batch)} could not be run ({type(error).__name__}: {error}); "
+            "the others are kept, and the same command continues from there"
+        ) from error
 
 
 @contextmanager
