@@ -20,7 +20,7 @@ PLACE = ("name", "line", "position_km", "feeds")
 def rectifiers(draw: Draw, nominal_kv: float) -> Document:
     """A type of rectifiers, by one of its descriptions, of 1 to 1.2 times the nominal voltage."""
     unloaded_kv = nominal_kv * draw(numbers(1.0, 1.2))
-    rated_a = draw(numbers(500.0, 6_000.0))
+    rated_a = draw(numbers(1_500.0, 8_000.0))
     falls = draw(numbers(0.01, 0.15))
     kind: Document = {"rated_current_a": rated_a}
     description = draw(st.sampled_from(["line", "curve", "transformer"]))
@@ -181,7 +181,7 @@ def into_direct_current(draw: Draw, document: Document) -> None:
     supply = document["supply"]
     system = draw(st.sampled_from(list(NOMINAL_KV)))
     nominal_kv = NOMINAL_KV[system]
-    catenary = {"r_ohm_per_km": draw(numbers(0.002, 0.06)) * nominal_kv / 0.75}
+    catenary = {"r_ohm_per_km": draw(numbers(0.0015, 0.02)) * nominal_kv / 0.75}
     former = [
         *supply.pop("converter_stations", ()),
         *supply.pop("transformer_stations", ()),

@@ -99,7 +99,7 @@ def test_railways_of_direct_current_run_by_the_rules_or_say_why_not():
         outcomes[judge(document)] += 1
 
     look()
-    assert outcomes["finished"] > sum(outcomes.values()) / 3
+    assert outcomes["finished"] > sum(outcomes.values()) / 3, outcomes
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():
