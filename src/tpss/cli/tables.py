@@ -323,7 +323,10 @@ def print_violations(result: Result, console: Console) -> None:
 
 
 def print_train(result: Result, name: str, console: Console) -> None:
-    """Print a train's journey, one row per step."""
+    """Print a train's journey, one row per step, or that it was not on the line."""
+    if name not in result.dataset.train.to_numpy():
+        say(console, f"Note: {name} was not on the line during this run")
+        return
     steps = train_steps(result.dataset.sel(train=[name]))
     rows = named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
     columns = [*_STEP_PLACE, *_STEP_COLUMNS]
