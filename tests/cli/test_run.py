@@ -20,7 +20,7 @@ from lines import STAR, network, service
 from tpss import load_result
 from tpss.audit import verdict
 from tpss.cli.main import main
-from tpss.files import whole
+from tpss.files import whole, workplace
 
 from conftest import EXAMPLES
 
@@ -255,7 +255,7 @@ def test_a_result_that_no_disk_can_hold_is_printed_at_least(
 ):
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    with file_size_limit(whole.TRIAL_BYTES):
+    with file_size_limit(workplace.TRIAL_BYTES):
         said = tpss_command("run", HEADWAY, *SHORT, *options)
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out

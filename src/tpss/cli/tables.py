@@ -9,7 +9,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.columns import Column, named_rows, table_of_columns
-from tpss.cli.terminal import Console, parts_that_fit, say, width_of
+from tpss.cli.terminal import Console, print_in_parts, say, widest_text, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back, in_words
@@ -228,13 +228,16 @@ def print_table(
         if column.heading != "on"
     ]
 
-    def table_of(groups: Sequence[Sequence[Column]], more: str = "") -> Table:
+    def table_of(groups: Sequence[Sequence[Column]], more: str) -> Table:
         return table_of_columns(
-            title + more, first, [column for each in groups for column in each], rows
+            title + more,
+            first,
+            [column for each in groups for column in each],
+            rows,
+            widest_text(console),
         )
 
-    for k, part in enumerate(parts_that_fit(together, table_of, console)):
-        console.print(table_of(part, ", continued" if k else ""))
+    print_in_parts(together, table_of, console)
 
 
 def key_figures(result: Result) -> list[str]:
