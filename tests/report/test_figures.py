@@ -38,7 +38,7 @@ def test_a_journey_has_the_thesis_s_six_panels_above_one_axis(level):
     figure = journey({"level": level})
     labels = [panel.get_ylabel() for panel in figure.axes]
     assert labels == [
-        "inclination [‰]", "speed [km/h]", "$P_D$ [MW]", "$Q_D$ [MVAr]", "$U$ [kV]", "$-\\theta$ [°]",
+        "inclination [‰]", "speed [km/h]", "$P_D$ [MW]", "$Q_D$ [Mvar]", "$U$ [kV]", "$-\\theta$ [°]",
     ]  # fmt: skip
     assert figure.axes[-1].get_xlabel() == "position [km]"
     assert journey({"level": level}, against="time").axes[-1].get_xlabel() == "time [min]"

@@ -144,9 +144,9 @@ def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
 
 
 COLUMNS = (
-    ("verdict", ""), ("low U", "kV"), ("at", "km"), ("at", "min"), ("useful U", "kV"), ("in zone", ""),
-    ("peak load", "%"), ("15 min", "%"), ("of", ""), ("arrived", ""), ("late", ""), ("lost", "min"),
-    ("losses", "MWh"), ("tripped", ""),
+    ("verdict", ""), ("lowest\nvoltage", "kV"), ("at", "km"), ("at", "min"),
+    ("useful\nvoltage", "kV"), ("in zone", ""), ("peak load", "%"), ("15 min", "%"), ("of", ""),
+    ("arrived", ""), ("late", ""), ("lost", "min"), ("losses", "MWh"), ("tripped", ""),
 )  # fmt: skip
 """Headings and units of the columns, but for the first one; the last two where there are any."""
 

@@ -19,8 +19,8 @@ BASE = "base"
 """Names the scenario as it is, among its variants."""
 
 COLUMNS = (
-    "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %", "converters lose MWh",
-    "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh", "unbalance %",
+    "trip min", "energy MWh", "losses MWh", "lowest\nvoltage kV", "at km", "peak load %",
+    "converters lose MWh", "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh", "unbalance %",
 )  # fmt: skip
 """Those of which no run has a figure are left out."""
 

@@ -30,7 +30,7 @@ def speed_limit(result: Result, data: xr.Dataset, x: Floats) -> Curve:
     _, limits = build_profiles(scenario.lines_by_name, [seen])
     from_m, limit_m_s = limits.from_m[0], limits.value[0]
     along_m = data.route_position.to_numpy()
-    there = np.isfinite(along_m) & np.isfinite(x)
+    there = np.isfinite(along_m) & np.isfinite(x) & np.isfinite(data.speed.to_numpy())
     along_m, x = along_m[there], x[there]
     changes_m = from_m[(from_m > along_m[0]) & (from_m < along_m[-1])]
     places_m = np.concatenate([along_m[:1], changes_m, along_m[-1:]])

@@ -22,7 +22,7 @@ PRINTED = {
     "gradient [‰]": "inclination [‰]",
     "speed [km/h]": "speed [km/h]",
     "active power [MW]": "$P_D$ [MW]",
-    "reactive power [Mvar]": "$Q_D$ [MVAr]",
+    "reactive power [Mvar]": "$Q_D$ [Mvar]",
     "voltage [kV]": "$U$ [kV]",
     "minus angle [°]": "$-\\theta$ [°]",
 }
