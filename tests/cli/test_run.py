@@ -20,7 +20,7 @@ from lines import STAR, network, service
 from tpss import load_result
 from tpss.audit import verdict
 from tpss.cli.main import main
-from tpss.files import whole
+from tpss.files import whole, workplace
 
 from conftest import EXAMPLES
 
@@ -255,7 +255,7 @@ def test_a_result_that_no_disk_can_hold_is_printed_at_least(
 ):
     (tmp_path / "spare").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "spare"))
-    with file_size_limit(whole.TRIAL_BYTES):
+    with file_size_limit(workplace.TRIAL_BYTES):
         said = tpss_command("run", HEADWAY, *SHORT, *options)
     assert said.code == 2
     assert "Energy over 3.00 min" in said.out
@@ -276,11 +276,40 @@ def test_show_prints_a_row_for_every_step(tpss_command, capsys, monkeypatch):
     assert [float(row) for row in rows] == pytest.approx([0.2 * k for k in range(16)])
 
 
-def test_show_of_an_unknown_train_names_those_there_are(tpss_command, tmp_path):
-    said = tpss_command("run", HEADWAY, *SHORT, "--show", "westbound 1")
+@pytest.mark.parametrize("name", ["east 1", "eastbound", "eastbound 01", "eastbound 0"])
+def test_show_of_an_unknown_train_is_refused_before_anything_runs(tpss_command, tmp_path, name):
+    said = tpss_command("run", HEADWAY, *SHORT, "--show", name)
+    assert (said.code, said.out) == (2, "")
+    assert f"{HEADWAY}: --show = '{name}' there is no such train" in said.err
+    assert (
+        "-> did you mean eastbound 1? trains: eastbound 1, 2, ...; eastbound initial 1, 2, ..."
+        in said.err
+    )
+    assert files_in(tmp_path) == {}
+
+
+def test_show_proposes_the_train_of_the_number_that_was_written(tpss_command):
+    said = tpss_command("run", HEADWAY, *SHORT, "--show", "eastbond 3")
+    assert "did you mean eastbound 3?" in said.err
+
+
+def test_show_knows_lists_of_departures_and_trains_that_are_placed(tpss_command, tmp_path):
+    document = network(STAR, [service("up", "West", "Mine"), service("along", "West", "East")])
+    up, along = document["traffic"]
+    up["initial_trains"] = [{"line": "main", "position_km": 1.0, "speed_kmh": 0.0}]
+    along.pop("headway_min", None)
+    along["departures_min"] = [0.0, 5.0]
+    (tmp_path / "network.toml").write_text(tomli_w.dumps(document), encoding="utf-8")
+    said = tpss_command("run", "network.toml", "--show", "down 1")
     assert said.code == 2
-    assert "There is no train 'westbound 1'" in said.out + said.err
-    assert "eastbound 1" in said.out + said.err
+    assert "trains: up 1; up initial 1; along 1 to 2" in said.err
+
+
+def test_show_of_a_train_that_was_not_on_the_line_says_so_beside_the_result(tpss_command, tmp_path):
+    """Every 3 min a train departs, of which 3 min see the first one only."""
+    said = tpss_command("run", HEADWAY, *SHORT, "--show", "eastbound 7")
+    assert said.code == 0
+    assert "Note: eastbound 7 was not on the line during this run" in said.out
     assert load_result(tmp_path / "results" / "at-headway-3-001").status == "finished"
 
 

@@ -168,7 +168,8 @@ def test_gravity_feeds_where_trains_run_downhill():
     assert used_by_trains(result)["climb"] == pytest.approx(-0.4807, rel=1e-3)
     (panel,) = energy_flow(result).axes
     names = [text.get_text() for text in panel.figure.legends[0].get_texts()]
-    assert any(name.startswith("climb: 0.48") for name in names)
+    assert any(name.startswith("descent: 0.48") for name in names)
+    assert not any(name.startswith("climb") for name in names)
 
 
 def test_a_train_s_points_are_its_speed_and_force_below_the_machine_s_limit(hilly):

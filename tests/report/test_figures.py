@@ -11,7 +11,7 @@ from tpss.report.figures import (
 )
 from tpss.report.gradients import inclination
 
-from scenarios import run
+from scenarios import limits, run
 
 HILLS = {
     "line.gradients": [{"from_km": 0.0, "permille": 2.0}, {"from_km": 5.0, "permille": -1.0}],
@@ -38,7 +38,7 @@ def test_a_journey_has_the_thesis_s_six_panels_above_one_axis(level):
     figure = journey({"level": level})
     labels = [panel.get_ylabel() for panel in figure.axes]
     assert labels == [
-        "inclination [‰]", "speed [km/h]", "$P_D$ [MW]", "$Q_D$ [MVAr]", "$U$ [kV]", "$-\\theta$ [°]",
+        "inclination [‰]", "speed [km/h]", "$P_D$ [MW]", "$Q_D$ [Mvar]", "$U$ [kV]", "$-\\theta$ [°]",
     ]  # fmt: skip
     assert figure.axes[-1].get_xlabel() == "position [km]"
     assert journey({"level": level}, against="time").axes[-1].get_xlabel() == "time [min]"
@@ -95,6 +95,48 @@ def test_the_voltage_is_drawn_over_the_way_and_feeding_points_are_marked(level):
     data = level.dataset.sel(train="eastbound 1")
     np.testing.assert_array_equal(x, data.position / 1e3)
     np.testing.assert_array_equal(y, data.pantograph_voltage / 1e3)
+
+
+def test_limits_and_stations_stand_beside_the_voltage_if_asked(level):
+    (panel,) = voltage_along_line({"level": level}, limits=True).axes
+    words = {text.get_text() for text in panel.texts}
+    assert words >= {"$U_{min2}$ 11", "$U_{min1}$ 12", "$U_{n}$ 15", "West", "East"}
+    low, high = panel.get_ylim()
+    assert low < 11.0 < 18.0 < high
+
+
+def test_a_journey_is_explained_in_words_with_its_stations(level):
+    panels = journey({"level": level}, explained=True).axes
+    labels = [" ".join(panel.get_ylabel().split()) for panel in panels]
+    assert labels == [
+        "gradient [‰]", "speed; limit (dashed) [km/h]", "active power $P_D$ [MW]",
+        "reactive power $Q_D$ [Mvar]", "voltage $U$ [kV]", "minus angle $-\\theta$ [°]",
+    ]  # fmt: skip
+    assert [text.get_text() for text in panels[0].texts] == ["West", "Middle", "East"]
+    by_time = journey({"level": level}, against="time", explained=True).axes
+    assert [text.get_text() for panel in by_time for text in panel.texts] == []
+
+
+UP_THEN_DOWN = limits((0.0, 60.0), (5.0, 90.0), (12.0, 40.0), (15.0, 200.0))
+
+
+@pytest.mark.parametrize(
+    ("changes", "places", "speeds"),
+    [
+        (UP_THEN_DOWN, [0, 5, 12, 15, 20], [60, 90, 40, 135, 135]),
+        ({**UP_THEN_DOWN, "trains.freight.length_m": 500.0},
+         [0, 5.5, 12, 15.5, 20], [60, 90, 40, 135, 135]),
+        ({**UP_THEN_DOWN, "traffic.0.from": "East", "traffic.0.to": "West"},
+         [20, 15, 12, 5, 0], [135, 40, 90, 60, 60]),
+    ],
+    ids=["up", "with its length", "down"],
+)  # fmt: skip
+def test_the_limit_is_drawn_where_the_train_meets_it(changes, places, speeds):
+    """It runs at most at 135 km/h, and its tail has to pass before a limit rises."""
+    speed = journey({"": run(changes)}, explained=True).axes[1]
+    x, y = drawn(speed, -1)
+    np.testing.assert_allclose(x, places, atol=1e-6)
+    np.testing.assert_allclose(y, speeds)
 
 
 def test_stations_have_a_colour_each_and_runs_a_line_style(level, hilly):

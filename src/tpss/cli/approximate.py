@@ -2,9 +2,9 @@
 
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import pandas as pd
 from rich.markup import escape
@@ -12,7 +12,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
-from tpss.cli.terminal import Console, progress_bar, say
+from tpss.cli.terminal import Console, print_in_parts, progress_bar, say
 from tpss.errors import ApproximatorError, Finding, ScenarioError
 from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import reason
@@ -185,15 +185,14 @@ def _print_prediction(model: "Approximator", row: Any) -> None:
         chance = f"{row[COLLAPSE]:.3f}"
         print(f"The line cannot carry this load: probability of collapse {chance}")
         return
-    table = _table("", "figure", "90 % interval", "unit")
+    rows = []
     for name in names:
         low, high = (_number(row[f"{name}.{end}"]) for end in ("low", "high"))
-        cells = (_words(name), _number(row[name]), f"{low} to {high}", units.label(name))
-        table.add_row(*map(escape, cells))
+        rows.append((_words(name), _number(row[name]), f"{low} to {high}", units.label(name)))
     if COLLAPSE in row:
         ends = (f"{row[f'{COLLAPSE}.{end}']:.3f}" for end in ("low", "high"))
-        table.add_row("probability of collapse", f"{row[COLLAPSE]:.3f}", " to ".join(ends), "")
-    Console().print(table)
+        rows.append(("probability of collapse", f"{row[COLLAPSE]:.3f}", " to ".join(ends), ""))
+    _print_table(("", "figure", "90 % interval", "unit"), rows, Console())
 
 
 def _print_predictions(model: "Approximator", predictions: pd.DataFrame) -> None:
@@ -201,14 +200,14 @@ def _print_predictions(model: "Approximator", predictions: pd.DataFrame) -> None
     from tpss.approximator.approximator import COLLAPSE
 
     names = [output.name for output in model.file.outputs if "station." not in output.name]
-    table = _table("row", *(_heading(name) for name in names))
-    if COLLAPSE in predictions:
-        table.add_column("collapse", justify="right")
+    headings = ["row", *(_heading(name) for name in names)]
+    headings += ["collapse"] if COLLAPSE in predictions else []
+    rows = []
     for number, (_, row) in enumerate(predictions.head(LINES_SHOWN).iterrows(), start=1):
         cells = [_with_interval(row, name) for name in names]
         chance = [f"{row[COLLAPSE]:.3f}"] if COLLAPSE in predictions else []
-        table.add_row(str(number), *cells, *chance)
-    Console().print(table)
+        rows.append((str(number), *cells, *chance))
+    _print_table(headings, rows, Console())
     if len(predictions) > LINES_SHOWN:
         print(
             f"{len(predictions) - LINES_SHOWN:,} more rows; --out writes all of them into a file."
@@ -255,15 +254,14 @@ def _print_model(model: "Approximator", console: Console) -> None:
     description += _not_known(model)
     for line in description:
         console.print(line, highlight=False, markup=False)
-    table = _table("input", "trained at", "unit", "may be given as")
+    headings = ("input", "trained at", "unit", "may be given as")
+    rows = []
     for each in inputs.varying:
         others = ", ".join(other.name for other in inputs.multiples if other.of == each.name)
-        table.add_row(*map(escape, (each.name, each.range, units.label(each.name), others)))
+        rows.append((each.name, each.range, units.label(each.name), others))
     for name, value in inputs.fixed.items():
-        table.add_row(
-            *map(escape, (name, f"{shown(value)} only", units.label(name), "or left out"))
-        )
-    console.print(table)
+        rows.append((name, f"{shown(value)} only", units.label(name), "or left out"))
+    _print_table(headings, rows, console)
     _print_scores(model.file.scores, model.file.collapse_score, console)
 
 
@@ -293,12 +291,13 @@ def _not_known(model: "Approximator") -> list[str]:
 def _print_scores(
     scores: Iterable["Score"], collapse: "CollapseScore | None", console: Console
 ) -> None:
-    table = _table("in cases held out", "median error", "90th percentile", "in interval", "unit")
+    headings = ("in cases held out", "median error", "90th percentile", "in interval", "unit")
+    rows = []
     for score in scores:
         unit = score.unit or units.label(score.name)
         errors = (_number(score.median), _number(score.ninetieth))
-        table.add_row(*map(escape, (_words(score.name), *errors, f"{score.coverage:.1%}", unit)))
-    console.print(table)
+        rows.append((_words(score.name), *errors, f"{score.coverage:.1%}", unit))
+    _print_table(headings, rows, console)
     if collapse is not None:
         console.print(
             f"Whether the line collapses is predicted correctly in {collapse.accuracy:.1%} of cases; "
@@ -307,12 +306,19 @@ def _print_scores(
         )
 
 
-def _table(first: str, *others: str) -> Table:
-    table = Table(box=None, pad_edge=False)
-    table.add_column(first, overflow="fold")
-    for heading in others:
-        table.add_column(escape(heading), justify="left" if heading == "unit" else "right")
-    return table
+def _print_table(headings: Sequence[str], rows: Sequence[Sequence[str]], console: Console) -> None:
+    """Print a table, in a narrow terminal in parts, of which each begins with the first column."""
+
+    def table_of(shown: Sequence[int], _: str) -> Table:
+        table = Table(box=None, pad_edge=False)
+        for k in (0, *shown):
+            side: Literal["left", "right"] = "left" if k == 0 or headings[k] == "unit" else "right"
+            table.add_column(escape(headings[k]), justify=side, overflow="fold")
+        for row in rows:
+            table.add_row(*(escape(row[k]) for k in (0, *shown)))
+        return table
+
+    print_in_parts(range(1, len(headings)), table_of, console)
 
 
 def _words(name: str) -> str:
@@ -320,7 +326,7 @@ def _words(name: str) -> str:
 
 
 def _heading(name: str) -> str:
-    return f"{_words(name)} [{units.label(name) or 1}]"
+    return f"{_words(name)}\n[{units.label(name) or 1}]"
 
 
 def _number(value: float) -> str:

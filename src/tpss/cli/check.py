@@ -70,6 +70,8 @@ def check_scenario(file: Path, assignments: list[str]) -> None:
     title = f"[bold]{scenario.name}[/bold]  {escape(scenario.description)}\n"
     console.print(title, highlight=False)
     rows = Table.grid(padding=(0, 2))
+    rows.add_column(no_wrap=True)
+    rows.add_column(overflow="fold")
     for heading, text in summary(scenario):
         rows.add_row(f"[dim]{heading}[/dim]", escape(text))
     console.print(rows)

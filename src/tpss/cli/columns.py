@@ -34,14 +34,16 @@ def table_of_columns(
     first: str,
     columns: Sequence[Column],
     rows: Sequence[tuple[str, Mapping[str, Any]]],
+    widest_name: int | None = None,
 ) -> Table:
     """Table with a name in the first column and numbers, with their units, in the others.
 
+    Names that are longer than `widest_name` characters are broken.
     Columns are there where the rows have them, as that with the names of lines.
     """
     columns = [column for column in columns if all(column.key in values for _, values in rows)]
     table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left", padding=0)
-    table.add_column(first, no_wrap=True)
+    table.add_column(first, overflow="fold", max_width=widest_name)
     for column in columns:
         heading = f"{column.heading}\n[dim]{column.unit}[/dim]"
         table.add_column(heading, justify="right", no_wrap=True)

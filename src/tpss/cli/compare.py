@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.plot import figure_bytes
-from tpss.cli.terminal import Console, parts_that_fit, say
+from tpss.cli.terminal import Console, print_in_parts, say, widest_text
 from tpss.errors import ResultError
 from tpss.files.several import check_files, save_files
 from tpss.results.contents import REPORT, SUMMARY
@@ -172,10 +172,10 @@ def _print_table(
 ) -> None:
     rows: list[Mapping[str, Any]] = frame.to_dict("records")
 
-    def table_of(shown: Sequence[Sequence[Heading]], more: str = "") -> Table:
+    def table_of(shown: Sequence[Sequence[Heading]], more: str) -> Table:
         columns = [column for group in shown for column in group]
         table = Table(title=title + more, box=box.SIMPLE_HEAD, title_justify="left", padding=0)
-        table.add_column("series", no_wrap=True)
+        table.add_column("series", overflow="fold", max_width=widest_text(console))
         for column in columns:
             heading = f"{column.words}\n[dim]{column.below}[/dim]"
             table.add_column(heading, justify="right", no_wrap=True)
@@ -184,8 +184,7 @@ def _print_table(
             table.add_row(escape(row["series"]), *cells)
         return table
 
-    for k, part in enumerate(parts_that_fit(groups, table_of, console)):
-        console.print(table_of(part, ", continued" if k else ""))
+    print_in_parts(groups, table_of, console)
 
 
 def _cell(value: Any, digits: int) -> str:

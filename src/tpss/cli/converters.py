@@ -1,20 +1,16 @@
 """The command ``tpss converters``: switching converters by loading against all on."""
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
-from tpss.cli.columns import Column, named_rows, table_of_columns
+from tpss.cli.columns import Column, named_rows
 from tpss.cli.run import DONE, PROGRESS, SEVERITY, exit_code
 from tpss.cli.table_and_picture import demand_room, write_picture, write_table
+from tpss.cli.tables import print_table
 from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from tpss.converter_control.compare import Comparison
     from tpss.run.run import Progress
 
@@ -68,7 +64,8 @@ def _progress(state: "Progress") -> dict[str, Any]:
 
 def print_comparison(found: "Comparison", console: Console) -> None:
     """Print both tables, and what all stations save."""
-    console.print(_table("Losses of converter stations", "station", _STATIONS, found.table))
+    rows = named_rows(found.table, "station")
+    print_table("Losses of converter stations", "station", _STATIONS, rows, console)
     table, origins = found.table, found.by_loading.summary["converter_losses"]["origins"]
     saved, before = table.saved_mwh.sum(), table.all_on_mwh.sum()
     share = f" ({100.0 * saved / before:.1f} %)" if before > 0.0 else ""
@@ -78,7 +75,7 @@ def print_comparison(found: "Comparison", console: Console) -> None:
     say(console, f"From the 50 Hz grid: {found.saved_at_the_grid_mwh:.3f} MWh a day less")
     if len(found.break_even):
         title = "One converter less loses less"
-        console.print(_table(title, "type", _BREAK_EVEN, found.break_even))
+        print_table(title, "type", _BREAK_EVEN, named_rows(found.break_even, "type"), console)
 
 
 _STATIONS = (
@@ -96,7 +93,3 @@ _BREAK_EVEN = (
     Column("loading", "load of all", "%", 1, 100.0),
     Column("loading_of_one_less", "of one less", "%", 1, 100.0),
 )
-
-
-def _table(title: str, first: str, columns: Sequence[Column], frame: "pd.DataFrame") -> Table:
-    return table_of_columns(title, first, columns, named_rows(frame, first))

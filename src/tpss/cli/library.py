@@ -1,6 +1,8 @@
 """The command ``tpss library``: the data that ship with TPSS, with units and sources."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss import library, units
-from tpss.cli.terminal import Console, say
+from tpss.cli.terminal import Console, print_in_parts, say, width_of
 from tpss.errors import LibraryError, suggest
 
 if TYPE_CHECKING:
@@ -211,13 +213,29 @@ def _known_kind(kind: str) -> str:
 def _print_entries(kind: str, console: Console) -> None:
     how, entries = KINDS[kind], library.entries(kind)
     console.print(f"\n[bold]{kind}[/bold]  {how.title}", highlight=False)
-    table = _table("name", *(_heading(key) for key in how.shown))
+    is_wide = width_of(_values(entries, how.shown)) > console.width
+    print_in_parts(how.shown, partial(_values, entries, broken=is_wide), console)
     sources = Table.grid(padding=(0, 2))
+    for _ in ("name", "source"):
+        sources.add_column(overflow="fold")
     for name, entry in entries.items():
-        table.add_row(escape(name), *(_value(entry.get(key)) for key in how.shown))
         sources.add_row(f"  {escape(name)}:", escape(_source(entry)))
-    console.print(table)
     console.print(sources)
+
+
+def _values(
+    entries: Mapping[str, Mapping[str, Any]], keys: Sequence[str], _: str = "", broken: bool = False
+) -> Table:
+    """Some values of entries; names and headings may be broken into their words."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    end = "\n" if broken else " "
+    table.add_column("name", no_wrap=True)
+    for key in keys:
+        heading = f"{units.words(key).replace(' ', end)}\n[dim]{units.label(key)}[/dim]"
+        table.add_column(heading, no_wrap=True)
+    for name, entry in entries.items():
+        table.add_row(escape(name.replace(" ", end)), *(_value(entry.get(key)) for key in keys))
+    return table
 
 
 def _print_entry(kind: str, name: str, console: Console) -> None:
@@ -247,23 +265,15 @@ def _entry_table(kind: str, entry: dict[str, Any]) -> Table:
     """All keys of an entry's part, those that it leaves at their default too."""
     how = KINDS[kind]
     part: type[Part] = getattr(import_module(how.module), how.part)
-    table = _table("key", "value", "unit", "")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for heading in ("key", "value", "unit", ""):
+        is_text = heading in ("value", "")
+        table.add_column(heading, no_wrap=not is_text, overflow="fold")
     for key, field in part.model_fields.items():
         if key != how.key:
             value = _value(entry[key]) if key in entry else f"[dim]{_value(field.default)}[/dim]"
             table.add_row(key, value, units.label(key), escape(field.description or ""))
     return table
-
-
-def _table(*headings: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for heading in headings:
-        table.add_column(heading)
-    return table
-
-
-def _heading(key: str) -> str:
-    return f"{units.words(key)}\n[dim]{units.label(key)}[/dim]"
 
 
 def _value(value: Any) -> str:

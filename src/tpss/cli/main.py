@@ -448,9 +448,11 @@ def schema(
 
 def main() -> None:
     """Run the command line; faults of the input are printed, never raised."""
+    from tpss.cli.streams import say_everything
     from tpss.errors import TpssError
     from tpss.printable import printable
 
+    say_everything()
     # Most objects of a short-lived process are modules: collecting garbage among them, repeatedly
     # while they load and again at the end, takes a quarter of the time of a run.
     gc.disable()

@@ -5,13 +5,20 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, DONE, INTERRUPTED, NO_SOLUTION
-from tpss.cli.terminal import Console, announce_compilation, parts_that_fit, progress_bar, say
+from tpss.cli.terminal import (
+    Console,
+    announce_compilation,
+    parts_that_fit,
+    progress_bar,
+    say,
+    widest_text,
+)
 from tpss.errors import ResultError
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
@@ -137,9 +144,9 @@ def _write(content: bytes, name: str, out: Path | None, force: bool) -> Path:
 
 
 COLUMNS = (
-    ("verdict", ""), ("low U", "kV"), ("at", "km"), ("at", "min"), ("useful U", "kV"), ("in zone", ""),
-    ("peak load", "%"), ("15 min", "%"), ("of", ""), ("arrived", ""), ("late", ""), ("lost", "min"),
-    ("losses", "MWh"), ("tripped", ""),
+    ("verdict", ""), ("lowest\nvoltage", "kV"), ("at", "km"), ("at", "min"),
+    ("useful\nvoltage", "kV"), ("in zone", ""), ("peak load", "%"), ("15 min", "%"), ("of", ""),
+    ("arrived", ""), ("late", ""), ("lost", "min"), ("losses", "MWh"), ("tripped", ""),
 )  # fmt: skip
 """Headings and units of the columns, but for the first one; the last two where there are any."""
 
@@ -155,11 +162,15 @@ def print_table(found: "Comparison", console: Console) -> None:
 
     def table_of(chosen: Sequence[int]) -> Table:
         table = Table(box=None, pad_edge=False, padding=(0, 1))
-        table.add_column("outage\n", no_wrap=True)
+        widest = widest_text(console)
+        table.add_column("outage\n", overflow="fold", max_width=widest)
         for k in chosen:
             heading, unit = COLUMNS[k]
-            side: Literal["left", "right"] = "left" if heading in TEXTS else "right"
-            table.add_column(f"{heading}\n[dim]{unit}[/dim]", justify=side, no_wrap=True)
+            with_unit = f"{heading}\n[dim]{unit}[/dim]"
+            if heading in TEXTS:
+                table.add_column(with_unit, overflow="fold", max_width=widest)
+            else:
+                table.add_column(with_unit, justify="right", no_wrap=True)
         for name, cells in rows:
             table.add_row(escape(name), *(cells[k] for k in chosen))
         return table

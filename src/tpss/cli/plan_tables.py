@@ -1,12 +1,13 @@
 """What ``tpss plan`` prints of an answer: sentences, decisions, first decisions, values."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 from rich.table import Table
 
-from tpss.cli.terminal import Console, say
+from tpss.cli.terminal import Console, print_in_parts, say, width_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from tpss.planning.answer import Answer
     from tpss.planning.finer import Compared
     from tpss.planning.turning import Turn
+
+MOST_WIDE = 20
+"""Characters of a text in a line of a table that is too wide for the terminal."""
 
 MOST_FIRSTS = 6
 """First decisions of an area that are printed."""
@@ -96,14 +100,29 @@ def print_firsts(answer: "Answer", console: Console) -> None:
 def print_frame(
     frame: "pd.DataFrame", title: str, columns: dict[str, str], console: Console
 ) -> None:
-    """Print some columns of a table with their headings."""
-    table = Table(title=escape(title), title_justify="left", box=None, pad_edge=False)
-    for name, heading in columns.items():
-        numeric = frame[name].map(lambda value: isinstance(value, int | float)).all()
-        table.add_column(escape(heading), justify="right" if numeric else "left")
-    for row in frame[list(columns)].itertuples(index=False):
-        table.add_row(*(escape(_cell(value)) for value in row))
-    console.print(table)
+    """Print some columns of a table with their headings; in a narrow terminal, texts are broken."""
+    first, *others = columns
+    numeric = {
+        name
+        for name in columns
+        if frame[name].map(lambda value: isinstance(value, int | float)).all()
+    }
+
+    def table_of(shown: Sequence[str], more: str, most_wide: int | None = None) -> Table:
+        table = Table(title=escape(title + more), title_justify="left", box=None, pad_edge=False)
+        for name in (first, *shown):
+            if name in numeric:
+                table.add_column(escape(columns[name]), justify="right", no_wrap=True)
+            else:
+                table.add_column(escape(columns[name]), overflow="fold", max_width=most_wide)
+        for row in frame[[first, *shown]].itertuples(index=False):
+            table.add_row(*(escape(_cell(value)) for value in row))
+        return table
+
+    if width_of(table_of(others, "")) <= console.width:
+        console.print(table_of(others, ""))
+    else:
+        print_in_parts(others, partial(table_of, most_wide=MOST_WIDE), console)
 
 
 def _cell(value: Any) -> str:

@@ -38,6 +38,7 @@ def run_scenario(
     outage: str | None = None,
 ) -> int:
     """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
+    from tpss.cli.train_names import demand_train
     from tpss.cli.variants import chosen, folders, print_side_by_side, row_of
     from tpss.results import store
     from tpss.scenario import load_scenario
@@ -47,6 +48,8 @@ def run_scenario(
     scenarios = chosen(load_scenario(file, changes), variants)
     if outage is not None:
         scenarios = {name: each.with_outage(outage) for name, each in scenarios.items()}
+    if show is not None:
+        demand_train(show, list(scenarios.values()))
     targets = folders(out, scenarios)
     for name, scenario in scenarios.items():
         store.check_target(scenario, targets[name], force)
@@ -168,11 +171,11 @@ def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
     """Print the key figures; return the exit code."""
     from tpss.cli import tables
 
-    result, known = ended.result, ended.result.dataset.train.to_numpy().tolist()
+    result = ended.result
     if not quiet or ended.folder is None:
         console = Console()
         tables.print_result(result, console)
-        if show is not None and show in known:
+        if show is not None:
             tables.print_train(result, show, console)
         if not ended.fault:
             say(console, f"Saved in {ended.folder}")
@@ -185,9 +188,6 @@ def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
         if not quiet:
             print(f"Wrote {file}")
     if ended.fault:
-        return BAD_INPUT
-    if show is not None and show not in known:
-        print(f"There is no train {show!r}; trains: {', '.join(known)}", file=sys.stderr)
         return BAD_INPUT
     code = exit_code(result)
     return INTERRUPTED if code == DONE and ended.interrupted else code

@@ -1,6 +1,7 @@
 """The command ``tpss spare-time``: energy that trains save against the minutes that they use."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.table_and_picture import demand_room, write_picture, write_table
-from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, print_in_parts, progress_bar, say
 from tpss.errors import ResultError
 
 if TYPE_CHECKING:
@@ -60,17 +61,23 @@ def _progress(done: int, services: int) -> dict[str, Any]:
     return {"completed": done, "total": services}
 
 
+def _savings(rows: "pd.DataFrame", title: str, manners: Sequence[str], more: str) -> Table:
+    """What a service saves by some manners of using its time, a row for each share of time."""
+    table = Table(title=title + more, title_justify="left", box=None, pad_edge=False)
+    for heading in ("to spare\n%", "used\nmin", *(f"{manner}\n%" for manner in manners)):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for percent, own in rows.groupby("spare_percent", sort=False):
+        saved = own.set_index("manner").saved_percent
+        texts = [f"{-saved[manner]:+.1f}" for manner in manners]
+        table.add_row(f"{percent:g}", f"{own.spare_min.max():.1f}", *texts)
+    return table
+
+
 def _print(table: "pd.DataFrame", console: Console) -> None:
-    manners = list(dict.fromkeys(table.manner))
     for service, rows in table.groupby("service", sort=False):
         alike = int(rows.alike.iloc[0])
         more = f" and {alike - 1} more" if alike > 1 else ""
         title = escape(f"{service}{more} ({rows.train.iloc[0]})")
-        named = Table(title=title, title_justify="left", box=None, pad_edge=False)
-        for heading in ("to spare\n%", "used\nmin", *(f"{manner}\n%" for manner in manners)):
-            named.add_column(heading, justify="right")
-        for percent, own in rows.groupby("spare_percent", sort=False):
-            saved = [f"{-each:+.1f}" for each in own.saved_percent]
-            named.add_row(f"{percent:g}", f"{own.spare_min.max():.1f}", *saved)
-        console.print(named)
+        manners = list(dict.fromkeys(rows.manner))
+        print_in_parts(manners, partial(_savings, rows, title), console)
     say(console, "Energy of a lone train at nominal voltage, against one as fast as it can be.")

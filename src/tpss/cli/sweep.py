@@ -1,6 +1,8 @@
 """The command ``tpss sweep``: run a study, or print a summary of its folder."""
 
 import sys
+from collections.abc import Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED
-from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, announce_compilation, print_in_parts, progress_bar, say
 from tpss.errors import StudyError
 
 if TYPE_CHECKING:
@@ -132,18 +134,24 @@ def _print_rate(ended: "Advance", console: Console) -> None:
         say(console, f"{ended.before:,} cases were finished before.")
 
 
+def _spread(summary: "Summary", columns: Sequence[str], more: str) -> Table:
+    """Spread of key figures over the cases, some columns of it."""
+    title = f"Cases that finished{more}"
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table.add_column("", overflow="fold")
+    for column in columns:
+        table.add_column(column, justify="right", no_wrap=True)
+    for label, row in summary.spread[list(columns)].iterrows():
+        table.add_row(escape(str(label)), *(f"{value:.4g}" for value in row))
+    return table
+
+
 def _print_summary(summary: "Summary", folder: Path, step_check: str) -> None:
     console = Console()
     states = ", ".join(f"{count:,} {status}" for status, count in summary.status.items())
     say(console, f"{summary.done:,} of {summary.cases:,} cases: {states}")
-    table = Table(title="Cases that finished", title_justify="left", box=None, pad_edge=False)
-    table.add_column("")
-    for column in summary.spread.columns:
-        table.add_column(column, justify="right")
-    for label, row in summary.spread.iterrows():
-        table.add_row(escape(str(label)), *(f"{value:.4g}" for value in row))
     if summary.status.get("finished"):
-        console.print(table)
+        print_in_parts(list(summary.spread.columns), partial(_spread, summary), console)
     if step_check:
         say(console, step_check)
     say(console, f"Computing time of all cases: {_duration(summary.work_s)}")

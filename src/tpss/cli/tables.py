@@ -9,7 +9,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.columns import Column, named_rows, table_of_columns
-from tpss.cli.terminal import Console, parts_that_fit, say, width_of
+from tpss.cli.terminal import Console, print_in_parts, say, widest_text, width_of
 from tpss.results.converter_losses import in_words as losses_in_words
 from tpss.results.notes import notes
 from tpss.results.regeneration import fed_back, in_words
@@ -67,9 +67,9 @@ _TRAIN_COLUMNS = (
     Column("arrival_min", "arrives", "min", 2),
     Column("trip_min", "trip", "min", 2),
     Column("distance_km", "distance", "km", 1),
-    Column("mean_speed_kmh", "mean v", "km/h", 1),
+    Column("mean_speed_kmh", "mean\nspeed", "km/h", 1),
     Column("energy_mwh", "energy", "MWh", 3),
-    Column("lowest_voltage_kv", "low U", "kV", 2),
+    Column("lowest_voltage_kv", "lowest\nvoltage", "kV", 2),
     Column("lowest_voltage_line", "on", "", 0),
     Column("lowest_voltage_km", "at", "km", 1),
 )
@@ -79,7 +79,7 @@ _STATION_COLUMNS = (
     Column("position_km", "at", "km", 1),
     Column("energy_mwh", "energy", "MWh", 3),
     Column(REACTIVE, "reactive", "Mvarh", 3),
-    Column("peak_power_mw", "peak P", "MW", 2),
+    Column("peak_power_mw", "peak\npower", "MW", 2),
     Column("mean_loading", "mean load", "%", 1, 100.0),
     Column("peak_loading", "peak load", "%", 1, 100.0),
     Column("mean_converters", "converters", "mean", 1),
@@ -104,8 +104,8 @@ _LOSS_COLUMNS = (
     Column("losses_mwh", "losses", "MWh", 3),
     Column("idle_mwh", "idle", "MWh", 3),
     Column("by_load_mwh", "by load", "MWh", 3),
-    Column("auxiliaries_mwh", "auxil.", "MWh", 3),
-    Column("mean_efficiency", "mean eff.", "%", 1, 100.0),
+    Column("auxiliaries_mwh", "auxiliaries", "MWh", 3),
+    Column("mean_efficiency", "mean\nefficiency", "%", 1, 100.0),
     Column("starts", "starts", "", 0),
     Column("peak_from_grid_mw", "peak", "MW", 2),
 )
@@ -138,7 +138,7 @@ _BUSBAR_COLUMNS = (
     Column("peak_r_a", "peak R", "A", 1),
     Column("peak_s_a", "peak S", "A", 1),
     Column("peak_t_a", "peak T", "A", 1),
-    Column("peak_percent", "peak U2/U1", "%", 2),
+    Column("peak_percent", "peak\nunbalance", "%", 2),
     Column("mean_10_min_percent", "10 min", "%", 2),
     Column("limit_percent", "limit", "%", 2),
 )
@@ -147,8 +147,8 @@ _NEUTRAL_COLUMNS = (
     Column("phases_before", "before", "", 0),
     Column("phases_behind", "behind", "", 0),
     Column("angle_deg", "angle", "°", 0),
-    Column("mean_kv", "mean U", "kV", 2),
-    Column("highest_kv", "highest U", "kV", 2),
+    Column("mean_kv", "mean\nvoltage", "kV", 2),
+    Column("highest_kv", "highest\nvoltage", "kV", 2),
 )
 
 _STEP_PLACE = [Column("line", "on", "", 0), Column("track", "track", "", 0)]
@@ -228,13 +228,16 @@ def print_table(
         if column.heading != "on"
     ]
 
-    def table_of(groups: Sequence[Sequence[Column]], more: str = "") -> Table:
+    def table_of(groups: Sequence[Sequence[Column]], more: str) -> Table:
         return table_of_columns(
-            title + more, first, [column for each in groups for column in each], rows
+            title + more,
+            first,
+            [column for each in groups for column in each],
+            rows,
+            widest_text(console),
         )
 
-    for k, part in enumerate(parts_that_fit(together, table_of, console)):
-        console.print(table_of(part, ", continued" if k else ""))
+    print_in_parts(together, table_of, console)
 
 
 def key_figures(result: Result) -> list[str]:
@@ -323,7 +326,10 @@ def print_violations(result: Result, console: Console) -> None:
 
 
 def print_train(result: Result, name: str, console: Console) -> None:
-    """Print a train's journey, one row per step."""
+    """Print a train's journey, one row per step, or that it was not on the line."""
+    if name not in result.dataset.train.to_numpy():
+        say(console, f"Note: {name} was not on the line during this run")
+        return
     steps = train_steps(result.dataset.sel(train=[name]))
     rows = named_rows(steps.assign(time=steps.time_min.map("{:.2f}".format)), "time")
     columns = [*_STEP_PLACE, *_STEP_COLUMNS]

@@ -74,6 +74,21 @@ def parts_that_fit(
     return parts
 
 
+def print_in_parts(
+    columns: Sequence[Column],
+    table_of: Callable[[Sequence[Column], str], Table],
+    console: Console,
+) -> None:
+    """Print a table, in a narrow terminal in parts: `table_of` is handed what its title says more."""
+    for k, part in enumerate(parts_that_fit(columns, lambda some: table_of(some, ""), console)):
+        console.print(table_of(part, ", continued" if k else ""))
+
+
+def widest_text(console: Console) -> int:
+    """Characters of a name or another text of a table in a line, so that numbers have room beside it."""
+    return console.width // 2 - 4
+
+
 def width_of(table: Table) -> int:
     """Width of a table that nothing limits."""
     endless = Console(width=10_000)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from tpss.cli.terminal import Console, parts_that_fit
+from tpss.cli.terminal import Console, print_in_parts, widest_text
 from tpss.scenario import Scenario
 from tpss.scenario.variants import ALL
 from tpss.units import on_line
@@ -19,8 +19,8 @@ BASE = "base"
 """Names the scenario as it is, among its variants."""
 
 COLUMNS = (
-    "trip min", "energy MWh", "losses MWh", "low U kV", "at km", "peak load %", "converters lose MWh",
-    "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh", "unbalance %",
+    "trip min", "energy MWh", "losses MWh", "lowest\nvoltage kV", "at km", "peak load %",
+    "converters lose MWh", "from grid MWh", "to grid MWh", "braked MWh", "fed back MWh", "unbalance %",
 )  # fmt: skip
 """Those of which no run has a figure are left out."""
 
@@ -66,9 +66,9 @@ def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
         k for k in range(len(COLUMNS)) if any(row.figures[k] is not None for row in rows.values())
     ]
 
-    def table_of(numbers: Sequence[int], more: str = "") -> Table:
+    def table_of(numbers: Sequence[int], more: str) -> Table:
         table = Table(title=f"Variants{more}", title_justify="left", box=None, pad_edge=False)
-        table.add_column("variant", no_wrap=True)
+        table.add_column("variant", overflow="fold", max_width=widest_text(console))
         table.add_column("ended", no_wrap=True)
         for k in numbers:
             table.add_column(COLUMNS[k], justify="right")
@@ -77,8 +77,7 @@ def print_side_by_side(rows: dict[str, Row], console: Console) -> None:
             table.add_row(name, row.ended, *cells)
         return table
 
-    for k, part in enumerate(parts_that_fit(shown, table_of, console)):
-        console.print(table_of(part, ", continued" if k else ""))
+    print_in_parts(shown, table_of, console)
 
 
 def row_of(result: "Result") -> Row:

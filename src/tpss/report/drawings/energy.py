@@ -35,6 +35,13 @@ USES = {
 """Colours of the uses by trains; with those of stations and losses, the palette of Okabe and Ito."""
 
 
+GIVEN = {
+    "climb": "descent",
+    "kinetic energy": "kinetic energy given up",
+    "stores on board": "from stores on board",
+}
+"""What a use is called where it is negative, and so feeds."""
+
 AT_THE_LINE = ("stores at the line", "#997700")
 """Name and colour of what stores at the line take."""
 
@@ -52,7 +59,7 @@ def energy_flow(result: Result) -> Drawing:
     """
     losses, stations, used = result.standards.losses, result.stations, used_by_trains(result)
     fed = _tinted(stations.station, stations.energy_mwh, COLOURS[0])
-    fed |= {name: (-mwh, USES[name]) for name, mwh in used.items() if mwh < 0.0}
+    fed |= {GIVEN.get(name, name): (-mwh, USES[name]) for name, mwh in used.items() if mwh < 0.0}
     drawn = {name: (mwh, USES[name]) for name, mwh in used.items() if mwh >= 0.0}
     kinds = [f"{kind} losses" for kind in losses.branch_kind]
     network = _tinted(kinds, losses.energy_mwh, COLOURS[1])

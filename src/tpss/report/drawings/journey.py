@@ -1,13 +1,16 @@
 """A train's journey, in the thesis's layout."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 
 from tpss.model.routes import Route, routes_of
-from tpss.report.drawings.parts import POSITION, TIME, Curve, Drawing, Panel
+from tpss.report.corridor import landmarks, span_km
+from tpss.report.drawings.held_to import speed_limit
+from tpss.report.drawings.parts import DOTTED, POSITION, TIME, Curve, Drawing, Mark, Panel
 from tpss.report.gradients import inclination
 from tpss.report.sampling import Floats
 from tpss.report.trains import chosen_train
@@ -19,11 +22,21 @@ PRINTED = {
     "gradient [‰]": "inclination [‰]",
     "speed [km/h]": "speed [km/h]",
     "active power [MW]": "$P_D$ [MW]",
-    "reactive power [Mvar]": "$Q_D$ [MVAr]",
+    "reactive power [Mvar]": "$Q_D$ [Mvar]",
     "voltage [kV]": "$U$ [kV]",
     "minus angle [°]": "$-\\theta$ [°]",
 }
 """Labels of a journey's panels, and what is printed instead."""
+
+EXPLAINED = {
+    "gradient [‰]": "gradient\n[‰]",
+    "speed [km/h]": "speed; limit\n(dashed) [km/h]",
+    "active power [MW]": "active power\n$P_D$ [MW]",
+    "reactive power [Mvar]": "reactive power\n$Q_D$ [Mvar]",
+    "voltage [kV]": "voltage\n$U$ [kV]",
+    "minus angle [°]": "minus angle\n$-\\theta$ [°]",
+}
+"""The same in words, for readers who do not know the symbols."""
 
 ALTERNATING = ("reactive power [Mvar]", "minus angle [°]")
 """Panels of which a line of direct current has none."""
@@ -34,6 +47,7 @@ def journey(
     train: str | None = None,
     against: Literal["position", "distance", "time"] = "position",
     shown: Iterable[str] = tuple(PRINTED),
+    explained: bool = False,
 ) -> Drawing:
     """A train's journey: inclination, speed, powers, voltage and angle, as far as there are any.
 
@@ -47,6 +61,9 @@ def journey(
         Quantity of the horizontal axis; distance is position.
     shown : iterable of str
         Labels of the panels, of `PRINTED`.
+    explained : bool
+        Whether to print labels in words, the speed limit of the first run, and over places the stations
+        of a line.
 
     References
     ----------
@@ -62,8 +79,27 @@ def journey(
         for label, drawn in curves.items():
             held = label != "speed [km/h]"  # the only one that changes linearly in a step
             drawn.append(Curve(x, values[label], name, k, k, held=held))
-    panels = [Panel(label, drawn, PRINTED[label]) for label, drawn in curves.items()]
-    return Drawing(TIME if against == "time" else POSITION, panels)
+        if explained and k == 0 and "speed [km/h]" in curves:
+            curves["speed [km/h]"].append(speed_limit(result, data, x))
+    marks = _stations(next(iter(runs.values())), against) if explained else []
+    printed = EXPLAINED if explained else PRINTED
+    panels = [
+        Panel(label, [*(marks if n == 0 else map(_nameless, marks)), *drawn], printed[label])
+        for n, (label, drawn) in enumerate(curves.items())
+    ]
+    span = span_km(next(iter(runs.values()))) if marks else None
+    return Drawing(TIME if against == "time" else POSITION, panels, span)
+
+
+def _stations(result: Result, against: str) -> list[Mark]:
+    """Marks at the stations of a line or corridor; none over time, and on the way over several lines."""
+    if against == "time" or LINE in result.dataset.coords:
+        return []
+    return [Mark(km, name, dash=DOTTED, upright=True) for name, km in landmarks(result).items()]
+
+
+def _nameless(mark: Mark) -> Mark:
+    return replace(mark, words="")
 
 
 def _time_or_place(result: Result, data: xr.Dataset, against: str) -> Floats:

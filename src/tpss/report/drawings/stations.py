@@ -34,7 +34,7 @@ def station_powers(runs: Mapping[str, Result]) -> Drawing:
     zero = [Mark(0.0, colour=STRONG_GREY)] if takes_back else []
     panels = [Panel("active [MW]", [*zero, *active], "$P_G$ [MW]")]
     if not all(result.scenario.supply.is_direct for result in runs.values()):
-        panels.append(Panel("reactive [Mvar]", reactive, "$Q_G$ [MVAr]"))
+        panels.append(Panel("reactive [Mvar]", reactive, "$Q_G$ [Mvar]"))
     return Drawing(TIME, panels, panel_inch=2.0)
 
 

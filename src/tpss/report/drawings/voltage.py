@@ -19,7 +19,9 @@ SAME_PLACE_KM = 1e-3
 """Places no farther apart are one. [km]"""
 
 
-def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> parts.Drawing:
+def voltage_along_line(
+    runs: Mapping[str, Result], train: str | None = None, limits: bool = False
+) -> parts.Drawing:
     """Voltage of a train along the line; feeding points are marked.
 
     Parameters
@@ -28,18 +30,28 @@ def voltage_along_line(runs: Mapping[str, Result], train: str | None = None) -> 
         Results to overlay, by label.
     train : str, optional
         Train of that name in every run; each run's studied train by default.
+    limits : bool
+        Whether to mark the limits of EN 50163 for the first run, and to name the stations.
 
     References
     ----------
-    [Boullanger2009]_, the layout of figures 3-2 and 3-3.
+    [Boullanger2009]_, the layout of figures 3-2 and 3-3; [EN50163]_, the limits.
     """
-    marks = feeding_points(runs.values())
+    marks = feeding_points(runs.values(), named=limits)
     items: list[parts.Item] = [*marks]
+    curves: list[parts.Curve] = []
     for k, (label, result) in enumerate(runs.items()):
         data = result.dataset.sel(train=chosen_train(result, train))
         km, kv = data.position.to_numpy() / 1e3, data.pantograph_voltage.to_numpy() / 1e3
-        items.append(parts.Curve(km, kv, label, k, k))
-    panel = parts.Panel("voltage at the pantograph [kV]", items)
+        curves.append(parts.Curve(km, kv, label, k, k))
+    items += curves
+    span = None
+    if limits:
+        judged = limit_marks(next(iter(runs.values())).scenario.standards.voltage_limits)
+        items += judged
+        seen = (curve.y[np.isfinite(curve.y)] for curve in curves)
+        span = _span([mark.value for mark in judged], *seen, margin=0.08)
+    panel = parts.Panel("voltage at the pantograph [kV]", items, span=span)
     return parts.Drawing(parts.POSITION, [panel], (marks[0].value, marks[-1].value), panel_inch=3.0)
 
 

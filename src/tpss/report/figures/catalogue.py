@@ -34,9 +34,12 @@ Describe = Callable[[Result, str | None, Against], Drawing]
 FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "network": ("run", lambda run, *_: network(run)),
     "time-distance": ("trains", lambda run, *_: time_distance(run)),
-    "journey": ("train", lambda run, train, against: journey({"": run}, train, against)),
+    "journey": (
+        "train",
+        lambda run, train, against: journey({"": run}, train, against, explained=True),
+    ),
     "voltage": ("run", lambda run, *_: voltage_envelope(run)),
-    "train-voltage": ("train", lambda run, train, _: voltage_along_line({"": run}, train)),
+    "train-voltage": ("train", lambda run, train, _: voltage_along_line({"": run}, train, True)),
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
