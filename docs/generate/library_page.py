@@ -42,7 +42,7 @@ NETWORKS = {
 INTRODUCTION = """# Library
 
 What ships with TPSS as data. A scenario names an entry, or gives a table of its own with the [same
-keys](scenario.md)."""
+keys](scenario.md). A [library of your own](../how-to/own-library.md) adds entries to most kinds."""
 
 MACHINES = """## Machines
 

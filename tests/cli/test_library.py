@@ -144,3 +144,33 @@ def test_an_unknown_name_is_explained(tpss_command, arguments, words):
     said = tpss_command("library", *arguments)
     assert (said.code, said.out) == (2, "")
     assert f"the library has {words}" in said.err
+
+
+def test_entries_of_ones_own_are_listed_with_their_file(tpss_command, tmp_path):
+    text = '[ours]\nbased_on = "AT"\nr_ohm_per_km = 0.03\nsource = "measured"\n'
+    (tmp_path / "catenaries.toml").write_text(text, "utf-8")
+    said = tpss_command("library", "catenaries", "--library", ".")
+    assert "ours 0.03 0.031 13.5 0.189 0.293" in said.out
+    assert "ours: catenaries.toml, based on AT; measured" in said.out
+    assert "the others ship with TPSS" in said.out
+    entry = tpss_command("library", "catenaries", "ours", "--library", ".").out
+    assert 'catenary = "ours"' in entry
+    assert "r_ohm_per_km = 0.03" in entry
+    assert "no 'ours' in catenaries" in tpss_command("library", "catenaries", "ours").err
+
+
+def test_an_unknown_key_of_ones_own_is_named(tpss_command, tmp_path):
+    text = '[ours]\nbased_on = "AT"\nr_ohm_km = 0.03\n'
+    (tmp_path / "catenaries.toml").write_text(text, "utf-8")
+    said = tpss_command("library", "catenaries", "--library", tmp_path)
+    assert said.code == 2
+    assert "catenaries.toml: ours.r_ohm_km unknown key -> did you mean r_ohm_per_km?" in said.err
+
+
+def test_a_scenario_is_checked_with_a_library(tpss_command, short_file, tmp_path):
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "catenaries.toml").write_text('[ours]\nbased_on = "AT"\nr_ohm_per_km = 0.03\n', "utf-8")
+    arguments = ("check", short_file, "--set", "supply.catenary=ours")
+    assert "own: 0.03 + j0.031 Ω/km" in tpss_command(*arguments, "--library", own).out
+    assert tpss_command(*arguments).code == 2

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Force, Quiet, argument, option
+from tpss.cli.arguments import Force, Library, Quiet, argument, option
 
 app = typer.Typer(
     help="TPSA, the approximator: learn from the simulations of a study, and predict further ones.",
@@ -101,6 +101,7 @@ def predict(
     out: Annotated[
         Path | None, option(help="Write inputs and figures into this file (.csv or .parquet).")
     ] = None,
+    _library: Library = None,
     force: Force = False,
 ) -> None:
     """Predict figures of lines that were not simulated, each with an interval.

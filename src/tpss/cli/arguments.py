@@ -1,5 +1,8 @@
 """Arguments and options that several commands take."""
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +14,8 @@ from tpss.errors import ResultError
 
 option = partial(typer.Option, show_default=False)
 argument = partial(typer.Argument, show_default=False)
+
+LIBRARY_VARIABLE = "TPSS_LIBRARY"
 
 Force = Annotated[bool, typer.Option("--force", help="Replace existing files.")]
 
@@ -33,6 +38,39 @@ Assignments = Annotated[
         "taken out; repeatable.",
     ),
 ]
+
+
+@contextmanager
+def _named_in_the_environment(folder: Path) -> Iterator[None]:
+    """Name a library to this process and to those that it starts."""
+    before = os.environ.get(LIBRARY_VARIABLE)
+    os.environ[LIBRARY_VARIABLE] = str(folder.absolute())
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[LIBRARY_VARIABLE]
+        else:
+            os.environ[LIBRARY_VARIABLE] = before
+
+
+def _use_library(context: typer.Context, folder: Path | None) -> Path | None:
+    if folder is not None:
+        context.with_resource(_named_in_the_environment(folder))
+    return folder
+
+
+Library = Annotated[
+    Path | None,
+    option(
+        "--library",
+        metavar="FOLDER",
+        callback=_use_library,
+        help="Folder with a library of your own, whose entries scenarios may name too; by default that "
+        f"of {LIBRARY_VARIABLE}, or else tpss/library in the user's folder for data.",
+    ),
+]
+"""Does its work before the command, which need not look at it."""
 
 ResultFolder = Annotated[
     Path, argument(metavar="RESULT", help="Folder written by tpss run, or by tpss sweep.")

@@ -7,6 +7,7 @@ import typer
 
 from tpss import library
 from tpss.results.contents import FIGURE_NAMES
+from tpss.scenario.own_library import own_entries
 
 
 def scenario_files(incomplete: str) -> list[str]:
@@ -29,8 +30,9 @@ def library_kinds(incomplete: str) -> list[str]:
 def library_names(context: typer.Context, incomplete: str) -> list[str]:
     """Names of the kind before them that begin like this."""
     kind = context.params.get("kind")
-    names = library.entries(kind) if kind in library.KINDS else {}
-    return [name for name in names if name.startswith(incomplete)]
+    shipped = library.entries(kind) if kind in library.KINDS else {}
+    own = own_entries().get(str(kind), {})
+    return [name for name in {**shipped, **own} if name.startswith(incomplete)]
 
 
 def figures(incomplete: str) -> list[str]:

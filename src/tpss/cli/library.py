@@ -1,4 +1,4 @@
-"""The command ``tpss library``: the data that ship with TPSS, with units and sources."""
+"""The command ``tpss library``: the data that ship with TPSS and one's own, with units and sources."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,9 @@ from rich.table import Table
 
 from tpss import library, units
 from tpss.cli.terminal import Console, print_in_parts, say, width_of
-from tpss.errors import LibraryError, suggest
+from tpss.errors import Finding, LibraryError, ScenarioError, suggest
+from tpss.scenario.given_path import from_here
+from tpss.scenario.own_library import OwnEntry, folder_in_use, own_entries
 
 if TYPE_CHECKING:
     from tpss.scenario.fields import Part
@@ -177,16 +179,18 @@ def print_library(kind: str | None, name: str | None) -> None:
     if kind is None:
         for each in KINDS:
             _print_entries(each, console)
+        _print_folder(console)
         say(console, "All values of an entry: tpss library KIND NAME")
         return
     kind = _known_kind(kind)
+    entries = _entries(kind)
     if name is None:
         _print_entries(kind, console)
-        example = next(iter(library.entries(kind)))
-        say(console, f"All values of an entry: tpss library {kind} {example}")
+        _print_folder(console)
+        say(console, f"All values of an entry: tpss library {kind} {next(iter(entries))}")
         return
-    if name not in library.entries(kind):
-        remedy = suggest(name, library.entries(kind))
+    if name not in entries:
+        remedy = suggest(name, entries)
         raise LibraryError(f"the library has no {name!r} in {kind}\n    -> {remedy}")
     _print_entry(kind, name, console)
 
@@ -205,13 +209,57 @@ def _known_kind(kind: str) -> str:
         return plain
     remedy = suggest(plain, KINDS)
     for each in KINDS:
-        if kind in library.entries(each):
+        if kind in _entries(each):
             remedy = f"{kind} is one of the {each}: tpss library {each} {kind}"
     raise LibraryError(f"the library has no kind {kind!r}\n    -> {remedy}")
 
 
+def _entries(kind: str) -> dict[str, dict[str, Any]]:
+    """All entries of a kind by name, those of one's own library behind or in place of the shipped ones.
+
+    Raises
+    ------
+    ScenarioError
+        The library of one's own has faults, or keys that a scenario would refuse.
+    """
+    own = own_entries().get(kind, {})
+    known = [field.alias or name for name, field in _part(kind).model_fields.items()]
+    faults = [
+        Finding(from_here(entry.file), f"{name}.{key}", "", "unknown key", suggest(key, known))
+        for name, entry in own.items()
+        for key in entry.values
+        if key not in known
+    ]
+    if faults:
+        raise ScenarioError(faults)
+    sources = {name: {"source": _own_source(entry)} for name, entry in own.items()}
+    return {**library.entries(kind), **{n: {**own[n].values, **sources[n]} for n in own}}
+
+
+def _own_source(entry: OwnEntry) -> str:
+    """File of an entry of one's own, the one that it starts from, and its source if it names one."""
+    base = f", based on {entry.based_on}" if entry.based_on else ""
+    return f"{from_here(entry.file)}{base}{f'; {entry.source}' if entry.source else ''}"
+
+
+def _print_folder(console: Console) -> None:
+    """Tell where entries come from, if they are not all shipped."""
+    folder = folder_in_use()
+    if folder is not None:
+        say(
+            console,
+            f"Entries with a file are those of {from_here(folder)}; the others ship with TPSS.",
+        )
+
+
+def _part(kind: str) -> "type[Part]":
+    how = KINDS[kind]
+    part: type[Part] = getattr(import_module(how.module), how.part)
+    return part
+
+
 def _print_entries(kind: str, console: Console) -> None:
-    how, entries = KINDS[kind], library.entries(kind)
+    how, entries = KINDS[kind], _entries(kind)
     console.print(f"\n[bold]{kind}[/bold]  {how.title}", highlight=False)
     is_wide = width_of(_values(entries, how.shown)) > console.width
     print_in_parts(how.shown, partial(_values, entries, broken=is_wide), console)
@@ -239,7 +287,7 @@ def _values(
 
 
 def _print_entry(kind: str, name: str, console: Console) -> None:
-    how, entry = KINDS[kind], library.entries(kind)[name]
+    how, entry = KINDS[kind], _entries(kind)[name]
     console.print(f"\n[bold]{escape(name)}[/bold]  {how.title}", highlight=False)
     console.print(_entry_table(kind, entry))
     say(console, f"Source: {_source(entry)}\n")
@@ -248,7 +296,11 @@ def _print_entry(kind: str, name: str, console: Console) -> None:
         say(console, "Supplies of this system cannot be described yet.")
         return
     say(console, f"In a {how.file}:\n\n{used}")
-    say(console, how.remark.format(key=how.key, values=_in_a_line(library.values(kind, name))))
+    say(console, how.remark.format(key=how.key, values=_in_a_line(_values_of(entry))))
+
+
+def _values_of(entry: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entry.items() if key != "source"}
 
 
 def _in_a_line(table: dict[str, Any]) -> str:
@@ -263,14 +315,12 @@ def _in_a_line(table: dict[str, Any]) -> str:
 
 def _entry_table(kind: str, entry: dict[str, Any]) -> Table:
     """All keys of an entry's part, those that it leaves at their default too."""
-    how = KINDS[kind]
-    part: type[Part] = getattr(import_module(how.module), how.part)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for heading in ("key", "value", "unit", ""):
         is_text = heading in ("value", "")
         table.add_column(heading, no_wrap=not is_text, overflow="fold")
-    for key, field in part.model_fields.items():
-        if key != how.key:
+    for key, field in _part(kind).model_fields.items():
+        if key != KINDS[kind].key:
             value = _value(entry[key]) if key in entry else f"[dim]{_value(field.default)}[/dim]"
             table.add_row(key, value, units.label(key), escape(field.description or ""))
     return table

@@ -18,6 +18,7 @@ from tpss.cli.arguments import (
     Assignments,
     Force,
     GeometryFile,
+    Library,
     NoStepCheck,
     Quiet,
     ScenarioFile,
@@ -66,6 +67,7 @@ def run(
         Path | None, option(help="Folder for the result; by default results/NAME-NNN.")
     ] = None,
     set_: Assignments = None,
+    _library: Library = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace an existing result folder.")
     ] = False,
@@ -139,7 +141,7 @@ app.command(
 
 
 @app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")
-def check(file: ScenarioFile, set_: Assignments = None) -> None:
+def check(file: ScenarioFile, set_: Assignments = None, _library: Library = None) -> None:
     """List every fault of a scenario, or print what it describes, without simulating it.
 
     Notes point out what is not a fault, but may not be intended. Exit codes: 0 the scenario has no
@@ -201,6 +203,7 @@ def sweep(
             "then given by its file or its folder, and nothing is simulated.",
         ),
     ] = None,
+    _library: Library = None,
     force: Force = False,
     quiet: Quiet = False,
 ) -> None:
@@ -250,6 +253,7 @@ def outages(
         ),
     ] = False,
     set_: Assignments = None,
+    _library: Library = None,
     jobs: Annotated[
         int | None, option(min=1, help="Runs at a time; by default one per core.")
     ] = None,
@@ -290,6 +294,7 @@ def outages(
 def converters(
     file: ScenarioFile,
     set_: Assignments = None,
+    _library: Library = None,
     out: Annotated[Path | None, option(help="CSV file to write.")] = None,
     plot: Annotated[
         Path | None,
@@ -332,6 +337,7 @@ def spare_time(
         ),
     ] = None,
     set_: Assignments = None,
+    _library: Library = None,
     out: Annotated[Path | None, option(help="CSV file to write.")] = None,
     plot: Annotated[
         Path | None, option(help="Picture to write, of which the end says the kind: png, svg, pdf.")
@@ -367,6 +373,7 @@ def line_constants(
     out: Annotated[
         Path | None, option(help="File to write, which supply.catenary of a scenario may name.")
     ] = None,
+    _library: Library = None,
     force: Force = False,
 ) -> None:
     """Print impedances and capacitances of a line, from where its conductors hang and lie.
@@ -411,6 +418,7 @@ def library(
             autocompletion=complete.library_names,
         ),
     ] = None,
+    _library: Library = None,
 ) -> None:
     """List what scenarios refer to by name: trains, catenaries, converters and so on.
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Force, Quiet, argument, option
+from tpss.cli.arguments import Force, Library, Quiet, argument, option
 
 app = typer.Typer(
     help="Plan investments in the power supply: what to build, where and when, under uncertain traffic.",
@@ -47,7 +47,7 @@ TimeLimit = Annotated[
 
 
 @app.command(epilog="Example:  tpss plan check examples/plan_320km.toml")
-def check(file: PlanToml) -> None:
+def check(file: PlanToml, _library: Library = None) -> None:
     """List every fault of a plan, or print what it consists of, without simulating its cases.
 
     Every configuration is built. What is printed: the scenarios and when they part, the number of
@@ -88,6 +88,7 @@ def run(
             '"approximator").',
         ),
     ] = False,
+    _library: Library = None,
     quiet: Quiet = False,
 ) -> None:
     """Simulate the cases of a plan, find the best plan of all, and write it with its tables.
@@ -124,6 +125,7 @@ def price(
     ] = None,
     gap: Gap = 1e-9,
     time_limit: TimeLimit = None,
+    _library: Library = None,
 ) -> None:
     """Price a plan anew, without a simulation, and print its best first decisions.
 
@@ -148,6 +150,7 @@ def why(
         ),
     ],
     set_: Changes = None,
+    _library: Library = None,
 ) -> None:
     """Print what the best plan costs that contains some measures, and where the difference comes from.
 

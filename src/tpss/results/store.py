@@ -20,6 +20,7 @@ from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import DATASET, FORMAT, FORMAT_KEY, SCENARIO, SUMMARY, carry_over
 from tpss.results.dataset import NODE_KIND, described
 from tpss.scenario.load import load_scenario
+from tpss.scenario.own_library import using
 from tpss.scenario.scenario import Scenario
 from tpss.step.recorded import RECORDED
 
@@ -138,7 +139,8 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
         # First: on some damaged files HDF5 ends the process.
         _demand_what_was_written(folder / DATASET, summary.pop(CHECKSUMS, {}))
         dataset = _read_netcdf(folder / DATASET)
-        scenario = load_scenario(folder / SCENARIO)
+        with using(None):  # it holds what it took from any library
+            scenario = load_scenario(folder / SCENARIO)
         _demand_a_result(dataset)
         # An attribute of one number comes back as that number.
         dataset.attrs["station_energy_mwh"] = np.atleast_1d(dataset.attrs["station_energy_mwh"])

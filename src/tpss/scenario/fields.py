@@ -23,6 +23,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, c
 
 from tpss import library
 from tpss.printable import in_nfc, steering
+from tpss.scenario.own_library import own_entries
 
 
 class Part(BaseModel):
@@ -158,7 +159,7 @@ def demand_entry(kind: str, name: str, own: str = "") -> str:
         raise PydanticCustomError(
             "unknown_name",
             "the library has no such entry in {kind}",
-            {"kind": kind, "known": sorted(known), "own": own},
+            {"kind": kind, "known": sorted({*known, *own_entries().get(kind, ())}), "own": own},
         )
     return name
 

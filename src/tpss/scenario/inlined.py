@@ -6,6 +6,7 @@ from typing import Any
 
 from tpss.errors import Finding
 from tpss.scenario.curve_files import CurveOfFile
+from tpss.scenario.own_library import Entries
 from tpss.scenario.profiles import Profile
 from tpss.scenario.timetable import TimetabledTrain
 
@@ -18,9 +19,13 @@ class Inlined:
 
     document: dict[str, Any]
     source: Path
+    entries: Entries = field(default_factory=dict)
+    """Entries of a library of one's own."""
     findings: list[Finding] = field(default_factory=list)
     files: dict[Location, Path] = field(default_factory=dict)
     """Files by the tables that they gave."""
+    names: dict[Location, str] = field(default_factory=dict)
+    """Names, in these files, of the tables that are entries of a library of one's own."""
     own: dict[Location, set[str]] = field(default_factory=dict)
     """Keys of such a table that the scenario itself gives."""
     unread: set[Location] = field(default_factory=set)
@@ -53,7 +58,7 @@ class Inlined:
         for table, file in self.files.items():
             below = location[len(table) :]
             if below and location[: len(table)] == table and below[0] not in self.own[table]:
-                return file, below
+                return file, (self.names[table], *below) if table in self.names else below
         return self.source, location
 
     def is_unread(self, location: Location) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.files import read_toml
 from tpss.scenario.override import override
+from tpss.scenario.own_library import using
 from tpss.scenario.scenario import Scenario
 
 
@@ -31,7 +32,12 @@ def demand_no_scenario(document: Mapping[str, Any], source: Path, what: str) -> 
         raise ScenarioError([Finding(str(source), "", "", f"a scenario, not {what}", remedy)])
 
 
-def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scenario:
+def load_scenario(
+    path: str | Path,
+    changes: Mapping[str, Any] | None = None,
+    *,
+    library: str | Path | None = None,
+) -> Scenario:
     """Scenario of a TOML file, with the CSV files that it names.
 
     Parameters
@@ -40,12 +46,18 @@ def load_scenario(path: str | Path, changes: Mapping[str, Any] | None = None) ->
         The scenario file.
     changes : mapping of str to value, optional
         Values to set by key path before validation, as in `Scenario.with_`.
+    library : path, optional
+        Folder with a library of one's own, which changed copies of the scenario use too; by default
+        that of ``TPSS_LIBRARY``, or else the user's.
 
     Raises
     ------
     ScenarioError
         The file, or a file that it names, cannot be read or has faults; all are listed.
     """
+    if library is not None:
+        with using(library):
+            return load_scenario(path, changes)
     source = Path(path)
     document = read_toml(source)
     if {"scenario", "design"} <= document.keys():

@@ -5,8 +5,9 @@ from typing import Any
 
 from tpss import library
 from tpss.errors import suggest
+from tpss.scenario.completed import completed
 from tpss.scenario.raw import Fault, table
-from tpss.scenario.rolling_stock import BY_SYSTEM, Train, completed
+from tpss.scenario.rolling_stock import BY_SYSTEM, Train
 from tpss.scenario.supply.system import DEFAULT_SYSTEM, SYSTEMS, system_named
 
 

@@ -1,11 +1,11 @@
 """The trains: a model of the library or of a file, any of its fields overridden."""
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from tpss import library
+from tpss.scenario.completed import completed
 from tpss.scenario.fields import Name, Part, Real, entry_of, fault
 from tpss.scenario.machine import (
     AdhesionOverSpeed,
@@ -27,16 +27,6 @@ BY_SYSTEM = "by_system"
 
 LARGEST_SHARE = 0.5
 """Largest share of rotating parts in the mass of a train; 1 plus it is the largest factor."""
-
-
-def completed(given: Mapping[str, Any], model: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of a train, completed with those of its model that they do not replace."""
-    replaced: set[str] = set()
-    if given.get("rotating_mass_share") is not None:
-        replaced = {"rotating_mass_factor", "motor_inertia_kg"}
-    elif given.get("rotating_mass_factor") is not None:
-        replaced = {"rotating_mass_share"}
-    return {**{key: value for key, value in model.items() if key not in replaced}, **given}
 
 
 class Train(Part):

@@ -24,6 +24,7 @@ from tpss.scenario.of_the_system import under_its_system
 from tpss.scenario.outage_faults import outage_faults
 from tpss.scenario.outages import Outage, Outages
 from tpss.scenario.override import copy_of, override
+from tpss.scenario.own_library import folder_in_use, using
 from tpss.scenario.protection import Protection
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.signalling import Signalling
@@ -126,6 +127,7 @@ class Scenario(Part):
     _source: Path = PrivateAttr(default=Path("scenario"))
     _given: str = PrivateAttr(default="scenario")
     _file_notes: tuple[str, ...] = PrivateAttr(default=())
+    _library: Path | None = PrivateAttr(default=None)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], source: str | Path = "scenario") -> Self:
@@ -167,7 +169,7 @@ class Scenario(Part):
         scenario._document = document
         # A change of the working folder must not lead to other files.
         scenario._source, scenario._given = Path(source).absolute(), str(source)
-        scenario._file_notes = notes
+        scenario._file_notes, scenario._library = notes, folder_in_use()
         return scenario
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
@@ -218,7 +220,8 @@ class Scenario(Part):
 
     def _of_own_file(self, document: dict[str, Any]) -> Self:
         """A scenario of another document, as if that stood in the file of this one."""
-        scenario = type(self).from_own_document(document, self._source)
+        with using(self._library):
+            scenario = type(self).from_own_document(document, self._source)
         scenario._given = self._given
         return scenario
 

@@ -13,9 +13,10 @@ from tpss.scenario.absences import absence_of
 from tpss.scenario.clock import START_S, start_of
 from tpss.scenario.cross_check import cross_check
 from tpss.scenario.fields import fields_of
-from tpss.scenario.inline import SUFFIX, inline_files, lines_of
+from tpss.scenario.inline import inline_files, lines_of
 from tpss.scenario.inlined import Inlined, Location
 from tpss.scenario.line import IN_FILES, Line
+from tpss.scenario.own_library import SUFFIX
 from tpss.scenario.positions import kilometres_fall
 from tpss.scenario.standing import stand_at_stations
 
