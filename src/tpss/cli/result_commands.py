@@ -40,7 +40,7 @@ def report(
     results: Annotated[
         list[Path],
         argument(
-            metavar="RESULT...",
+            metavar="RESULT",
             help="Folder written by tpss run, of which several are compared side by side, or by tpss "
             "sweep.",
         ),
