@@ -54,8 +54,8 @@ def _arguments(command: Any) -> str:
 
 
 def _name(parameter: Any) -> str:
-    """Name of an argument, in brackets if it may be left out."""
-    name = str(parameter.metavar or parameter.name.upper())
+    """Name of an argument, in brackets if it may be left out, with dots if there may be several."""
+    name = f"{parameter.metavar or parameter.name.upper()}{'...' if parameter.nargs == -1 else ''}"
     return name if parameter.required else f"[{name}]"
 
 

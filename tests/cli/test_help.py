@@ -1,10 +1,14 @@
 """The command line teaches itself, completes words, and starts fast."""
 
 import os
+import re
 import subprocess
 import sys
 
 import pytest
+from typer.main import get_command
+
+from tpss.cli.main import app
 
 from conftest import EXAMPLES
 
@@ -32,6 +36,20 @@ def test_the_help_of_every_command_has_an_example(tpss_command, command):
     said = tpss_command(command, "--help")
     assert said.code == 0
     assert any(f"{word}: tpss {command}" in said.out for word in ("Example", "Examples"))
+
+
+def arguments_of(command, path="tpss"):
+    """What is written behind each command in its usage line, without the brackets that Typer adds."""
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from arguments_of(inner, f"{path} {name}")
+    for each in command.params:
+        if each.param_type_name == "argument":
+            yield pytest.param(each.metavar, id=f"{path} {each.name}")
+
+
+@pytest.mark.parametrize("written", list(arguments_of(get_command(app))))
+def test_arguments_are_named_in_capitals_without_brackets_of_their_own(written):
+    assert re.fullmatch(r"(\[KIND=\])?[A-Z]+(\.csv)?", written)
 
 
 def test_the_options_of_a_run_are_explained(tpss_command):

@@ -2,7 +2,8 @@
 
 import pytest
 
-from tpss.report.figures import FIGURES
+import tpss
+from tpss.report.figures import FIGURES, draw
 
 SHORT = ("--set", "simulation.duration_min=3", "--out", "demo", "--quiet")
 UNTOLD = ("converter-losses", "unbalance", "braking", "storage", "thermal", "rails")
@@ -124,3 +125,25 @@ def test_a_folder_without_a_result_is_refused(tpss_command):
     said = tpss_command("plot", "nowhere")
     assert said.code == 2
     assert "nowhere is not a result folder" in said.err
+
+
+def test_some_minutes_of_a_long_run_are_drawn(tpss_command, demo, tmp_path):
+    call = ("plot", "demo", "--figure", "time-distance", "--out", "part.png")
+    assert tpss_command(*call, "--from-min", 1, "--to-min", 2.5).code == 0
+    result = tpss.load_result(demo)
+    assert draw("time-distance", result, minutes=(1.0, 2.5)).axes[0].get_xlim() == (1.0, 2.5)
+    assert draw("time-distance", result, minutes=(None, 2.0)).axes[0].get_xlim() == (0.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--from-min", 2, "--to-min", 1), "no minutes 2 to 1 to draw; give some of 0 to 3"),
+        (("--to-min", 90), "no minutes 0 to 90 to draw"),
+        (("--from-min", 0, "--figure", "journey"), "journey is not time-distance; leave"),
+    ],
+)
+def test_minutes_that_cannot_be_drawn_are_refused(tpss_command, demo, options, words):
+    said = tpss_command("plot", "demo", "--figure", "time-distance", *options)
+    assert said.code == 2
+    assert words in said.err

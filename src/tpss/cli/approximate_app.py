@@ -127,7 +127,7 @@ def predict(
 def check(
     model: ModelFile,
     folder: Annotated[
-        Path | None, argument(metavar="[DIR]", help="Folder of a study to predict and compare.")
+        Path | None, argument(metavar="DIR", help="Folder of a study to predict and compare.")
     ] = None,
 ) -> None:
     """Print what an approximator was trained on, its inputs and outputs, and how accurate it is.

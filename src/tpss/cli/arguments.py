@@ -20,12 +20,17 @@ LIBRARY_VARIABLE = "TPSS_LIBRARY"
 Force = Annotated[bool, typer.Option("--force", help="Replace existing files.")]
 
 ScenarioFile = Annotated[
-    Path, argument(help="Scenario file (TOML).", autocompletion=complete.scenario_files)
+    Path,
+    argument(metavar="FILE", help="Scenario file (TOML).", autocompletion=complete.scenario_files),
 ]
 
 GeometryFile = Annotated[
     Path,
-    argument(help="File with the conductors (TOML).", autocompletion=complete.scenario_files),
+    argument(
+        metavar="FILE",
+        help="File with the conductors (TOML).",
+        autocompletion=complete.scenario_files,
+    ),
 ]
 
 Assignments = Annotated[

@@ -21,7 +21,7 @@ def _imports() -> None:
     "--out vasteras"
 )
 def ttobench(
-    files: Annotated[list[Path], argument(metavar="FILE...", help="Tracks and trains (JSON).")],
+    files: Annotated[list[Path], argument(metavar="FILE", help="Tracks and trains (JSON).")],
     out: Annotated[Path, option(help="Folder for the files.")],
     force: Force = False,
 ) -> None:
@@ -41,7 +41,7 @@ def osrd(
     infra: Annotated[Path, argument(metavar="INFRA", help="Infrastructure (railjson 3).")],
     out: Annotated[Path, option(help="Folder for the files.")],
     trains: Annotated[
-        Path | None, argument(metavar="[TRAINS]", help="Train schedules (JSON).")
+        Path | None, argument(metavar="TRAINS", help="Train schedules (JSON).")
     ] = None,
     rolling_stock: Annotated[
         list[Path] | None,
@@ -119,7 +119,7 @@ def tables(
     files: Annotated[
         list[str] | None,
         argument(
-            metavar="[KIND=]FILE...",
+            metavar="[KIND=]FILE",
             help="Tables, CSV or workbooks (.xlsx, #SHEET behind for another than the first). KIND is "
             "gradients, speed-limits, stations, effort, braking, losses or timetable; by default it "
             "follows from the headings.",

@@ -167,7 +167,8 @@ app.command(
 )
 def sweep(
     study: Annotated[
-        Path | None, argument(help="Study file (TOML); with --case also its folder.")
+        Path | None,
+        argument(metavar="STUDY", help="Study file (TOML); with --case also its folder."),
     ] = None,
     out: Annotated[
         Path | None,
@@ -390,7 +391,9 @@ def line_constants(
 
 @app.command(epilog="Example:  tpss new my-line")
 def new(
-    folder: Annotated[Path, argument(help="Folder to write; existing files are kept.")],
+    folder: Annotated[
+        Path, argument(metavar="DIR", help="Folder to write; existing files are kept.")
+    ],
 ) -> None:
     """Write a small, commented scenario to start from.
 
@@ -406,6 +409,7 @@ def library(
     kind: Annotated[
         str | None,
         argument(
+            metavar="KIND",
             help="locomotives, catenaries, converters, transformers, high_voltage_lines, "
             "voltage_limits, systems or wires.",
             autocompletion=complete.library_kinds,
@@ -414,6 +418,7 @@ def library(
     name: Annotated[
         str | None,
         argument(
+            metavar="NAME",
             help="An entry, to see all its values, their meaning and how a scenario uses it.",
             autocompletion=complete.library_names,
         ),

@@ -25,6 +25,7 @@ def plot_result(
     train: str | None,
     against: Literal["time", "distance"],
     corridor: Sequence[str],
+    minutes: tuple[float | None, float | None],
     out: Path | None,
     force: bool,
 ) -> None:
@@ -43,6 +44,8 @@ def plot_result(
 
     if figure != ALL:
         catalogue.demand_figure(figure)
+        if minutes != (None, None) and figure != catalogue.TIME_DISTANCE:
+            raise ResultError(f"{figure} is not {catalogue.TIME_DISTANCE}; leave its minutes out")
         _demand_use(figure, train, against, catalogue.OF_A_TRAIN)
         if corridor and figure not in catalogue.ALONG_A_CORRIDOR:
             remedy = f"draw {', '.join(catalogue.ALONG_A_CORRIDOR)}"
@@ -58,7 +61,7 @@ def plot_result(
     left_out: list[tuple[str, str]] = []
     for name, file in names.items():
         try:
-            drawn = catalogue.draw(name, result, train, against, corridor)
+            drawn = catalogue.draw(name, result, train, against, corridor, minutes)
         except NothingToDrawError as error:
             left_out.append((name, str(error)))
             continue

@@ -40,7 +40,7 @@ def report(
     results: Annotated[
         list[Path],
         argument(
-            metavar="RESULT...",
+            metavar="RESULT",
             help="Folder written by tpss run, of which several are compared side by side, or by tpss "
             "sweep.",
         ),
@@ -181,6 +181,12 @@ def plot(
     corridor: Corridor = None,
     from_: From = None,
     to: To = None,
+    from_min: Annotated[
+        float | None, option(metavar="MIN", help="First minute that time-distance shows.")
+    ] = None,
+    to_min: Annotated[
+        float | None, option(metavar="MIN", help="Last minute that time-distance shows.")
+    ] = None,
     out: Annotated[
         Path | None,
         option(
@@ -203,10 +209,11 @@ def plot(
 
     stations = stations_of(corridor, from_, to)
     if is_study(result):
-        demand_unused("a study", train=train, corridor=stations)
+        minutes = {"from-min": from_min is not None, "to-min": to_min is not None}
+        demand_unused("a study", train=train, corridor=stations, **minutes)
         plot_study(result, figure, out, force)
         return
-    plot_result(result, figure, train, against.value, stations, out, force)
+    plot_result(result, figure, train, against.value, stations, (from_min, to_min), out, force)
 
 
 def export(

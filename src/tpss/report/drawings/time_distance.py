@@ -3,6 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
+from tpss.errors import ResultError
 from tpss.report.contact_line import LineVoltage
 from tpss.report.corridor import is_corridor, landmarks, span_km
 from tpss.report.drawings import parts
@@ -17,7 +18,12 @@ LEAST_SHARE = 0.2
 """The same of lower voltages, as of direct current: a share of the highest one. [1]"""
 
 
-def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.Drawing:
+def time_distance(
+    result: Result,
+    voltage: LineVoltage | None = None,
+    from_min: float | None = None,
+    to_min: float | None = None,
+) -> parts.Drawing:
     """Paths of all trains over time, coloured by the voltage at their pantographs.
 
     Stations of the line are named at the right.
@@ -27,11 +33,18 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
     result : Result
     voltage : LineVoltage, optional
         Of this run: it is shown in colours below paths in black, without the stations.
+    from_min, to_min : float, optional
+        Minutes of the run that are shown, by default all of them.
+
+    Raises
+    ------
+    ResultError
+        The run has no such minutes.
     """
     data = result.dataset
     minutes, km = data.time.to_numpy() / 60.0, data.position.to_numpy() / 1e3
     kv, trains = data.pantograph_voltage.to_numpy() / 1e3, data.train.to_numpy().astype(str)
-    span = float(minutes[0]), float(minutes[-1])
+    span = _shown_minutes(float(minutes[0]), float(minutes[-1]), from_min, to_min)
     # One train after another, each over its time on the line, with a gap after it, and in between where
     # it is off a corridor.
     below = ((0, 1), (0, 0))
@@ -51,6 +64,20 @@ def time_distance(result: Result, voltage: LineVoltage | None = None) -> parts.D
         items.append(parts.Curve(minutes, km, colour=BLACK, width=0.6, words=names))
     panel = parts.Panel(parts.POSITION, items, span=span_km(result))
     return parts.Drawing(parts.TIME, [panel], span, panel_inch=4.6)
+
+
+def _shown_minutes(
+    begin_min: float, end_min: float, from_min: float | None, to_min: float | None
+) -> tuple[float, float]:
+    """First and last minute that are shown of those of a run."""
+    first = begin_min if from_min is None else from_min
+    last = end_min if to_min is None else to_min
+    if not begin_min <= first < last <= end_min:
+        raise ResultError(
+            f"there are no minutes {first:g} to {last:g} to draw; give some of {begin_min:g} to "
+            f"{end_min:g}, the earlier first"
+        )
+    return first, last
 
 
 def _shown(km: Floats, with_gaps: bool) -> npt.NDArray[np.bool_]:

@@ -29,11 +29,15 @@ from tpss.results.result import Result
 Against = Literal["time", "distance"]
 
 
+Minutes = tuple[float | None, float | None]
+
+TIME_DISTANCE = "time-distance"
+
 Describe = Callable[[Result, str | None, Against], Drawing]
 
 FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "network": ("run", lambda run, *_: network(run)),
-    "time-distance": ("trains", lambda run, *_: time_distance(run)),
+    TIME_DISTANCE: ("trains", lambda run, *_: time_distance(run)),
     "journey": (
         "train",
         lambda run, train, against: journey({"": run}, train, against, explained=True),
@@ -73,6 +77,7 @@ def draw(
     train: str | None = None,
     against: Against = "distance",
     corridor: Sequence[str] = (),
+    minutes: Minutes = (None, None),
 ) -> Figure:
     """Draw a figure with its title, which also says if the run ended early.
 
@@ -88,11 +93,13 @@ def draw(
     corridor : sequence of str
         Stations of a network over which a figure along a line is drawn, by default those on the way of
         the first service; or two stations of a single line.
+    minutes : pair of float or None
+        First and last minute that a time-distance graph shows; None: those of the run.
 
     Raises
     ------
     ResultError
-        The audit failed, or there is no such figure or train.
+        The audit failed, or there is no such figure, train or minute.
     NothingToDrawError
         No step was simulated, or no train was on the line.
     """
@@ -108,7 +115,10 @@ def draw(
     follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
     seen = along(result, corridor) if follows else result
     chosen = None if train is None and of == "run" else chosen_train(seen, train)
-    figure = render(describe(seen, chosen, against))
+    if name == TIME_DISTANCE:
+        figure = render(time_distance(seen, None, *minutes))
+    else:
+        figure = render(describe(seen, chosen, against))
     told = [chosen if of == "train" else None, seen.dataset.attrs.get(ALONG)]
     title = ": ".join([result.scenario.name, *(as_text(each) for each in told if each)])
     figure.suptitle(title, fontsize="large")
