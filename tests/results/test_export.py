@@ -151,7 +151,7 @@ def test_files_that_were_replaced_come_back_if_one_cannot_be(result, tmp_path, m
 
 @pytest.mark.parametrize(
     ("kind", "package", "remedy"),
-    [(Kind.XLSX, "openpyxl", "openpyxl"), (Kind.PARQUET, "pyarrow", r"tpss\[parquet\]")],
+    [(Kind.XLSX, "xlsxwriter", "xlsxwriter"), (Kind.PARQUET, "pyarrow", r"tpss\[parquet\]")],
 )
 def test_a_missing_package_is_named_with_the_remedy(
     result, tmp_path, monkeypatch, kind, package, remedy
@@ -164,9 +164,9 @@ def test_a_missing_package_is_named_with_the_remedy(
 
 
 def test_a_table_too_long_for_a_sheet_is_refused(result, tmp_path, monkeypatch):
-    monkeypatch.setattr(export, "MOST_ROWS", 100)
+    monkeypatch.setattr(export, "MOST_ROWS", 200)
     with pytest.raises(
-        ResultError, match=r"load_duration has \d+ rows.*at most 99: choose csv or parquet"
+        ResultError, match=r"the table \w+ has \d+ rows.*at most 199: choose csv or parquet"
     ):
         export.export(result, Kind.XLSX, tmp_path / "tables")
     assert list(tmp_path.iterdir()) == []
@@ -189,6 +189,101 @@ def test_a_name_that_begins_like_a_formula_is_text_in_a_workbook(tmp_path):
     sheet = openpyxl.load_workbook(tmp_path / "result.xlsx")["trips"]
     cell = next(cell for row in sheet.iter_rows(min_row=2) for cell in row if cell.value == name)
     assert cell.data_type == "s"
+
+
+@pytest.fixture(scope="module")
+def book(result, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("book")
+    export.export(result, Kind.XLSX, folder)
+    return openpyxl.load_workbook(folder / "result.xlsx")
+
+
+def test_a_workbook_opens_with_its_figures_and_ends_with_the_steps(book):
+    assert book.sheetnames[:3] == ["summary", "scenario", "trips"]
+    assert book.sheetnames[2:] == [*TABLES]
+    assert book.sheetnames[-1] == "steps"
+
+
+def test_the_summary_tells_what_was_run_and_what_came_out(book, result):
+    rows = {row[0]: row[1:] for row in book["summary"].values}
+    assert rows["name"] == ("value", "unit")
+    assert rows["scenario"][0] == result.scenario.name
+    assert rows["status"][0] == result.status
+    assert rows["audit"][0] == "passed"
+    assert rows["TPSS version"][0] == result.summary["provenance"]["tpss_version"]
+    lowest_kv = result.summary["lowest_voltage"]["voltage_kv"]
+    assert rows["lowest voltage: voltage"] == (pytest.approx(lowest_kv, rel=1e-14), "kV")
+    west_mwh = result.summary["station_energy_mwh"]["West"]
+    assert rows["station energy: West"] == (pytest.approx(west_mwh, rel=1e-14), "MWh")
+
+
+def test_the_scenario_stands_in_it_by_its_key_paths(book, result):
+    rows = {row[0]: row[1:] for row in book["scenario"].values}
+    document = result.scenario.as_document()
+    assert rows["trains.freight.mass_t"] == (document["trains"]["freight"]["mass_t"], "t")
+    station = document["supply"]["converter_stations"][0]
+    assert rows["supply.converter_stations.0.name"][0] == station["name"]
+    assert rows["line.length_km"] == (document["line"]["length_km"], "km")
+
+
+def cells(values, tmp_path):
+    """The cells of a column in a workbook."""
+    (content,) = export.contents_of({"a": pd.DataFrame({"a": values})}, Kind.XLSX, "b").values()
+    (tmp_path / "b.xlsx").write_bytes(content)
+    sheet = openpyxl.load_workbook(tmp_path / "b.xlsx")["a"]
+    return [row[0] for row in sheet.iter_rows(min_row=2)]
+
+
+@pytest.mark.parametrize(
+    ("values", "shown"),
+    [
+        ([1234567.891, 3.0], "#,##0.0"),
+        ([15.384123, 3.5e-17], "#,##0.000"),  # the noise shows as 0.000
+        ([0.0123456, 0.0], "0.00000"),
+        ([1.234e-7, 0.0], "0.00E+00"),
+        ([3.5e-17, 0.0], "0.0"),
+        ([2025.0, 2030.0], "General"),
+        (["a", 15.384123456], "#,##0.000"),
+        (["a", 15.38], "General"),
+    ],
+)
+def test_numbers_show_the_digits_that_tell_something_and_keep_the_others(values, shown, tmp_path):
+    found = cells(values, tmp_path)
+    number = 1 if values[0] == "a" else 0
+    assert found[number].number_format == shown
+    assert [cell.value for cell in found] == values
+
+
+def test_long_tables_have_formats_too(tmp_path):
+    assert {cell.number_format for cell in cells([15.384123] * 60_000, tmp_path)} == {"#,##0.000"}
+
+
+def test_what_is_no_number_stays_empty_and_what_is_infinite_is_said(tmp_path):
+    found = cells([float("nan"), float("inf"), 1.5, True, None, "=1+1"], tmp_path)
+    assert [cell.value for cell in found[1:4]] == ["inf", 1.5, True]
+    assert (found[0].value, found[4].value) == (None, None)
+    assert (found[5].value, found[5].data_type) == ("=1+1", "s")
+
+
+def test_a_text_too_long_for_a_cell_ends_in_an_ellipsis(tmp_path):
+    whole, cut = cells(["a" * 32_767, "b" * 32_768], tmp_path)
+    assert whole.value == "a" * 32_767
+    assert cut.value == "b" * 32_766 + "…"
+
+
+def width_of(sheet, column):
+    """Width of a column; neighbours of the same looks are described together."""
+    dimensions = sheet.column_dimensions.values()
+    return next(each.width for each in dimensions if each.min <= column <= each.max)
+
+
+def test_columns_are_as_wide_as_what_they_show(book):
+    """Also where the longest text comes late, as "eastbound 2" does among the steps of two trains."""
+    for sheet in (book["summary"], book["steps"]):
+        for column in sheet.iter_cols():
+            width = width_of(sheet, column[0].column)
+            texts = [cell.value for cell in column if isinstance(cell.value, str)]
+            assert width > min(60, max(map(len, texts)))
 
 
 def as_csv(table, spreadsheet):

@@ -7,7 +7,6 @@ import typer
 
 from tpss import library
 from tpss.results.contents import FIGURE_NAMES
-from tpss.scenario.own_library import own_entries
 
 
 def scenario_files(incomplete: str) -> list[str]:
@@ -29,6 +28,8 @@ def library_kinds(incomplete: str) -> list[str]:
 
 def library_names(context: typer.Context, incomplete: str) -> list[str]:
     """Names of the kind before them that begin like this."""
+    from tpss.scenario.own_library import own_entries  # it loads pydantic, which no help needs
+
     kind = context.params.get("kind")
     shipped = library.entries(kind) if kind in library.KINDS else {}
     own = own_entries().get(str(kind), {})

@@ -236,7 +236,8 @@ def export(
 
     They hold trains and stations, every step of every train, violations of voltage limits, and the
     evidence for standards; of a study, every column of every case. Headings carry units, such as
-    `energy [MWh]`. xlsx is one workbook.
+    `energy [MWh]`. xlsx is one workbook; that of a result opens with its key figures and the scenario,
+    and ends with the rows of all steps.
 
     Exit codes: 0 done, 2 the folder holds no result, or the files cannot be written.
     """

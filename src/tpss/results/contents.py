@@ -39,7 +39,7 @@ TABLE_PLACES = {
     **{name: f"standards.{name}" for name in _OF_STANDARDS},
     "thermal": "thermal",
     "thermal_windows": "thermal_windows",
-    "trains": "train_steps",
+    "steps": "train_steps",
 }
 """Tables by the names of their files, or of their sheets, and where a `Result` has them."""
 

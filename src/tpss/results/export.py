@@ -18,6 +18,7 @@ from tpss.files.whole import write_file
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.csv_texts import with_shown_texts, without_formulas
 from tpss.results.file_kinds import Kind, Spreadsheet
+from tpss.results.overview import overview
 from tpss.results.result import Result
 from tpss.results.workbook import MOST_ROWS, workbook
 
@@ -26,7 +27,7 @@ TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
 }
 """Tables by the names of their files, or of their sheets."""
 
-NEEDS = {Kind.XLSX: ("openpyxl", "openpyxl"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
+NEEDS = {Kind.XLSX: ("xlsxwriter", "xlsxwriter"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
 """Package that a file type needs, and what to install for it."""
 
 
@@ -44,7 +45,8 @@ def export(
     ----------
     result : Result
     kind : Kind
-        Excel gets one file with one sheet per table, the others one file per table.
+        Excel gets one file with one sheet per table, behind a summary and the scenario; the others get
+        one file per table.
     folder : Path
         Made if it does not exist.
     force : bool
@@ -66,6 +68,8 @@ def export(
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
     check_files(folder, names, force)
     tables = {name: table(result) for name, table in TABLES.items()}
+    if kind is Kind.XLSX:
+        tables = {**overview(result), **tables}
     return save_files(folder, contents_of(tables, kind, WORKBOOK, spreadsheet), force)
 
 
@@ -74,7 +78,7 @@ def export_workbook(result: Result, file: Path, *, force: bool = False) -> Path:
     if file.suffix.lower() != ".xlsx":
         raise ResultError(f"{file} does not end in .xlsx, by which Excel knows a workbook")
     refuse_to_replace(file, force, "a file", Path.is_file)
-    tables = {name: table(result) for name, table in TABLES.items()}
+    tables = {**overview(result), **{name: table(result) for name, table in TABLES.items()}}
     (content,) = contents_of(tables, Kind.XLSX, WORKBOOK).values()
     with explained(file):
         write_file(file, content)

@@ -234,7 +234,7 @@ class Result:
         return export(self, Kind.PARQUET, Path(folder), force=force)
 
     def to_excel(self, file: str | Path, *, force: bool = False) -> Path:
-        """Write all tables into a workbook of Excel, as a sheet each.
+        """Write all tables into a workbook of Excel, as a sheet each, behind a summary and the scenario.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
 """Workbooks of Excel: a sheet a table, headings that stay visible, columns as wide as they need."""
 
 import io
-from collections.abc import Iterator, Mapping
-from itertools import islice
+import math
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import pandas as pd
@@ -10,17 +10,22 @@ import pandas as pd
 MOST_ROWS = 2**20
 """Rows of a sheet of Excel, its heading included."""
 
-WIDEST = 40
-"""Widest column of a sheet, in characters."""
+MOST_TEXT = 32_767
+"""Characters of a cell of Excel."""
 
-LOOKED_AT = 200
-"""First rows of a table by which the widths of its columns are chosen."""
+WIDEST = 60
+"""Widest column of a sheet, in characters; longer texts are broken into lines."""
 
-DIGITS = 7
+DIGITS = 5
 """Significant digits that a number shows, which keeps all of them."""
 
-MOST_FORMATTED = 50_000
-"""Cells of a table whose numbers get formats: each takes its time."""
+PLAIN_LENGTH = 8
+"""Characters of a number among texts that is shown as it is."""
+
+SMALL, NOTHING = 1e-3, 1e-12
+"""Sizes below which numbers are shown with powers of ten, and as 0: what rounding leaves of nothing."""
+
+GENERAL = "General"
 
 
 def workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
@@ -31,80 +36,122 @@ def workbook(tables: Mapping[str, pd.DataFrame]) -> bytes:
     tables : mapping of str to DataFrame
         With headings as they are to be read, of fewer than `MOST_ROWS` rows.
     """
-    import openpyxl  # a tenth of a second to load
+    import xlsxwriter  # some hundredths of a second to load
 
-    book = openpyxl.Workbook(write_only=True)
-    for name, table in tables.items():
-        sheet = book.create_sheet(name)
-        sheet.freeze_panes = "A2"
-        for i, width in enumerate(_widths(table)):
-            letter = openpyxl.utils.get_column_letter(i + 1)
-            sheet.column_dimensions[letter].width = width
-        if len(table.columns):
-            last = openpyxl.utils.get_column_letter(len(table.columns))
-            sheet.auto_filter.ref = f"A1:{last}{len(table) + 1}"
-        for row in _rows(table, sheet):
-            sheet.append(row)
     file = io.BytesIO()
-    book.save(file)
+    # A row at a time: the cells of a day's run would not fit into memory well.
+    with xlsxwriter.Workbook(file, {"constant_memory": True}) as book:
+        formats = _Formats(book)
+        for name, table in tables.items():
+            _write(table, book.add_worksheet(name), formats)
     return file.getvalue()
 
 
-def _widths(table: pd.DataFrame) -> Iterator[int]:
-    """Width of each column, in characters."""
-    for i, heading in enumerate(table.columns):
-        shown = (_shown(value) for value in islice(table.iloc[:, i], LOOKED_AT))
-        yield min(WIDEST, max(map(len, [str(heading), *shown])) + 3)
+class _Formats:
+    """Formats of a workbook, each made once."""
+
+    def __init__(self, book: Any) -> None:
+        self._book = book
+        self._made: dict[tuple[str, bool], Any] = {}
+        self.bold = book.add_format({"bold": True})
+
+    def of(self, number_format: str, breaks: bool = False) -> Any:
+        """The format of some numbers, or of texts that are broken into lines."""
+        key = number_format, breaks
+        if key not in self._made:
+            looks = {"num_format": number_format, "text_wrap": breaks, "valign": "top"}
+            self._made[key] = self._book.add_format(looks)
+        return self._made[key]
 
 
-def _shown(value: Any) -> str:
-    return f"{value:,.{DIGITS}g}" if isinstance(value, float) else str(value)
+def _write(table: pd.DataFrame, sheet: Any, formats: _Formats) -> None:
+    sheet.freeze_panes(1, 0)
+    if len(table.columns):
+        sheet.autofilter(0, 0, len(table), len(table.columns) - 1)
+    for c, heading in enumerate(table.columns):
+        column = table.iloc[:, c]
+        number_format = _number_format(column)
+        width = max(len(str(heading)) + 3, *_lengths(column, number_format)) + 2
+        breaks = width > WIDEST
+        # Cells without a format of their own have that of their column, at no cost.
+        sheet.set_column(c, c, min(width, WIDEST), formats.of(number_format, breaks))
+        sheet.write_string(0, c, str(heading), formats.bold)
+    writers = [_writer(table.iloc[:, c], sheet, formats) for c in range(len(table.columns))]
+    columns = [table.iloc[:, c].tolist() for c in range(len(table.columns))]
+    for r, row in enumerate(zip(*columns, strict=True), 1):
+        for c, value in enumerate(row):
+            writers[c](r, c, value)
 
 
-def _rows(table: pd.DataFrame, sheet: Any) -> Iterator[list[Any]]:
-    """Headings, in bold, and the rows below."""
-    from openpyxl.cell import WriteOnlyCell
-    from openpyxl.styles import Font
+def _writer(column: pd.Series, sheet: Any, formats: _Formats) -> Callable[[int, int, Any], None]:
+    """What writes the values of a column: numbers with its format, others each with their own."""
+    if pd.api.types.is_float_dtype(column) and not column.isin([math.inf, -math.inf]).any():
+        write_number = sheet.write_number
 
-    bold = []
-    for heading in table.columns:
-        cell = WriteOnlyCell(sheet, str(heading))
-        cell.font = Font(bold=True)
-        bold.append(cell)
-    yield bold
-    formats = [_number_format(table.iloc[:, i]) for i in range(len(table.columns))]
-    if table.size > MOST_FORMATTED:
-        formats = [None] * len(formats)
-    known = table.astype(object).where(table.notna(), None)
-    for row in known.itertuples(index=False, name=None):
-        yield [_cell(value, each, sheet) for value, each in zip(row, formats, strict=True)]
+        def write_float(row: int, place: int, value: float) -> None:
+            if value == value:  # a cell of a number that is not known stays empty
+                write_number(row, place, value)
+
+        return write_float
+
+    def write(row: int, place: int, value: Any) -> None:
+        if value is None or value is pd.NA or value != value:
+            return
+        if isinstance(value, bool):
+            sheet.write_boolean(row, place, value)
+        elif isinstance(value, int | float) and math.isfinite(value):
+            own = _format_among_texts(value)
+            sheet.write_number(row, place, value, None if own == GENERAL else formats.of(own))
+        else:  # write_string makes no formula of a name that begins with "="
+            sheet.write_string(row, place, _text(value))
+
+    return write
 
 
-def _number_format(column: pd.Series) -> str | None:
-    """Format of the numbers of a column: a comma for thousands, digits by the largest of them.
+def _text(value: Any) -> str:
+    """A text as a cell can hold it; one that is too long ends in an ellipsis."""
+    text = str(value)
+    return text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 1]}…"
 
-    None for whole numbers, such as years, and for what is so small that Excel shows powers of ten.
-    """
+
+def _lengths(column: pd.Series, number_format: str) -> Iterator[int]:
+    """Characters of the longest values of a column, as they are shown."""
+    yield 0
+    if pd.api.types.is_float_dtype(column):
+        decimals = len(number_format.rpartition(".")[2]) if "." in number_format else 1
+        for value in (column.min(), column.max()):
+            if math.isfinite(value):
+                small = number_format.endswith("E+00")
+                yield len(f"{value:.2e}" if small else f"{value:,.{decimals}f}")
+        return
+    for value in column.unique():
+        known = isinstance(value, float) and math.isfinite(value)
+        yield max(map(len, f"{value:.{DIGITS}g}" if known else str(value).split("\n")), default=0)
+
+
+def _number_format(column: pd.Series) -> str:
+    """Format of the numbers of a column by the largest of them; none for whole ones, such as years."""
     if not pd.api.types.is_float_dtype(column):
-        return None
+        return GENERAL
     sizes = column.abs()
-    sizes = sizes[sizes.notna() & (sizes < float("inf")) & (sizes > 0.0)]
-    if sizes.empty or (sizes % 1.0 == 0.0).all() or sizes.min() < 1e-4:
-        return None
-    whole = len(str(int(sizes.max())))
-    return "#,##0." + "0" * max(1, min(4, DIGITS - whole))
+    sizes = sizes[sizes.notna() & (sizes < math.inf)]
+    if sizes.empty or (sizes % 1.0 == 0.0).all():
+        return GENERAL
+    return _format_of_size(float(sizes.max()))
 
 
-def _cell(value: Any, number_format: str | None, sheet: Any) -> Any:
-    """A value as it is: openpyxl would turn a name that begins with "=" into a formula."""
-    is_formula = isinstance(value, str) and value.startswith("=")
-    if not is_formula and (number_format is None or not isinstance(value, float)):
-        return value
-    from openpyxl.cell import WriteOnlyCell
+def _format_among_texts(value: float) -> str:
+    """Format of a number in a column of texts and numbers: what is short is shown as it is."""
+    short = isinstance(value, int) or value % 1.0 == 0.0 or len(repr(value)) <= PLAIN_LENGTH
+    return GENERAL if short else _format_of_size(abs(value))
 
-    cell = WriteOnlyCell(sheet, value)
-    if is_formula:
-        cell.data_type = "s"
-    else:
-        cell.number_format = number_format
-    return cell
+
+def _format_of_size(size: float) -> str:
+    """Format for numbers up to a size: a comma for thousands, and as many digits as tell something."""
+    if size < NOTHING:
+        return "0.0"
+    if size < SMALL:
+        return "0.00E+00"
+    if size < 1.0:
+        return "0." + "0" * (3 - math.floor(math.log10(size)))
+    return "#,##0." + "0" * max(1, min(4, DIGITS - len(str(int(size)))))
