@@ -65,20 +65,20 @@ def moments(monkeypatch, tmp_path):
     found = Moments()
     replace = Path.replace
 
-    def write(place, content, mode):
+    def write(file, content):
         found.pass_one()
-        with place.open(mode) as file:
-            file.write(bytes(content)[: len(content) // 2])
-            file.flush()
-            found.pass_one()
-            file.write(bytes(content)[len(content) // 2 :])
+        file.write(bytes(content)[: len(content) // 2])
+        file.flush()
+        found.pass_one()
+        file.write(bytes(content)[len(content) // 2 :])
+        file.flush()
         found.pass_one()
 
     def put(self, target):
         replace(self, target)
         found.pass_one()
 
-    monkeypatch.setattr(whole, "_write", write)
+    monkeypatch.setattr(whole, "_write_through", write)
     monkeypatch.setattr(Path, "replace", put)
     monkeypatch.setattr(simulate, "FILE_S", 0.0)
     return found

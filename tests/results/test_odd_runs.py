@@ -44,6 +44,11 @@ def test_a_damaged_or_foreign_file_is_called_that(tmp_path):
     with pytest.raises(tpss.ResultError, match="damaged"):
         tpss.load_result(folder)
     xr.Dataset({"other": ("x", [1.0])}).to_netcdf(folder / "result.nc", engine="netcdf4")
+    with pytest.raises(tpss.ResultError, match="not as it was written"):
+        tpss.load_result(folder)
+    summary = json.loads((folder / "summary.json").read_text())
+    del summary["sha256"]  # as earlier versions saved it
+    (folder / "summary.json").write_text(json.dumps(summary))
     with pytest.raises(tpss.ResultError, match="not the dataset of a run"):
         tpss.load_result(folder)
     (folder / "summary.json").write_text(json.dumps([]))

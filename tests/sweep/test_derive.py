@@ -212,6 +212,7 @@ def test_every_position_but_that_of_the_ground_moves_with_the_end_of_the_line():
         "supply.without_contact_line.*.to_km",
         "supply.autotransformers.*.positions_km.*",
         "outages.*.transformers_km.*",
+        "outages.*.autotransformers.*.position_km",
         "outages.*.sections.*.from_km",
         "outages.*.sections.*.to_km",
         "traffic.*.initial_trains.*.position_km",

@@ -6,7 +6,9 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from tpss.scenario.fields import Part, Real, ascending, fault
 from tpss.scenario.machine import Ratio
-from tpss.vehicle.part_load import MOST_LOADS, falls_with_power
+
+MOST_LOADS = 8
+"""Points that a curve may have: as many as a train's record has places, `vehicle.part_load`."""
 
 RATED_PERCENT = 100.0
 """Load that a curve has to reach. [%]"""
@@ -71,6 +73,8 @@ class EfficiencyOverLoad(Part):
         load = info.data.get("load_percent")
         if load is None or len(value) != len(load):
             return value
+        from tpss.vehicle.part_load import falls_with_power  # numba, which few scenarios need
+
         for sign, what in _FALLS.items():
             k = falls_with_power(list(load), list(value), sign)
             if k is not None:

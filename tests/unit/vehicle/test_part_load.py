@@ -24,6 +24,8 @@ import pytest
 
 from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
+from tpss.scenario import over_load
+from tpss.vehicle import part_load
 from tpss.vehicle.at_load import follow_load
 from tpss.vehicle.demand import (
     certify_free_band,
@@ -247,3 +249,7 @@ def test_brakes_have_the_curve_of_traction_or_one_of_their_own(as_run):
         found = demand_at(72.0, kinds[0], points, adhesion_n=1e6)
         as_run(offer)(100e3, 20.0, kinds[0], found, points)
         assert found.offered_power_w == pytest.approx(1200e3 * 0.9 * factor, rel=1e-12)
+
+
+def test_a_curve_of_a_scenario_has_as_many_points_as_a_record_has_places():
+    assert over_load.MOST_LOADS == part_load.MOST_LOADS
