@@ -64,6 +64,8 @@ def test_a_figure_and_a_report_are_asked_of_the_result(result, tmp_path):
     assert figure.get_suptitle() == "a-b: <b> 1"
     with pytest.raises(tpss.ResultError, match="there is no figure 'volt'"):
         result.plot("volt")
+    with pytest.raises(tpss.ResultError, match="against time or distance, not 'tme'"):
+        result.plot("journey", against="tme")
     assert "TPSS report" in result.report(tmp_path / "report.html").read_text()[:2000]
 
 

@@ -2,13 +2,10 @@
 
 from pathlib import Path
 
-import tomli_w
-
 from tpss.cli.plot import ALL, FORMATS, figure_bytes
 from tpss.errors import ResultError, StudyError, no_such
-from tpss.files.refusals import explained, refuse_to_replace
+from tpss.files.refusals import refuse_to_replace
 from tpss.files.several import check_files, save_files
-from tpss.files.whole import write_file
 from tpss.results.contents import DATASET, REPORT, TABLES
 from tpss.results.contents import FIGURES as FIGURES_FOLDER
 from tpss.results.file_kinds import Kind, Spreadsheet
@@ -55,11 +52,8 @@ def write_case(place: Path, case: int, out: Path | None, force: bool) -> None:
         last = f"{design.cases - 1:,}"
         raise StudyError(f"{study.file.name} has no case {case}; give a number from 0 to {last}")
     target = out or Path(f"{study.file.name}-{case}.toml")
-    refuse_to_replace(target, force, "a file", Path.is_file)
-    text = tomli_w.dumps(scenario_of(design, case).as_document())
-    with explained(target):
-        target.parent.mkdir(parents=True, exist_ok=True)
-        write_file(target, text.encode())
+    refuse_to_replace(target, force, "a file", Path.is_file)  # before a scenario is made
+    scenario_of(design, case).save(target, force=force)
     values = ", ".join(f"{name} = {value!r}" for name, value in design.values(case).items())
     print(f"Wrote {target}: case {case}, {values}")
     print(f"Run it with  tpss run {target}")

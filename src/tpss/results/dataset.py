@@ -229,69 +229,96 @@ def attributes(summary: dict[str, Any], step_s: float, last_step_s: float) -> di
 
 
 def _coordinates(outcome: Outcome, model: Model, layout: Layout) -> dict[str, object]:
-    h, plan, trains = model.options.step_s, layout.supply, outcome.trains
-    calls = np.asarray(outcome.recording.calls)
-    # A train that was on the line at the start has no departure.
+    return {
+        **_of_lines(layout),
+        **_of_links_and_stores(layout),
+        "time": ("time", outcome.instants_s, _words("s", "time from the start")),
+        **_of_trains(outcome, model),
+        **_of_calls(outcome),
+        **_of_supply(layout),
+    }
+
+
+def _words(unit: str, long_name: str) -> dict[str, str]:
+    return {"units": unit, "long_name": long_name}
+
+
+def _of_lines(layout: Layout) -> dict[str, object]:
+    """Coordinates of lines, if there are several."""
+    if len(layout.lines) == 1:
+        return {}
+    index = _words("1", "index of its line")
+    return {
+        "line": ("line", list(layout.lines), _words("", "line")),
+        "node_line": ("node", np.array(layout.supply.node_line), index),
+        "station_line": ("station", np.array(layout.station_line), index),
+    }
+
+
+def _of_links_and_stores(layout: Layout) -> dict[str, object]:
+    """Coordinates of what few supplies have."""
+    found: dict[str, object] = {}
+    plan = layout.supply
+    if plan.links:
+        words = _words("", "transformer between several nodes")
+        found["link"] = ("link", plan.link_names, words)
+        found["link_kind"] = ("link", plan.link_kinds, _words("", "what it is"))
+    if layout.stores:
+        words = _words("", "store of energy at the line")
+        found["store"] = ("store", list(layout.stores), words)
+        found["store_position"] = ("store", np.array(layout.store_m), _words("m", "position"))
+        if len(layout.lines) > 1:
+            words = _words("1", "index of its line")
+            found["store_line"] = ("store", np.array(layout.store_line), words)
+    return found
+
+
+def _of_trains(outcome: Outcome, model: Model) -> dict[str, object]:
+    """Coordinates of trains; one that was on the line at the start has no departure."""
+    h, trains = model.options.step_s, outcome.trains
     placed = np.array([train.phase != Phase.PENDING for train in trains], dtype=bool)
     departure_s = np.array(
         [train.departure_step * h + train.departure_wait_s for train in trains], dtype=float
     )
-
-    def of(unit: str, long_name: str) -> dict[str, str]:
-        return {"units": unit, "long_name": long_name}
-
-    node_m = np.array(plan.node_km) * 1e3
-    lines = {
-        "line": ("line", list(layout.lines), of("", "line")),
-        "node_line": ("node", np.array(plan.node_line), of("1", "index of its line")),
-        "station_line": ("station", np.array(layout.station_line), of("1", "index of its line")),
-    }
-    links = {
-        "link": ("link", plan.link_names, of("", "transformer between several nodes")),
-        "link_kind": ("link", plan.link_kinds, of("", "what it is")),
-    }
-    stores = {
-        "store": ("store", list(layout.stores), of("", "store of energy at the line")),
-        "store_position": ("store", np.array(layout.store_m), of("m", "position")),
-    }
-    if len(layout.lines) > 1:
-        words = of("1", "index of its line")
-        stores["store_line"] = ("store", np.array(layout.store_line), words)
+    delay_s = np.where(placed, np.nan, [train.delay_s for train in trains])
+    late = "departure later than scheduled, where scheduled times do not follow it"
+    departure = ("train", np.where(placed, np.nan, departure_s), _words("s", "departure"))
     return {
-        **(lines if len(layout.lines) > 1 else {}),
-        **(links if plan.links else {}),
-        **(stores if layout.stores else {}),
-        "time": ("time", outcome.instants_s, of("s", "time from the start")),
-        "train": ("train", [train.name for train in trains], of("", "train")),
-        "service": ("train", [train.service for train in trains], of("", "service of the train")),
-        "departure_time": ("train", np.where(placed, np.nan, departure_s), of("s", "departure")),
-        "departure_delay": (
+        "train": ("train", [train.name for train in trains], _words("", "train")),
+        "service": (
             "train",
-            np.where(placed, np.nan, [train.delay_s for train in trains]),
-            of("s", "departure later than scheduled, where scheduled times do not follow it"),
+            [train.service for train in trains],
+            _words("", "service of the train"),
         ),
-        "arrival_time": ("train", outcome.arrival_s, of("s", "arrival")),
-        "node": ("node", plan.nodes, of("", "node")),
+        "departure_time": departure,
+        "departure_delay": ("train", delay_s, _words("s", late)),
+        "arrival_time": ("train", outcome.arrival_s, _words("s", "arrival")),
+    }
+
+
+def _of_calls(outcome: Outcome) -> dict[str, object]:
+    """Coordinates of stops on the routes of the trains."""
+    calls = np.asarray(outcome.recording.calls)
+    arrival = _words("s", "arrival at the stop, if the train moves continuously")
+    departure = _words("s", "departure from the stop, if the train moves continuously")
+    return {
+        "call": ("call", np.arange(calls.shape[1]), _words("", "stop on the route of the train")),
+        "call_arrival_time": (("train", "call"), calls["arrival_s"], arrival),
+        "call_departure_time": (("train", "call"), calls["departure_s"], departure),
+    }
+
+
+def _of_supply(layout: Layout) -> dict[str, object]:
+    """Coordinates of nodes, feeding stations and branches."""
+    plan, of_branches = layout.supply, "resistance of a lumped branch, at its own level"
+    resistance_ohm, node_m = np.array(plan.branch_resistance_ohm()), np.array(plan.node_km) * 1e3
+    return {
+        "node": ("node", plan.nodes, _words("", "node")),
         "node_kind": ("node", plan.node_kinds, NODE_KIND),
-        "node_position": ("node", node_m, of("m", "position of the node")),
-        "call": ("call", np.arange(calls.shape[1]), of("", "stop on the route of the train")),
-        "call_arrival_time": (
-            ("train", "call"),
-            calls["arrival_s"],
-            of("s", "arrival at the stop, if the train moves continuously"),
-        ),
-        "call_departure_time": (
-            ("train", "call"),
-            calls["departure_s"],
-            of("s", "departure from the stop, if the train moves continuously"),
-        ),
-        "station": ("station", list(layout.stations), of("", "feeding station")),
-        "station_position": ("station", np.array(layout.station_m), of("m", "position")),
-        "branch": ("branch", plan.branch_labels(), of("", "branch")),
-        "branch_kind": ("branch", plan.branch_kind_of_each(), of("", "what the branch is")),
-        "branch_resistance": (
-            "branch",
-            np.array(plan.branch_resistance_ohm()),
-            of("ohm", "resistance of a lumped branch, at its own level"),
-        ),
+        "node_position": ("node", node_m, _words("m", "position of the node")),
+        "station": ("station", list(layout.stations), _words("", "feeding station")),
+        "station_position": ("station", np.array(layout.station_m), _words("m", "position")),
+        "branch": ("branch", plan.branch_labels(), _words("", "branch")),
+        "branch_kind": ("branch", plan.branch_kind_of_each(), _words("", "what the branch is")),
+        "branch_resistance": ("branch", resistance_ohm, _words("ohm", of_branches)),
     }

@@ -12,9 +12,9 @@ import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
-from tpss.files.refusals import explained, refuse_to_replace
+from tpss.files.refusals import refuse_to_replace
 from tpss.files.several import check_files, save_files
-from tpss.files.whole import write_file
+from tpss.files.single import save_file
 from tpss.results.contents import TABLE_PLACES, WORKBOOK
 from tpss.results.csv_texts import with_shown_texts, without_formulas
 from tpss.results.file_kinds import Kind, Spreadsheet
@@ -80,9 +80,7 @@ def export_workbook(result: Result, file: Path, *, force: bool = False) -> Path:
     refuse_to_replace(file, force, "a file", Path.is_file)
     tables = {**overview(result), **{name: table(result) for name, table in TABLES.items()}}
     (content,) = contents_of(tables, Kind.XLSX, WORKBOOK).values()
-    with explained(file):
-        write_file(file, content)
-    return file
+    return save_file(file, content, force)
 
 
 def contents_of(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import pandas as pd
 import xarray as xr
@@ -265,7 +265,10 @@ class Result:
         return write_report(self, file, force=force)
 
     def plot(
-        self, figure: str = "voltage", train: str | None = None, against: str = "distance"
+        self,
+        figure: str = "voltage",
+        train: str | None = None,
+        against: Literal["distance", "time"] = "distance",
     ) -> "Figure":
         """Draw a figure.
 
@@ -286,11 +289,11 @@ class Result:
         Raises
         ------
         ResultError
-            The audit failed, or there is no such figure or train, or nothing to draw.
+            The audit failed, or there is no such figure, train or quantity, or nothing to draw.
         """
         from tpss.report.figures.catalogue import draw
 
-        return draw(figure, self, train, "time" if against == "time" else "distance")
+        return draw(figure, self, train, against)
 
 
 def load_result(folder: str | Path) -> Result:

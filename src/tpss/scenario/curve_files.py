@@ -7,8 +7,7 @@ from typing import Any
 
 from tpss.errors import Finding, ScenarioError, alike_together
 from tpss.scenario.profiles import demand_ascending
-from tpss.tables.kinds import BRAKING, EFFORT
-from tpss.tables.read import Table, read_table
+from tpss.tables.read import Table
 
 
 @dataclass(frozen=True)
@@ -49,19 +48,14 @@ class CurveOfFile:
         return self.table.place(self.source(key, indices), quantity)
 
 
-def read_effort(path: Path, named_by: str) -> CurveOfFile:
-    """Tractive effort over speed, and over voltage if the file has a column of it.
+def effort_from(table: Table) -> CurveOfFile:
+    """Tractive effort over speed, and over voltage if the table has a column of it.
 
     Raises
     ------
     ScenarioError
-        The file has faults, or lacks a force at one of its speeds and voltages.
+        The table has faults, or lacks a force at one of its speeds and voltages.
     """
-    return effort_from(read_table(path, EFFORT, named_by))
-
-
-def effort_from(table: Table) -> CurveOfFile:
-    """Tractive effort of a table, as `read_effort`."""
     quantities = {"speed_kmh": "speed", "force_kn": "force", "voltage_kv": "voltage"}
     speeds, forces = table.numbers("speed"), table.numbers("force")
     if "voltage" not in table.values:
@@ -119,19 +113,14 @@ def _faults_of_grid(
                 yield table.fault(k, "voltage", f"{u:g}", problem, remedy)
 
 
-def read_braking(path: Path, named_by: str) -> CurveOfFile:
+def braking_from(table: Table) -> CurveOfFile:
     """Retardations by bands of speed, each from its row's speed on.
 
     Raises
     ------
     ScenarioError
-        The file has faults; all are listed, those of one kind once.
+        The table has faults; all are listed, those of one kind once.
     """
-    return braking_from(read_table(path, BRAKING, named_by))
-
-
-def braking_from(table: Table) -> CurveOfFile:
-    """Retardations of a table, as `read_braking`."""
     demand_ascending(table, "speed")
     quantities = {"from_speed_kmh": "speed", "retardation_m_s2": "retardation"}
     lists = {key: table.numbers(quantity) for key, quantity in quantities.items()}

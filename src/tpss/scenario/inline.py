@@ -18,7 +18,7 @@ from tpss import library
 from tpss.errors import Finding, ScenarioError
 from tpss.scenario.clock import start_of
 from tpss.scenario.completed import completed
-from tpss.scenario.curve_files import CurveOfFile, read_braking, read_effort
+from tpss.scenario.curve_files import CurveOfFile, braking_from, effort_from
 from tpss.scenario.files import read_toml
 from tpss.scenario.given_path import from_here
 from tpss.scenario.inlined import Inlined, Location
@@ -26,13 +26,15 @@ from tpss.scenario.override import copy_of
 from tpss.scenario.own_library import SUFFIX, Entries, own_entries
 from tpss.scenario.profiles import (
     Profile,
-    read_gradients,
-    read_losses,
-    read_speed_limits,
-    read_stations,
+    gradients_from,
+    limits_from,
+    losses_from,
+    stations_from,
 )
 from tpss.scenario.timetable import Defaults, read_timetable
 from tpss.scenario.timetable_density import at_density, density_of
+from tpss.tables.kinds import BRAKING, EFFORT, GRADIENTS, LOSSES, SPEED_LIMITS, STATIONS
+from tpss.tables.read import reading
 
 PLACES: Mapping[tuple[str, ...], str] = {
     ("line",): "",
@@ -70,8 +72,8 @@ LOSSES_OF = (
 """Where losses may name a CSV file with their curve."""
 
 CURVES: Mapping[str, Callable[[Path, str], CurveOfFile]] = {
-    "tractive_effort": read_effort,
-    "max_retardation_m_s2": read_braking,
+    "tractive_effort": reading(EFFORT, effort_from),
+    "max_retardation_m_s2": reading(BRAKING, braking_from),
 }
 """Keys of a train whose tables may name a file with their curve, and what reads it."""
 
@@ -88,9 +90,9 @@ LOSSLESS = ({"load_percent": 0.0, "loss_kw": 0.0}, {"load_percent": 100.0, "loss
 """Rows that allow the rest of a document to be checked, in place of those that cannot be read."""
 
 OF_LINES: Mapping[str, tuple[Callable[[Path, str], Profile], Sequence[dict[str, float]]]] = {
-    "speed_limits": (read_speed_limits, SLOW),
-    "speed_limits_down": (read_speed_limits, SLOW),
-    "stations": (read_stations, NOWHERE),
+    "speed_limits": (reading(SPEED_LIMITS, limits_from), SLOW),
+    "speed_limits_down": (reading(SPEED_LIMITS, limits_from), SLOW),
+    "stations": (reading(STATIONS, stations_from), NOWHERE),
 }
 """Lists of a line that may stand in files, what reads them, and what stands for those with faults."""
 
@@ -116,7 +118,7 @@ def inline_files(document: dict[str, Any], source: Path) -> Inlined:
         for name, (reader, instead) in OF_LINES.items():
             _insert_rows(line, location, name, reader, instead, inlined)
     for location, losses in _tables_at(document, LOSSES_OF).items():
-        _insert_rows(losses, location, "curve", read_losses, LOSSLESS, inlined)
+        _insert_rows(losses, location, "curve", reading(LOSSES, losses_from), LOSSLESS, inlined)
     for location, train in _tables_at(document, OF_TRAINS).items():
         for name in CURVES:
             _insert_curve(train, location, name, inlined)
@@ -313,16 +315,18 @@ def _reader_of_gradients(
     smoothed_over_km: object, line: Location, inlined: Inlined
 ) -> Callable[[Path, str], Profile]:
     """What reads the gradients of a line, their altitudes averaged over a length if one is given."""
+    plain = reading(GRADIENTS, gradients_from)
     if smoothed_over_km is None:
-        return read_gradients
+        return plain
     is_number = isinstance(smoothed_over_km, int | float) and not isinstance(smoothed_over_km, bool)
     if is_number and 0.01 <= smoothed_over_km <= 100.0:  # type: ignore[operator]
-        return partial(read_gradients, smoothed_over_km=float(smoothed_over_km))  # type: ignore[arg-type]
+        over_km = float(smoothed_over_km)  # type: ignore[arg-type]
+        return reading(GRADIENTS, partial(gradients_from, smoothed_over_km=over_km))
     file, place = inlined.origin((*line, SMOOTHED))
     key = ".".join(str(part) for part in place)
     problem, remedy = "not a length from 0.01 to 100 km", "write a number in km, or leave it out"
     inlined.findings.append(Finding(str(file), key, repr(smoothed_over_km), problem, remedy))
-    return read_gradients
+    return plain
 
 
 def _insert_rows(

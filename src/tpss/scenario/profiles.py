@@ -9,8 +9,7 @@ from typing import Any
 
 from tpss.errors import Finding, ScenarioError, alike_together
 from tpss.tables.altitudes import gradients_of, smoothed
-from tpss.tables.kinds import GRADIENTS, LOSSES, SPEED_LIMITS, STATIONS
-from tpss.tables.read import Table, read_table
+from tpss.tables.read import Table
 from tpss.tables.stretches import Stretch, lowest_of
 from tpss.units import kilometres
 
@@ -49,27 +48,20 @@ class Profile:
         return self.table.place(self.source[row], self.quantities.get(key, ""))
 
 
-def read_gradients(path: Path, named_by: str, smoothed_over_km: float | None = None) -> Profile:
-    """Gradients of a file, derived from altitudes if it has those.
+def gradients_from(table: Table, smoothed_over_km: float | None = None) -> Profile:
+    """Gradients of a table, derived from altitudes if it has those.
 
     Parameters
     ----------
-    path : Path
-    named_by : str
-        Key that names it.
+    table : Table
     smoothed_over_km : float, optional
         Length over which altitudes are averaged first; None: they are taken as they are. [km]
 
     Raises
     ------
     ScenarioError
-        The file has faults; all are listed, those of one kind once.
+        The table has faults; all are listed, those of one kind once.
     """
-    return gradients_from(read_table(path, GRADIENTS, named_by), smoothed_over_km)
-
-
-def gradients_from(table: Table, smoothed_over_km: float | None = None) -> Profile:
-    """Gradients of a table, as `read_gradients`."""
     if "altitude" in table.values:
         return _derived(table, smoothed_over_km)
     demand_ascending(table, "position")
@@ -112,21 +104,16 @@ def _demand_several(table: Table) -> None:
         raise ScenarioError([table.fault(0, "altitude", "", problem, remedy)])
 
 
-def read_speed_limits(path: Path, named_by: str) -> Profile:
-    """Speed limits of a file: each holds to the next one, or, if it has ends, to its end.
+def limits_from(table: Table) -> Profile:
+    """Speed limits of a table: each holds to the next one, or, if it has ends, to its end.
 
     Where several with ends overlap the lowest holds.
 
     Raises
     ------
     ScenarioError
-        The file has faults; all are listed, those of one kind once.
+        The table has faults; all are listed, those of one kind once.
     """
-    return limits_from(read_table(path, SPEED_LIMITS, named_by))
-
-
-def limits_from(table: Table) -> Profile:
-    """Speed limits of a table, as `read_speed_limits`."""
     quantities = {"from_km": "position", "speed_kmh": "speed_limit"}
     if "end" not in table.values:
         demand_ascending(table, "position")
@@ -170,19 +157,8 @@ def _faults_of_ends(table: Table) -> Iterator[Finding]:
             yield table.fault(k, "end", f"{end:g}", problem, remedy)
 
 
-def read_stations(path: Path, named_by: str) -> Profile:
-    """Stations of a file.
-
-    Raises
-    ------
-    ScenarioError
-        The file has faults; all are listed, those of one kind once.
-    """
-    return stations_from(read_table(path, STATIONS, named_by))
-
-
 def stations_from(table: Table) -> Profile:
-    """Stations of a table, as `read_stations`."""
+    """Stations of a table."""
     quantities = {
         "name": "station",
         "position_km": "position",
@@ -203,19 +179,14 @@ def stations_from(table: Table) -> Profile:
     return Profile(table, rows, list(range(len(rows))), quantities, table.notes)
 
 
-def read_losses(path: Path, named_by: str) -> Profile:
-    """Losses over the load, of a file.
+def losses_from(table: Table) -> Profile:
+    """Losses over the load, of a table.
 
     Raises
     ------
     ScenarioError
-        The file has faults; all are listed, those of one kind once.
+        The table has faults; all are listed, those of one kind once.
     """
-    return losses_from(read_table(path, LOSSES, named_by))
-
-
-def losses_from(table: Table) -> Profile:
-    """Losses of a table, as `read_losses`."""
     demand_ascending(table, "load")
     pairs = zip(table.numbers("load"), table.numbers("losses"), strict=True)
     rows = [{"load_percent": load, "loss_kw": loss} for load, loss in pairs]

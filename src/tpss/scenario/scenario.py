@@ -12,8 +12,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from tpss import library
 from tpss.errors import Finding, ScenarioError, no_such
-from tpss.files.refusals import explained, refuse_to_replace
-from tpss.files.whole import write_file
+from tpss.files.single import save_file
 from tpss.printable import document_in_nfc
 from tpss.scenario.direct_current import without_reactive_power
 from tpss.scenario.events import Restart
@@ -330,11 +329,7 @@ class Scenario(Part):
         ResultError
             The file exists, or cannot be written.
         """
-        place = Path(file)
-        refuse_to_replace(place, force, "a file", Path.is_file)
-        with explained(place):
-            write_file(place, self.to_toml().encode())
-        return place
+        return save_file(Path(file), self.to_toml().encode(), force)
 
     def digest(self) -> str:
         """Digest of all that the scenario says, wherever it was read from, its name left out."""

@@ -1,9 +1,10 @@
 """Tables whose columns are understood: values by what they are, in the units of TPSS, and notes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from tpss import units
 from tpss.errors import Finding, ScenarioError, alike_together, shortened
@@ -36,6 +37,9 @@ from tpss.tables.workbook import is_workbook, of_workbook, read_sheet
 
 Value = float | str | None
 """None: the cell is empty."""
+
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,11 @@ class Table:
         """A fault of a cell."""
         place = self.place(row, quantity)
         return Finding(str(self.path), place, shortened(str(value)), problem, remedy)
+
+
+def reading(kind: Kind, make: Callable[[Table], Made]) -> Callable[[Path, str], Made]:
+    """What reads a file, by its path and the key that names it, and makes of its table what it means."""
+    return lambda path, named_by: make(read_table(path, kind, named_by))
 
 
 def read_table(

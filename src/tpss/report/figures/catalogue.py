@@ -1,7 +1,7 @@
 """All figures by their names, with their titles."""
 
 from collections.abc import Callable, Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 from matplotlib.figure import Figure
 
@@ -33,17 +33,20 @@ Minutes = tuple[float | None, float | None]
 
 TIME_DISTANCE = "time-distance"
 
-Describe = Callable[[Result, str | None, Against], Drawing]
+Describe = Callable[[Result, str | None, Against, Minutes], Drawing]
 
 FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "network": ("run", lambda run, *_: network(run)),
-    TIME_DISTANCE: ("trains", lambda run, *_: time_distance(run)),
+    TIME_DISTANCE: (
+        "trains",
+        lambda run, _train, _against, minutes: time_distance(run, None, *minutes),
+    ),
     "journey": (
         "train",
-        lambda run, train, against: journey({"": run}, train, against, explained=True),
+        lambda run, train, against, _: journey({"": run}, train, against, explained=True),
     ),
     "voltage": ("run", lambda run, *_: voltage_envelope(run)),
-    "train-voltage": ("train", lambda run, train, _: voltage_along_line({"": run}, train, True)),
+    "train-voltage": ("train", lambda run, train, *_: voltage_along_line({"": run}, train, True)),
     "stations": ("run", lambda run, *_: station_powers({"": run})),
     "converters": ("run", lambda run, *_: station_loading(run)),
     "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
@@ -53,7 +56,7 @@ FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "thermal": ("run", lambda run, *_: thermal({"": run})),
     "rails": ("run", lambda run, *_: rail_voltage(run)),
     "energy": ("run", lambda run, *_: energy_flow(run)),
-    "effort": ("train", lambda run, train, _: effort(run, train)),
+    "effort": ("train", lambda run, train, *_: effort(run, train)),
 }
 """Figures by their names: what they need, and the function that describes them."""
 
@@ -99,11 +102,14 @@ def draw(
     Raises
     ------
     ResultError
-        The audit failed, or there is no such figure, train or minute.
+        The audit failed, or there is no such figure, train, minute or quantity.
     NothingToDrawError
         No step was simulated, or no train was on the line.
     """
     demand_figure(name)
+    if against not in get_args(Against):
+        known = " or ".join(get_args(Against))
+        raise ResultError(f"a journey is drawn against {known}, not {against!r}")
     if not result.audit["passed"]:
         raise ResultError(
             "the audit of the result failed, so its figures cannot be trusted and are not drawn: "
@@ -115,10 +121,7 @@ def draw(
     follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
     seen = along(result, corridor) if follows else result
     chosen = None if train is None and of == "run" else chosen_train(seen, train)
-    if name == TIME_DISTANCE:
-        figure = render(time_distance(seen, None, *minutes))
-    else:
-        figure = render(describe(seen, chosen, against))
+    figure = render(describe(seen, chosen, against, minutes))
     told = [chosen if of == "train" else None, seen.dataset.attrs.get(ALONG)]
     title = ": ".join([result.scenario.name, *(as_text(each) for each in told if each)])
     figure.suptitle(title, fontsize="large")
