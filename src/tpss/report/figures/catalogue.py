@@ -33,17 +33,18 @@ Minutes = tuple[float | None, float | None]
 
 TIME_DISTANCE = "time-distance"
 
-Describe = Callable[[Result, str | None, Against, Minutes], Drawing]
+Describe = Callable[..., Drawing]
+"""From a result, the name of a train or None, an `Against`, and `Minutes` or nothing."""
 
 FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
     "network": ("run", lambda run, *_: network(run)),
     TIME_DISTANCE: (
         "trains",
-        lambda run, _train, _against, minutes: time_distance(run, None, *minutes),
+        lambda run, _train, _against, minutes=(None, None): time_distance(run, None, *minutes),
     ),
     "journey": (
         "train",
-        lambda run, train, against, _: journey({"": run}, train, against, explained=True),
+        lambda run, train, against, *_: journey({"": run}, train, against, explained=True),
     ),
     "voltage": ("run", lambda run, *_: voltage_envelope(run)),
     "train-voltage": ("train", lambda run, train, *_: voltage_along_line({"": run}, train, True)),
