@@ -8,7 +8,7 @@ import numpy as np
 from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
-from tpss.model.effort_curve import adhesion
+from tpss.model.effort_curve import adhesion, level_resistance
 from tpss.model.neutral import strands
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.model.unfed import bare_in_words, unfed_in_words
@@ -289,4 +289,5 @@ def _rails(train: Train, scenario: Scenario) -> str:
 
 def _starting_force_n(train: Train, permille: float) -> float:
     """Rolling resistance at standstill, and gravity."""
-    return si(train, "resistance_a_n") + plain(gradient_force)(si(train, "mass_t"), permille * 1e-3)
+    at_rest_n = float(level_resistance(train, np.zeros(1))[0])
+    return at_rest_n + plain(gradient_force)(si(train, "mass_t"), permille * 1e-3)

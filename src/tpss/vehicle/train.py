@@ -87,6 +87,8 @@ class Motion(Record):
     """Position that it may not pass in this step, because of others; infinite: any. [m]"""
     ceiling_m_s: float
     """Speed that it may not exceed in this step, because of others; infinite: any. [m/s]"""
+    wanted_m_s: float
+    """Speed that a driver with a law of his own wants in this step; infinite: any. [m/s]"""
 
 
 class Plan(Record):
@@ -258,6 +260,7 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.power_off_s = source.power_off_s
     target.authority_m = source.authority_m
     target.ceiling_m_s = source.ceiling_m_s
+    target.wanted_m_s = source.wanted_m_s
 
 
 @kernel
