@@ -17,6 +17,7 @@ from tpss.scenario import Scenario
 from tpss.scenario.fields import LINE
 from tpss.scenario.line import DECIMALS, Line
 from tpss.scenario.machine import EffortTable
+from tpss.scenario.own_laws import laws_of
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import system_named
 from tpss.scenario.traffic import Traffic
@@ -41,6 +42,7 @@ def notes(scenario: Scenario) -> list[str]:
             for note in (*_profile(*each), *_dead_stretches(*each))
         ),
         *_supply(scenario),
+        *(f"not an equation of TPSS: {law}" for law in laws_of(scenario)),
         *filter(None, [unfed_in_words(scenario), bare_in_words(scenario)]),
         *_voltage_limits(scenario),
         *_trains(scenario),

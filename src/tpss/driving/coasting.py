@@ -66,7 +66,7 @@ def coast(
     motion = passage.motion
     room_m = min(aim.room_m, _room_to_change(motion.position_m, kind, data))
     v, on_stretch_m_s = motion.speed_m_s, coasting_speed(motion.position_m, kind, data.coasting)
-    down_to_m_s = min(on_stretch_m_s, motion.wanted_m_s)
+    down_to_m_s = min(on_stretch_m_s, train.decision.wanted_m_s)
     acceleration, until_m_s, longest_s = aim.acceleration_m_s2, aim.until_m_s, aim.longest_s
     coasts = acceleration >= 0.0 and v > down_to_m_s * (1.0 + CLOSE)
     if coasts:

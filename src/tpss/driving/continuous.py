@@ -146,7 +146,7 @@ def look_ahead(
         return
     here = index_at(motion.position_m, data.limits.from_m[row])
     cruise = min(highest_speed(data.limits.value[row][at(here)], kind), motion.ceiling_m_s)
-    cruise = min(cruise, motion.wanted_m_s)
+    cruise = min(cruise, decision.wanted_m_s)
     if v > cruise:
         return
     motion.gradient = index_from(motion.gradient, motion.position_m, data.gradients.from_m[row])
@@ -165,7 +165,7 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
     decision = train.decision
     kind = data.types[at(train.train_type)]
     train.passage.stays = False
-    train.motion.wanted_m_s = wanted_speed(train, kind, data)
+    decision.wanted_m_s = wanted_speed(train, kind, data)
     train.demand.driven_share = decision.moving_share = 1.0
     decision.hold_s = 0.0
     look_ahead(train, kind, data, points, scratch)

@@ -7,12 +7,15 @@ from typing import Any
 import numba
 from numba import types
 from numba.core.errors import NumbaError
-from numba.np.unsafe.ndarray import to_fixed_tuple
+from numba.np.unsafe import ndarray
 
 from tpss.laws.law import Law, LawError
 from tpss.numerics.called import MOST_PARAMETERS, Called, python_functions
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+_config: Any = numba.config
+_array_at: Any = numba.carray  # type: ignore[attr-defined]
+_as_tuple: Any = ndarray.to_fixed_tuple
 _NUMBERS = types.CPointer(types.float64)
 _kept: list[Any] = []
 """Compiled laws, which must not be freed as long as somebody may know their addresses."""
@@ -34,7 +37,7 @@ def called(law: Law, values: Sequence[float]) -> Any:
 def _address(law: Law) -> int:
     """Where the machine code of a law begins, which is compiled once a process."""
     plain = _in_python(law)
-    if numba.config.DISABLE_JIT:
+    if _config.DISABLE_JIT:
         _kept.append(plain)
         address = id(plain)
     else:
@@ -63,14 +66,14 @@ def _machine_code(law: Law) -> Any:
 
     def one(numbers: Any, values: Any, results: Any) -> None:
         results[0] = function(
-            *to_fixed_tuple(numba.carray(numbers, (given,)), given),
-            *to_fixed_tuple(numba.carray(values, (parameters,)), parameters),
+            *_as_tuple(_array_at(numbers, (given,)), given),
+            *_as_tuple(_array_at(values, (parameters,)), parameters),
         )
 
     def several(numbers: Any, values: Any, results: Any) -> None:
         all_found = function(
-            *to_fixed_tuple(numba.carray(numbers, (given,)), given),
-            *to_fixed_tuple(numba.carray(values, (parameters,)), parameters),
+            *_as_tuple(_array_at(numbers, (given,)), given),
+            *_as_tuple(_array_at(values, (parameters,)), parameters),
         )
         for k in range(found):
             results[k] = all_found[k]

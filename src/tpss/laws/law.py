@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from tpss.errors import TpssError
+
 MOST_PARAMETERS = 16
 """As many as a record of the kernels has places, `numerics.called`."""
 
 
-class LawError(ValueError):
+class LawError(TpssError):
     """A law that cannot be used as it is.
 
     Parameters
@@ -102,7 +104,10 @@ class Law:
     parameters: tuple[Parameter, ...] = ()
 
     def __post_init__(self) -> None:
-        expected = [each.name for each in (*self.kind.given, *self.parameters)]
+        expected = [
+            *(each.name for each in self.kind.given),
+            *(each.name for each in self.parameters),
+        ]
         taken = list(inspect.signature(self.function).parameters)
         if taken != expected:
             raise LawError(

@@ -4,10 +4,11 @@ Packages are looked at when a law is asked for, not before: one that cannot be i
 nobody's way who has no use for it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from typing import Any
 
 from tpss.laws.law import Law, LawError
 
@@ -70,6 +71,27 @@ def find_law(kind: str, name: str) -> Registered:
     raise LawError(
         f"there is no {kind} law {name!r}", f"{there_are}install the package that offers it"
     )
+
+
+def laws_named(content: Any) -> list[str]:
+    """The laws that a document names as ``law``, in words, sorted, with the digests of their functions.
+
+    For those who have to know whether a table that was begun can be continued.
+    """
+    names = set(_names_in(content))
+    if not names:
+        return []
+    return sorted(each.in_words for (_, name), each in known_laws().items() if name in names)
+
+
+def _names_in(content: Any) -> Iterator[str]:
+    if isinstance(content, Mapping):
+        if isinstance(named := content.get("law"), str):
+            yield named
+        content = list(content.values())
+    if isinstance(content, (list, tuple)):
+        for each in content:
+            yield from _names_in(each)
 
 
 @cache

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
+from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
@@ -41,19 +42,19 @@ python_functions: dict[int, Callable[..., tuple[float, ...]]] = {}
 def _caller(count: int) -> Any:
     """Intrinsic that calls the function at an address, which finds `count` numbers."""
 
-    @intrinsic  # type: ignore[misc]
+    @intrinsic
     def call(_: Any, address: Any, given: Any, parameters: Any) -> Any:
         found = types.UniTuple(types.float64, count)
 
         def generate(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
-            number, pointer = cgutils.ir.DoubleType(), cgutils.ir.DoubleType().as_pointer()
+            number, pointer = ir.DoubleType(), ir.DoubleType().as_pointer()
             numbers = [builder.extract_value(arguments[1], k) for k in range(given.count)]
             handed = cgutils.alloca_once(builder, number, size=given.count)
             results = cgutils.alloca_once(builder, number, size=count)
             for k, each in enumerate(numbers):
                 builder.store(each, cgutils.gep_inbounds(builder, handed, k))
             array = context.make_array(parameters)(context, builder, arguments[2])
-            kind = cgutils.ir.FunctionType(cgutils.ir.VoidType(), [pointer] * 3)
+            kind = ir.FunctionType(ir.VoidType(), [pointer] * 3)
             function = builder.inttoptr(arguments[0], kind.as_pointer())
             builder.call(function, [handed, array.data, results])
             loaded = [builder.load(cgutils.gep_inbounds(builder, results, k)) for k in range(count)]

@@ -1,9 +1,9 @@
 """Laws of other packages that a scenario names, in place of those of TPSS; see `tpss.laws`."""
 
 import itertools
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from tpss.laws.kinds import CONVERTER, DRIVER, RESISTANCE
@@ -11,6 +11,9 @@ from tpss.laws.law import LawError, LawKind
 from tpss.laws.registry import Registered, find_law
 from tpss.laws.trial import numbers_of, try_converter, try_law
 from tpss.scenario.fields import Name, Part, Real, fault
+
+if TYPE_CHECKING:
+    from tpss.scenario.scenario import Scenario
 
 SPEEDS_TRIED = 9
 """Speeds, from 0 to that of the train, at which its laws are tried."""
@@ -20,22 +23,22 @@ class OwnLaw(Part):
     """A law of another package, and its parameters."""
 
     of_kind: ClassVar[LawKind]
-    law: Name = Field(description="Name of the law; `tpss library laws` lists those there are.")
+    law: Name = Field(description="Name of the law; `tpss laws` lists those there are.")
     parameters: dict[Name, Real] = Field(
         default_factory=dict,
         description="Its parameters, in its units; those left out have the values that it has.",
     )
 
+    # As it was when the scenario was read: another one of its name may be registered later.
+    _registered: Registered = PrivateAttr()
+
+    def __hash__(self) -> int:
+        return hash((self.law, *sorted(self.parameters.items())))
+
     @property
     def registered(self) -> Registered:
-        """The law, and whose it is.
-
-        Raises
-        ------
-        LawError
-            There is none of this name.
-        """
-        return find_law(self.of_kind.name, self.law)
+        """The law, and whose it is."""
+        return self._registered
 
     @property
     def values(self) -> tuple[float, ...]:
@@ -45,7 +48,8 @@ class OwnLaw(Part):
     @model_validator(mode="after")
     def _is_known(self) -> Self:
         try:
-            assert self.values is not None
+            self._registered = find_law(self.of_kind.name, self.law)
+            self._registered.law.values(self.parameters)
         except LawError as error:
             raise as_fault(error) from error
         return self
@@ -72,6 +76,17 @@ class ConverterLaw(OwnLaw):
     def unloaded_v(self) -> float:
         """Voltage without load. [V]"""
         return numbers_of(self.registered.law, self.values, (0.0, 0.0))[0]
+
+
+def laws_of(scenario: "Scenario") -> list[str]:
+    """The laws of other packages that a scenario uses, in words, each once."""
+    trains = [scenario.trains[entry.train] for entry in scenario.traffic]
+    stations = scenario.supply.converter_stations
+    used: list[OwnLaw | None] = [
+        *(law for train in trains for law in (train.resistance_law, train.driver)),
+        *(station.law for station in stations),
+    ]
+    return list(dict.fromkeys(each.registered.in_words for each in used if each is not None))
 
 
 def as_fault(error: LawError) -> PydanticCustomError:

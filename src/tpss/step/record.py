@@ -110,7 +110,7 @@ def record_trains(
         train, row = trains[at(i)], rows[at(step), at(i)]
         kind = kinds[at(train.train_type)]
         states[at(step), at(i)] = state_code(train)
-        if kind.driver.address != 0 and train.motion.wanted_m_s <= SLOWEST_WISH_M_S:
+        if kind.driver.address != 0 and train.decision.wanted_m_s <= SLOWEST_WISH_M_S:
             counters[Counter.LEAST_WISH] += 1
         record_train(standing[at(k)].voltage_v, step_s, train, row)
         if without_power_s.shape[0] > 0:

@@ -87,8 +87,6 @@ class Motion(Record):
     """Position that it may not pass in this step, because of others; infinite: any. [m]"""
     ceiling_m_s: float
     """Speed that it may not exceed in this step, because of others; infinite: any. [m/s]"""
-    wanted_m_s: float
-    """Speed that a driver with a law of his own wants in this step; infinite: any. [m/s]"""
 
 
 class Plan(Record):
@@ -130,6 +128,8 @@ class Decision(Record):
     """Highest speed where it is, at the start of the step, if it moves continuously. [m/s]"""
     braking_square_m2_s2: float
     """Square of the speed from which it has to brake, at the start of the step. [m²/s²]"""
+    wanted_m_s: float
+    """Speed that a driver by a law of his own wants in the step; infinite: any. [m/s]"""
 
 
 class Forces(Record):
@@ -260,7 +260,6 @@ def copy_motion(source: Motion, target: Motion) -> None:
     target.power_off_s = source.power_off_s
     target.authority_m = source.authority_m
     target.ceiling_m_s = source.ceiling_m_s
-    target.wanted_m_s = source.wanted_m_s
 
 
 @kernel
