@@ -50,7 +50,7 @@ def test_an_example_begins_with_what_it_is(name):
 
 def test_an_example_brings_the_files_that_its_files_refer_to():
     assert list(tpss.examples.files_of("plan-network")) == [
-        "plan_network.toml", "network.toml", "network_timetable_dense.csv", "network_timetable.csv",
+        "plan_network.toml", "network.toml", "network_timetable.csv", "network_timetable_dense.csv",
     ]  # fmt: skip
     assert "own/freight.toml" in tpss.examples.files_of("own-trains")
 
