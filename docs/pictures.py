@@ -25,10 +25,8 @@ DOCS = Path(__file__).parent
 sys.path.append(str(DOCS / "generate"))
 import gallery_page  # noqa: E402, found where the line above says
 
-ROOT = DOCS.parent
 PICTURES = DOCS / "figures"
-SCENARIO = ROOT / "examples" / "thesis_3_7_2.toml"
-PLAN = ROOT / "examples" / "plan_320km.toml"
+SCENARIO = "thesis-3-7-2"
 MINUTE = 64
 SIZE = {"width": 1100, "height": 1440}
 PLAN_SIZE = {"width": 960, "height": 880}
@@ -37,8 +35,8 @@ WIDEST_PX = 1400
 
 
 def main() -> None:
-    """Run the scenario and the plan, and write all pictures."""
-    result = tpss.simulate(tpss.load_scenario(SCENARIO))
+    """Run the scenario, and the examples of the gallery, and write all pictures."""
+    result = tpss.simulate(tpss.load_scenario(tpss.examples.path(SCENARIO)))
     drawn = io.BytesIO()
     draw("time-distance", result).savefig(drawn, format="png", dpi=130)
     keep(drawn.getvalue(), PICTURES / "time_distance.png")
@@ -46,9 +44,8 @@ def main() -> None:
         folder = Path(name)
         report = tpss.write_report(result, folder / "report.html")
         keep(photograph(report), PICTURES / "report.png")
-        (folder / "examples").symlink_to(ROOT / "examples")
         draw_gallery(folder)
-        report = folder / gallery_page.PLAN / "report.html"
+        report = folder / gallery_page.result_of(gallery_page.PLAN) / "report.html"
         keep(photograph(report, PLAN_SIZE, "decision-tree-0-title"), PICTURES / "plan.png")
 
 
@@ -57,10 +54,10 @@ def draw_gallery(folder: Path) -> None:
     shown = [figure for figures in gallery_page.KINDS.values() for figure in figures()]
     for call in dict.fromkeys(call for figure in shown for call in figure.calls):
         subprocess.run([sys.executable, "-m", *shlex.split(call)], cwd=folder, check=True)
-    written = read_written(folder / gallery_page.PLAN)
+    written = read_written(folder / gallery_page.result_of(gallery_page.PLAN))
     for name, figure in OF_A_PLAN.items():
         if drawing := figure.describe(written, written.areas[0]):
-            render(drawing).savefig(folder / f"{name}.png", dpi=200)
+            render(drawing).savefig(folder / f"{name}.png", dpi=200, bbox_inches="tight")
     for figure in shown:
         keep((folder / f"{figure.name}.png").read_bytes(), DOCS / figure.picture, WIDEST_PX)
 

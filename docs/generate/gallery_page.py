@@ -6,28 +6,29 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from tpss import examples
 from tpss.planning.figures.catalogue import FIGURES as OF_A_PLAN
 from tpss.report.figures import FIGURES as OF_A_RESULT
 from tpss.sweep.figures import FIGURES as OF_A_STUDY
 
-USUAL_EXAMPLE = "thesis_3_7_2"
+USUAL_EXAMPLE = "thesis-3-7-2"
 EXAMPLES = {
     "network": "network",
-    "train-voltage": "emu_25kv",
-    "converter-losses": "line_320km_losses",
-    "unbalance": "neutral_section_25kv",
-    "braking": "metro_750v",
-    "storage": "tram_750v",
-    "thermal": "freight_3kv",
-    "rails": "hs_2x25kv",
+    "train-voltage": "emu-25kv",
+    "converter-losses": "line-320km-losses",
+    "unbalance": "neutral-section-25kv",
+    "braking": "metro-750v",
+    "storage": "tram-750v",
+    "thermal": "freight-3kv",
+    "rails": "hs-2x25kv",
 }
 """Scenarios of the figures that show more, or anything at all, of another one than the usual one."""
 
-STUDY, PLAN = "study_converters", "plan_320km"
+STUDY, PLAN = "study-converters", "plan-320km"
 
 INTRODUCTION = """# Gallery
 
-Every figure that TPSS draws, and what draws it. The scenarios are those of the folder `examples`.
+Every figure that TPSS draws, and what draws it, from the examples that come with it.
 [Draw figures](how-to/draw-figures.md) says what can be chosen: a train, a stretch, a format;
 [read the report](how-to/read-the-report.md) shows them as one page on which trains move."""
 
@@ -39,7 +40,7 @@ FROM_PYTHON = """## From Python
 import tpss
 from tpss.report.figures import draw
 
-result = tpss.simulate(tpss.load_scenario("examples/thesis_3_7_2.toml"))
+result = tpss.simulate(tpss.load_scenario(tpss.examples.path("thesis-3-7-2")))
 draw("journey", result).savefig("journey.png")
 ```"""
 
@@ -76,13 +77,24 @@ def of_studies() -> list[Shown]:
 
 def of_plans() -> list[Shown]:
     """Figures of plans, which stand in a report."""
-    calls = (f"tpss plan run examples/{PLAN}.toml --out {PLAN}", f"tpss plan report {PLAN}")
+    calls = (*_made(PLAN, "plan run"), f"tpss plan report {result_of(PLAN)}")
     return [Shown(name, figure.text, calls) for name, figure in OF_A_PLAN.items()]
 
 
+def result_of(example: str) -> str:
+    """Folder into which the commands write what comes of an example."""
+    return f"{example}/result"
+
+
 def _drawn(name: str, example: str, command: str) -> tuple[str, ...]:
-    make = f"tpss {command} examples/{example}.toml --out {example}"
-    return make, f"tpss plot {example} --figure {name} --out {name}.png"
+    plot = f"tpss plot {result_of(example)} --figure {name} --out {name}.png"
+    return (*_made(example, command), plot)
+
+
+def _made(example: str, command: str) -> tuple[str, str]:
+    file = f"{example}/{examples.path(example).name}"
+    new = f"tpss new {example} --from {example}"
+    return new, f"tpss {command} {file} --out {result_of(example)}"
 
 
 def _first_line(function: Callable[..., Any]) -> str:
