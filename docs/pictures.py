@@ -1,10 +1,13 @@
-"""Draw the pictures of the README and of guides: ``python docs/pictures.py``.
+"""Draw the pictures of the README, of guides and of the gallery: ``python docs/pictures.py``.
 
 Reports are photographed in Chromium, by Playwright (``pip install "tpss[test]"``).
 """
 
 import io
+import shlex
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -13,28 +16,50 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import tpss
+from tpss.planning.figures.catalogue import FIGURES as OF_A_PLAN
+from tpss.planning.written import read_written
 from tpss.report.figures import draw
+from tpss.report.render.static import render
 
-ROOT = Path(__file__).parents[1]
-PICTURES = Path(__file__).parent / "figures"
-SCENARIO = ROOT / "examples" / "thesis_3_7_2.toml"
-PLAN = ROOT / "examples" / "plan_320km.toml"
+DOCS = Path(__file__).parent
+sys.path.append(str(DOCS / "generate"))
+import gallery_page  # noqa: E402, found where the line above says
+
+PICTURES = DOCS / "figures"
+SCENARIO = "thesis-3-7-2"
 MINUTE = 64
 SIZE = {"width": 1100, "height": 1440}
 PLAN_SIZE = {"width": 960, "height": 880}
+WIDEST_PX = 1400
+"""Of pictures of the gallery."""
 
 
 def main() -> None:
-    """Run the scenario and the plan, and write all pictures."""
-    result = tpss.simulate(tpss.load_scenario(SCENARIO))
+    """Run the scenario, and the examples of the gallery, and write all pictures."""
+    result = tpss.simulate(tpss.load_scenario(tpss.examples.path(SCENARIO)))
     drawn = io.BytesIO()
     draw("time-distance", result).savefig(drawn, format="png", dpi=130)
-    keep(drawn.getvalue(), "time_distance.png")
-    with tempfile.TemporaryDirectory() as folder:
-        keep(photograph(tpss.write_report(result, Path(folder) / "report.html")), "report.png")
-        tpss.run_plan(tpss.load_plan(PLAN), Path(folder) / "plan")
-        report = tpss.write_plan_report(Path(folder) / "plan")
-        keep(photograph(report, PLAN_SIZE, "decision-tree-0-title"), "plan.png")
+    keep(drawn.getvalue(), PICTURES / "time_distance.png")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        report = tpss.write_report(result, folder / "report.html")
+        keep(photograph(report), PICTURES / "report.png")
+        draw_gallery(folder)
+        report = folder / gallery_page.result_of(gallery_page.PLAN) / "report.html"
+        keep(photograph(report, PLAN_SIZE, "decision-tree-0-title"), PICTURES / "plan.png")
+
+
+def draw_gallery(folder: Path) -> None:
+    """Draw the pictures of the gallery by the commands that it shows, each called once."""
+    shown = [figure for figures in gallery_page.KINDS.values() for figure in figures()]
+    for call in dict.fromkeys(call for figure in shown for call in figure.calls):
+        subprocess.run([sys.executable, "-m", *shlex.split(call)], cwd=folder, check=True)
+    written = read_written(folder / gallery_page.result_of(gallery_page.PLAN))
+    for name, figure in OF_A_PLAN.items():
+        if drawing := figure.describe(written, written.areas[0]):
+            render(drawing).savefig(folder / f"{name}.png", dpi=200, bbox_inches="tight")
+    for figure in shown:
+        keep((folder / f"{figure.name}.png").read_bytes(), DOCS / figure.picture, WIDEST_PX)
 
 
 def photograph(report: Path, size: Any = SIZE, begins_at: str = "plots") -> bytes:
@@ -56,10 +81,13 @@ def photograph(report: Path, size: Any = SIZE, begins_at: str = "plots") -> byte
     return picture
 
 
-def keep(picture: bytes, name: str) -> None:
+def keep(picture: bytes, file: Path, widest_px: int | None = None) -> None:
     """Store a picture in 256 colours, which are enough, and halve its file."""
+    file.parent.mkdir(exist_ok=True)
     with Image.open(io.BytesIO(picture)) as opened:
-        opened.convert("RGB").quantize(256).save(PICTURES / name, optimize=True)
+        if widest_px is not None:
+            opened.thumbnail((widest_px, widest_px))
+        opened.convert("RGB").quantize(256).save(file, optimize=True)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import command_line_page
 import evidence_page
+import gallery_page
 import geometry_page
 import library_page
 import nomenclature_tables
@@ -19,23 +20,22 @@ import study_page
 DOCS = Path(__file__).parents[1]
 NOTE = "<!-- Written by `python docs/generate`: edit that, or the program, not this page. -->"
 PAGES = {
-    "command_line.md": command_line_page.page,
-    "evidence.md": evidence_page.page,
-    "geometry.md": geometry_page.page,
-    "library.md": library_page.page,
-    "plan.md": plan_page.page,
-    "result.md": result_page.page,
-    "scenario.md": scenario_page.page,
-    "study.md": study_page.page,
+    "gallery.md": gallery_page.page,
+    "reference/command_line.md": command_line_page.page,
+    "reference/evidence.md": evidence_page.page,
+    "reference/geometry.md": geometry_page.page,
+    "reference/library.md": library_page.page,
+    "reference/plan.md": plan_page.page,
+    "reference/result.md": result_page.page,
+    "reference/scenario.md": scenario_page.page,
+    "reference/study.md": study_page.page,
 }
 
 
 def main() -> int:
     """Write or check all pages; return the exit code."""
     check = sys.argv[1:] == ["--check"]
-    texts = {
-        DOCS / "reference" / name: f"{NOTE}\n\n{page().strip()}\n" for name, page in PAGES.items()
-    }
+    texts = {DOCS / name: f"{NOTE}\n\n{page().strip()}\n" for name, page in PAGES.items()}
     texts[nomenclature_tables.PAGE] = nomenclature_tables.page()
     stale = []
     for file, text in texts.items():

@@ -30,7 +30,7 @@ INTRODUCTION = """# Plan file
 A plan is a file in [TOML](https://toml.io): what may be built of a power supply, what it costs, and
 which traffic may come with which probability. `tpss plan` finds the plan of the least expected
 cost; [Plan investments](../how-to/plan-investments.md) shows how. It needs `pip install
-"tpss[study]"`, and with a budget `"tpss[plan]"` too."""
+"tpss[plan]"`."""
 
 MONEY = """Prices are numbers in the plan's currency, or tables that say where they are from: `{ value =
 0.65e-6, source = "assumed" }`. They are real, all of one year. In the tables of `economics` they

@@ -51,6 +51,9 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.sweep.study import Study as Study
     from tpss.sweep.study import load_study as load_study
 
+if TYPE_CHECKING:
+    from tpss import examples as examples
+
 _HOME = {
     "Approximator": "tpss.approximator.approximator",
     "ApproximatorError": "tpss.errors",
@@ -102,9 +105,12 @@ __all__ = sorted(_HOME)
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module("importlib.metadata").version("tpss")
+    if name == "examples":
+        return import_module("tpss.examples")
     if name not in _HOME:
         raise AttributeError(f"module 'tpss' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    with import_module("tpss.extras").imports_explained():
+        return getattr(import_module(_HOME[name]), name)
 
 
 def __dir__() -> list[str]:

@@ -4,6 +4,7 @@ import tomllib
 
 import pytest
 
+import tpss
 from tpss import load_result
 
 
@@ -79,3 +80,47 @@ def test_a_folder_that_cannot_be_made_is_explained(tpss_command, tmp_path):
 
 def test_a_folder_with_a_space_is_quoted_in_what_to_type_next(tpss_command):
     assert "tpss check 'my line/scenario.toml'" in tpss_command("new", "my line").out
+
+
+def test_the_examples_are_listed_with_a_line_each(tpss_command, tmp_path):
+    said = tpss_command("new", "--from", "list")
+    assert said.code == 0
+    for name, sentence in tpss.examples.names().items():
+        assert f"{name} {sentence}" in said.out
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", tpss.examples.names())
+def test_an_example_is_copied_with_all_that_it_needs(tpss_command, tmp_path, name):
+    """What is told as the next thing to do can be done."""
+    said = tpss_command("new", "mine", "--from", name)
+    assert (said.code, said.err) == (0, "")
+    for place, file in tpss.examples.files_of(name).items():
+        assert (tmp_path / "mine" / place).read_bytes() == file.read_bytes()
+    _, *calls = said.out.split("then run: ")[1].split("tpss ")
+    if "plan" in calls[0]:
+        tpss.load_plan(tmp_path / "mine" / tpss.examples.path(name).name)
+    elif "sweep" in calls[0]:
+        tpss.load_study(tmp_path / "mine" / tpss.examples.path(name).name)
+    else:
+        assert tpss_command(*calls[0].split()).code == 0
+
+
+def test_no_file_of_an_example_is_overwritten(tpss_command, tmp_path):
+    (tmp_path / "network_timetable.csv").write_text("Years of work.")
+    said = tpss_command("new", ".", "--from", "network")
+    assert said.code == 2
+    assert "network_timetable.csv exists already and is not changed" in said.err
+    assert [path.name for path in tmp_path.iterdir()] == ["network_timetable.csv"]
+
+
+def test_an_example_that_there_is_not_is_told_with_the_closest(tpss_command):
+    said = tpss_command("new", "a", "--from", "thesis-160")
+    assert said.code == 2
+    assert "there is no such example; did you mean thesis-160km?" in said.err
+
+
+def test_a_folder_has_to_be_named(tpss_command):
+    said = tpss_command("new")
+    assert said.code == 2
+    assert "give a folder to write, such as my-line, or --from list" in said.err

@@ -93,11 +93,11 @@ def test_a_missing_package_is_told_with_what_to_install(
     write_study(tmp_path)
     find = importlib.util.find_spec
     monkeypatch.setattr(
-        "tpss.cli.sweep.find_spec", lambda name: None if name == package else find(name)
+        "tpss.extras.find_spec", lambda name: None if name == package else find(name)
     )
     said = tpss_command("sweep", "study.toml", "--out", "out", *options)
     assert said.code == 2
-    assert f'studies need {package}: pip install "tpss[study]"' in said.err
+    assert f'need {package}, not installed: pip install "tpss[study]"' in said.err
 
 
 def test_cases_that_could_not_be_run_are_told_in_the_end(finished, tpss_command):

@@ -46,8 +46,7 @@ def described():
 
 @pytest.mark.parametrize("name", [name for name in FIGURES if name != "rails"])
 def test_every_figure_for_print_is_drawn_for_a_page_too(described, name):
-    _, describe = FIGURES[name]
-    drawing = describe(described, "eastbound 1", "distance")
+    drawing = FIGURES[name].describe(described, "eastbound 1", "distance")
     figure = interactive.render(drawing, 400)
     assert len(figure.data) == counted(drawing)
     assert figure.layout.meta in ("time", "position", "speed", "energy")
@@ -91,7 +90,7 @@ def test_a_long_curve_of_many_pieces_keeps_the_gaps_between_them():
 
 
 def test_the_legend_is_that_of_the_first_panel(short):
-    figure = interactive.render(FIGURES["stations"][1](short, None, "distance"), 440)
+    figure = interactive.render(FIGURES["stations"].describe(short, None, "distance"), 440)
     assert [trace.name for trace in figure.data if trace.showlegend] == ["West", "East"]
 
 
@@ -99,8 +98,8 @@ def test_an_area_of_colours_and_a_bar_hold_what_was_described(short):
     voltage = line_voltage(short.dataset)
     area = interactive.render(time_distance(short, voltage), 520).data[0]
     np.testing.assert_allclose(area.z, voltage.map_kv, rtol=1e-6)
-    bars = FIGURES["energy"][1](short, None, "distance").panels[0].items
+    bars = FIGURES["energy"].describe(short, None, "distance").panels[0].items
     assert all(isinstance(bar, Bar) for bar in bars)
-    figure = interactive.render(FIGURES["energy"][1](short, None, "distance"), 400)
+    figure = interactive.render(FIGURES["energy"].describe(short, None, "distance"), 400)
     ends = [trace.base[0] + trace.x[0] for trace in figure.data]
     assert ends == pytest.approx([bar.start + bar.length for bar in bars])

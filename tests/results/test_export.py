@@ -7,7 +7,7 @@ import openpyxl
 import pandas as pd
 import pytest
 
-from tpss import ResultError
+from tpss import ResultError, extras
 from tpss.files import several
 from tpss.results import export
 from tpss.results.export import TABLES, with_units
@@ -21,7 +21,7 @@ KINDS = [
     pytest.param(
         Kind.PARQUET,
         marks=pytest.mark.skipif(
-            export.find_spec("pyarrow") is None, reason="pyarrow comes with tpss[parquet]"
+            bool(extras.absent("parquet")), reason="pyarrow comes with tpss[parquet]"
         ),
     ),
 ]
@@ -151,13 +151,13 @@ def test_files_that_were_replaced_come_back_if_one_cannot_be(result, tmp_path, m
 
 @pytest.mark.parametrize(
     ("kind", "package", "remedy"),
-    [(Kind.XLSX, "xlsxwriter", "xlsxwriter"), (Kind.PARQUET, "pyarrow", r"tpss\[parquet\]")],
+    [(Kind.XLSX, "xlsxwriter", r"tpss\[excel\]"), (Kind.PARQUET, "pyarrow", r"tpss\[parquet\]")],
 )
 def test_a_missing_package_is_named_with_the_remedy(
     result, tmp_path, monkeypatch, kind, package, remedy
 ):
-    monkeypatch.setattr(export, "find_spec", lambda name: None if name == package else object())
-    message = rf'{kind} files need {package}, which is not installed: pip install "{remedy}"'
+    monkeypatch.setattr(extras, "find_spec", lambda name: None if name == package else object())
+    message = rf'{kind} files need {package}, not installed: pip install "{remedy}"'
     with pytest.raises(ResultError, match=message):
         export.export(result, kind, tmp_path / "tables")
     assert list(tmp_path.iterdir()) == []

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tpss
-from tpss.run import clocks
+from tpss import extras
 
 from conftest import EXAMPLES
 from scenarios import short_line
@@ -65,10 +65,10 @@ def test_a_line_that_cannot_carry_its_load_collapses_at_the_same_step_and_share(
 
 
 def test_without_scipy_the_finding_says_how_to_install_it(monkeypatch):
-    monkeypatch.setattr(clocks, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     with pytest.raises(tpss.ScenarioError) as caught:
         tpss.simulate(short_line(BY_SQUARES))
     (finding,) = caught.value.findings
     assert finding.key == "simulation.load_flow"
     assert "not installed" in finding.problem
-    assert "pip install 'tpss[least-squares]'" in finding.remedy
+    assert 'pip install "tpss[least-squares]"' in finding.remedy

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +25,7 @@ from tpss.approximator.parameters import (
 from tpss.approximator.scales import output_of, scaled
 from tpss.approximator.scores import Cases, Simple, score_collapse, score_figures
 from tpss.errors import ApproximatorError
+from tpss.extras import demand
 
 HELD_OUT = 0.2
 """Share of the cases that are not trained on, but used to score the predictions."""
@@ -120,7 +120,7 @@ def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
     ------
     StudyError, ApproximatorError
     """
-    demand_packages()
+    demand("training")
     from tpss.sweep.folder import load_table, read_manifest
 
     table = load_table(folder)
@@ -140,21 +140,6 @@ def read_table(folder: Path) -> tuple[pd.DataFrame, Origin]:
         definition=str(manifest.get("study") or ""),
     )
     return with_parameters(with_traffic(table)), origin
-
-
-def demand_packages() -> None:
-    """Demand the packages that training needs.
-
-    Raises
-    ------
-    ApproximatorError
-    """
-    packages = {"sklearn": "scikit-learn", "pyarrow": "pyarrow"}
-    absent = [name for module, name in packages.items() if find_spec(module) is None]
-    if absent:
-        raise ApproximatorError(
-            f'training an approximator needs {", ".join(absent)}: pip install "tpss[study]"'
-        )
 
 
 def usable(table: pd.DataFrame) -> pd.DataFrame:

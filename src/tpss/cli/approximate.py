@@ -14,6 +14,7 @@ from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
 from tpss.cli.terminal import Console, print_in_parts, progress_bar, say
 from tpss.errors import ApproximatorError, Finding, ScenarioError
+from tpss.extras import demand
 from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import reason
 
@@ -29,6 +30,7 @@ def train_model(
     folder: Path, out: Path, form: str | None, seed: int, force: bool, quiet: bool
 ) -> int:
     """Train an approximator and write its file; return the exit code."""
+    demand("training")
     from tpss.approximator.model_file import check_target
     from tpss.approximator.train import train_approximator
 
@@ -83,12 +85,14 @@ def predict_lines(
     from tpss.approximator.approximator import load_approximator
     from tpss.approximator.model_file import check_target
 
+    for place in (table, out):
+        if place is not None:
+            _demand_table_file(place)
     model = load_approximator(file)
     if out is not None:
-        _demand_table_file(out)
         check_target(out, force)
-    lines, place = _lines(model, assignments, table, scenario)
-    predictions = model.predict(lines, "flag" if flag else "refuse", place)
+    lines, origin = _lines(model, assignments, table, scenario)
+    predictions = model.predict(lines, "flag" if flag else "refuse", origin)
     if out is not None:
         _write(pd.concat([lines.reset_index(drop=True), predictions], axis=1), out)
         print(f"Wrote {out}")
@@ -149,6 +153,8 @@ MOST_TABLE = 2_000 * MEGABYTE
 
 
 def _demand_table_file(path: Path) -> None:
+    if path.suffix == ".parquet":
+        demand("parquet")
     if path.suffix not in (".csv", ".parquet"):
         raise ApproximatorError(
             f"{path} is neither .csv nor .parquet; give it one of these endings"
@@ -156,13 +162,12 @@ def _demand_table_file(path: Path) -> None:
 
 
 def _read_table(path: Path) -> pd.DataFrame:
-    _demand_table_file(path)
     try:
         demand_readable(path, MOST_TABLE)
         if path.suffix == ".parquet":
             return pd.read_parquet(path)
         return pd.read_csv(path, comment="#", skipinitialspace=True)
-    except (OSError, ValueError, ImportError) as error:
+    except (OSError, ValueError) as error:
         raise ApproximatorError(f"{path} cannot be read as a table: {reason(error)}") from error
 
 
@@ -229,6 +234,7 @@ def check_model(file: Path, folder: Path | None) -> int:
     if folder is None:
         _print_model(model, console)
         return DONE
+    demand("study")
     from tpss.approximator.compare import compare
 
     comparison = compare(model, folder)

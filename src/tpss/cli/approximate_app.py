@@ -31,7 +31,7 @@ ModelFile = Annotated[
 
 @app.command(
     epilog="Example:  tpss approximate train converters --out converters.json, after "
-    "tpss sweep examples/study_converters.toml --out converters"
+    "tpss sweep study_converters.toml --out converters"
 )
 def train(
     folder: Annotated[

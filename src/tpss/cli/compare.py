@@ -12,6 +12,7 @@ from rich.table import Table
 from tpss.cli.plot import figure_bytes
 from tpss.cli.terminal import Console, print_in_parts, say, widest_text
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.files.several import check_files, save_files
 from tpss.results.contents import REPORT, SUMMARY
 
@@ -75,8 +76,8 @@ def compare_result(
     ScenarioError
         The measured series have faults, or share no time with the run.
     """
+    demand(*(["figures"] if out is not None else []), *(["report"] if report else []))
     from tpss.measured.compare import compare_with_measurements
-    from tpss.report.html import write_report
     from tpss.results.result import load_result
 
     if (file / SUMMARY).is_file():
@@ -97,6 +98,8 @@ def compare_result(
     if out is None:
         print_comparison(compared, console)
         if report:
+            from tpss.report.html import write_report
+
             print(f"Wrote {write_report(result, folder / REPORT, force=force, measured=compared)}")
         return
     files = _save(compared, out, report, force)
@@ -108,7 +111,6 @@ def _save(compared: "MeasuredComparison", out: Path, report: bool, force: bool) 
     """Write tables, figures and a report that is asked for into a folder, all of them or none."""
     from tpss.measured.save import contents
     from tpss.report.figures import measured_durations, measured_over_time
-    from tpss.report.html import report as page_of
 
     drawn = {
         f"{_file_name(k, each.name)}-{kind}.png": (draw, each.name)
@@ -124,6 +126,8 @@ def _save(compared: "MeasuredComparison", out: Path, report: bool, force: bool) 
         figure.suptitle(f"{compared.result.scenario.name}: {series}", fontsize="large")
         files[name] = figure_bytes(figure, "png")
     if report:
+        from tpss.report.html import report as page_of
+
         files[REPORT] = page_of(compared.result, measured=compared).encode()
     return save_files(out, files, force)
 
@@ -135,7 +139,7 @@ def _file_name(number: int, series: str) -> str:
 
 def print_comparison(compared: "MeasuredComparison", console: Console) -> None:
     """Print how the two were compared, tables of figures and windows, and notes."""
-    from tpss.report.measured import sentences
+    from tpss.measured.words import sentences
 
     say(console, "")
     for sentence in sentences(compared):

@@ -39,3 +39,11 @@ def library_names(context: typer.Context, incomplete: str) -> list[str]:
 def figures(incomplete: str) -> list[str]:
     """Names of figures that begin like this."""
     return [name for name in (*FIGURE_NAMES, "all") if name.startswith(incomplete)]
+
+
+def examples(incomplete: str) -> list[str]:
+    """Names of examples that begin like this."""
+    from tpss.cli.new import LIST
+    from tpss.examples import names
+
+    return [name for name in (LIST, *names()) if name.startswith(incomplete)]

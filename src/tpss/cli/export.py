@@ -9,7 +9,7 @@ from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.results.contents import TABLES
 from tpss.results.electrical_profiles import electrical_profiles
-from tpss.results.export import export
+from tpss.results.export import demand_package, export
 from tpss.results.file_kinds import Kind, Spreadsheet
 from tpss.results.osrd_tracks import read_tracks
 from tpss.results.result import load_result
@@ -26,6 +26,7 @@ def export_result(
     ResultError
         The folder holds no result, or the files cannot be written.
     """
+    demand_package(kind)
     place = folder / TABLES if out is None else out
     files = export(load_result(folder), kind, place, force=force, spreadsheet=spreadsheet)
     print(f"Wrote into {place}: {', '.join(file.name for file in files)}")

@@ -58,8 +58,8 @@ def _options(
 
 
 @app.command(
-    epilog="Examples:  tpss run examples/thesis_160km.toml --set traffic.0.headway_min=12, or "
-    "tpss run examples/both_ways.toml --variant all"
+    epilog="Examples:  tpss run my-line/scenario.toml --set traffic.0.headway_min=12 (after tpss new "
+    "my-line), or tpss run both_ways.toml --variant all (after tpss new . --from both-ways)"
 )
 def run(
     file: ScenarioFile,
@@ -140,7 +140,7 @@ app.command(
 )(result_commands.plot)
 
 
-@app.command(epilog="Example:  tpss check examples/thesis_160km.toml --set supply.catenary=AT")
+@app.command(epilog="Example:  tpss check my-line/scenario.toml --set supply.catenary=AT")
 def check(file: ScenarioFile, set_: Assignments = None, _library: Library = None) -> None:
     """List every fault of a scenario, or print what it describes, without simulating it.
 
@@ -162,8 +162,8 @@ app.command(
 
 
 @app.command(
-    epilog="Examples:  tpss sweep examples/study_converters.toml --out converters, then "
-    "tpss sweep --summary converters"
+    epilog="Examples:  tpss sweep study_converters.toml --out converters (after tpss new . --from "
+    "study-converters), then tpss sweep --summary converters"
 )
 def sweep(
     study: Annotated[
@@ -219,14 +219,13 @@ def sweep(
     of a case failed, 130 interrupted (finished cases are kept).
     """
     from tpss.cli.study import write_case
-    from tpss.cli.sweep import demand_packages, run_study_file, summarise_folder
+    from tpss.cli.sweep import run_study_file, summarise_folder
 
     if summary is not None and study is None:
         raise typer.Exit(summarise_folder(summary))
     if study is None or summary is not None:
         raise typer.BadParameter("give either a study, or --summary with its folder")
     if case is not None:
-        demand_packages()
         write_case(study, case, out, force)
         return
     if out is None and not dry_run:
@@ -238,8 +237,8 @@ def sweep(
 
 
 @app.command(
-    epilog="Examples:  tpss outages examples/thesis_160km.toml --n-1, then tpss run "
-    "examples/thesis_160km.toml --outage NAME for one of the scenario's own in full"
+    epilog="Examples:  tpss outages network.toml --n-1 (after tpss new . --from network), then tpss run "
+    "network.toml --outage NAME for one of the scenario's own in full"
 )
 def outages(
     file: ScenarioFile,
@@ -323,8 +322,8 @@ def converters(
 
 @app.command(
     name="spare-time",
-    epilog="Examples:  tpss spare-time examples/emu_25kv.toml, then tpss run examples/emu_25kv.toml "
-    "--set traffic.0.supplement_percent=5 --set traffic.0.spare_time=least-energy",
+    epilog="Examples:  tpss spare-time emu_25kv.toml (after tpss new . --from emu-25kv), then tpss run "
+    "emu_25kv.toml --set traffic.0.supplement_percent=5 --set traffic.0.spare_time=least-energy",
 )
 def spare_time(
     file: ScenarioFile,
@@ -358,7 +357,8 @@ def spare_time(
 
 @app.command(
     name="line-constants",
-    epilog="Example:  tpss line-constants examples/geometry_double_track.toml --out catenary.toml",
+    epilog="Example:  tpss line-constants geometry_double_track.toml --out catenary.toml (after tpss "
+    "new . --from geometry-double-track)",
 )
 def line_constants(
     file: GeometryFile,
@@ -389,19 +389,37 @@ def line_constants(
     print_line_constants(file, frequency, out, force)
 
 
-@app.command(epilog="Example:  tpss new my-line")
+@app.command(
+    epilog="Examples:  tpss new my-line, then tpss new --from list, then "
+    "tpss new thesis --from thesis-160km"
+)
 def new(
     folder: Annotated[
-        Path, argument(metavar="DIR", help="Folder to write; existing files are kept.")
-    ],
+        Path | None, argument(metavar="DIR", help="Folder to write; existing files are kept.")
+    ] = None,
+    from_: Annotated[
+        str | None,
+        option(
+            "--from",
+            metavar="NAME",
+            help="Write an example that comes with TPSS, and the files that it refers to; list: print "
+            "the names of all, and what each is.",
+            autocompletion=complete.examples,
+        ),
+    ] = None,
 ) -> None:
-    """Write a small, commented scenario to start from.
+    """Write a small, commented scenario to start from, or one of the examples.
 
-    It consists of scenario.toml and gradients.csv: a line of 60 km with a stop half-way.
+    By default it consists of scenario.toml and gradients.csv: a line of 60 km with a stop half-way.
     """
-    from tpss.cli.new import new_scenario
+    from tpss.cli.new import LIST, list_examples, new_scenario
 
-    new_scenario(folder)
+    if from_ == LIST:
+        list_examples()
+        return
+    if folder is None:
+        raise typer.BadParameter("give a folder to write, such as my-line, or --from list")
+    new_scenario(folder, from_)
 
 
 @app.command(epilog="Examples:  tpss library catenaries, tpss library catenaries AT")
@@ -475,6 +493,7 @@ def main() -> None:
     """Run the command line; faults of the input are printed, never raised."""
     from tpss.cli.streams import say_everything
     from tpss.errors import TpssError
+    from tpss.extras import imports_explained
     from tpss.printable import printable
 
     say_everything()
@@ -483,7 +502,8 @@ def main() -> None:
     gc.disable()
     atexit.register(gc.freeze)
     try:
-        app()
+        with imports_explained():
+            app()
     except TpssError as error:
         typer.echo(printable(str(error), "\n"), err=True)
         sys.exit(2)

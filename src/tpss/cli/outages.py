@@ -20,6 +20,7 @@ from tpss.cli.terminal import (
     widest_text,
 )
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.results.contents import is_report
@@ -50,6 +51,8 @@ def run_outages(
     report: bool = False,
 ) -> int:
     """Run a scenario with each of its outages; print and save the table; return the exit code."""
+    if report:
+        demand("report")
     from tpss.outages.run import compare_outages
     from tpss.run.interrupt import interruptible
     from tpss.scenario import load_scenario

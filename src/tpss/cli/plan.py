@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from tpss.cli.plan_tables import print_answer
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED, NO_SOLUTION
-from tpss.cli.sweep import demand_packages
 from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import AuditError, NoPlanError
+from tpss.extras import demand
 
 if TYPE_CHECKING:
     from tpss.planning.cases import CaseList
@@ -32,6 +32,7 @@ TRIAL_S, TRIAL_CASES = 2.0, 12
 
 def check_plan(file: Path) -> int:
     """Print what a plan consists of; return the exit code."""
+    demand("plan")
     from tpss.planning.load import load_plan
     from tpss.planning.run import check_plan as checked
 
@@ -129,7 +130,7 @@ def run_plan(
     quiet: bool,
 ) -> int:
     """Simulate the cases of a plan, solve it and write the answer; return the exit code."""
-    demand_packages()
+    demand("plan", *(["scheduler"] if scheduler else []))
     from tpss.planning.load import load_plan
     from tpss.planning.plan import SIMULATION
     from tpss.planning.run import run_plan as run

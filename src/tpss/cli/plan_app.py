@@ -46,7 +46,9 @@ TimeLimit = Annotated[
 ]
 
 
-@app.command(epilog="Example:  tpss plan check examples/plan_320km.toml")
+@app.command(
+    epilog="Example:  tpss plan check plan_320km.toml (after tpss new . --from plan-320km)"
+)
 def check(file: PlanToml, _library: Library = None) -> None:
     """List every fault of a plan, or print what it consists of, without simulating its cases.
 
@@ -60,7 +62,7 @@ def check(file: PlanToml, _library: Library = None) -> None:
     raise typer.Exit(check_plan(file))
 
 
-@app.command(epilog="Example:  tpss plan run examples/plan_320km.toml --out ore-line")
+@app.command(epilog="Example:  tpss plan run plan_320km.toml --out ore-line")
 def run(
     file: PlanToml,
     out: Annotated[

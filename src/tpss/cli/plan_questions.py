@@ -7,16 +7,16 @@ from pathlib import Path
 from tpss.cli.plan import GAP_LEFT, exit_code_of
 from tpss.cli.plan_tables import print_firsts, print_frame
 from tpss.cli.run import DONE, NO_SOLUTION
-from tpss.cli.sweep import demand_packages
 from tpss.cli.terminal import Console, say
 from tpss.errors import AuditError, Finding, NoPlanError, PlanError, ScenarioError, no_such
+from tpss.extras import demand
 
 
 def price_plan(
     folder: Path, assignments: list[str], sweeps: list[str], gap: float, time_limit_s: float | None
 ) -> int:
     """Price a plan anew and print its first decisions, and where they turn; return the exit code."""
-    demand_packages()
+    demand("plan")
     from tpss.planning.answer import Effort, answer_of
     from tpss.planning.lazily import ALL
     from tpss.planning.plan import SIMULATION
@@ -88,7 +88,7 @@ def _range_of(text: str) -> tuple[str, float, float]:
 
 def why_not(folder: Path, text: str, assignments: list[str]) -> int:
     """Print what the best plan costs that contains some measures, and why; return the exit code."""
-    demand_packages()
+    demand("plan")
     from tpss.planning.answer import Effort
     from tpss.planning.lazily import ALL, refuse_bounds
     from tpss.planning.program import solve_any

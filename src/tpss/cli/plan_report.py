@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from tpss.extras import demand
+
 
 def report_plan(folder: Path, out: Path | None, force: bool) -> None:
     """Write a report of a plan that was solved, and print where it is.
@@ -13,6 +15,7 @@ def report_plan(folder: Path, out: Path | None, force: bool) -> None:
     ResultError
         The file exists, or cannot be written.
     """
+    demand("plan report", "plan")
     from tpss.planning.report import write_plan_report
 
     print(f"Wrote {write_plan_report(folder, out, force=force)}")

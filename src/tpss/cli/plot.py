@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.results.contents import FIGURE_NAMES, FIGURES
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def plot_result(
         The folder holds no result, there is no such figure, train or corridor, or nothing to draw, or
         the file cannot be written.
     """
+    demand("figures")
     from tpss.files.several import check_files, save_files
     from tpss.report.figures import catalogue
     from tpss.report.trains import NothingToDrawError

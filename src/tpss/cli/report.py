@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.results.contents import REPORT
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def report_results(
         A folder holds no result or a damaged one, labels do not fit the results, there is no such
         corridor, or the file cannot be written.
     """
+    demand("report")
     from tpss.report.html import check_target, write_report
     from tpss.results.result import load_result
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.results.contents import REPORT
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ def run_scenario(
     outage: str | None = None,
 ) -> int:
     """Run a scenario file, or variants of it; return the exit code, that of the worst end."""
+    if report:
+        demand("report")
     from tpss.cli.train_names import demand_train
     from tpss.cli.variants import chosen, folders, print_side_by_side, row_of
     from tpss.results import store

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from tpss.cli.plot import ALL, FORMATS, figure_bytes
 from tpss.errors import ResultError, StudyError, no_such
+from tpss.extras import demand
 from tpss.files.refusals import refuse_to_replace
 from tpss.files.several import check_files, save_files
 from tpss.results.contents import DATASET, REPORT, TABLES
@@ -40,6 +41,7 @@ def write_case(place: Path, case: int, out: Path | None, force: bool) -> None:
     StudyError, ResultError
         There is no such case, or the file cannot be written.
     """
+    demand("study")
     from tpss.sweep.derive import scenario_of
     from tpss.sweep.design import design_of
     from tpss.sweep.folder import read_manifest
@@ -69,9 +71,11 @@ def export_study(
     StudyError, ResultError
         The folder has no cases, or the file cannot be written.
     """
-    from tpss.results.export import contents_of
+    demand("study")
+    from tpss.results.export import contents_of, demand_package
     from tpss.sweep.outcome import load_outcome
 
+    demand_package(kind)
     table = load_outcome(folder).table.drop(columns=["timing.ended"])
     place = folder / TABLES if out is None else out
     contents = contents_of({"cases": table}, kind, "study.xlsx", spreadsheet)
@@ -88,6 +92,7 @@ def plot_study(folder: Path, figure: str, out: Path | None, force: bool) -> None
     StudyError, ResultError
         The folder has no cases, there is no such figure, or a file cannot be written.
     """
+    demand("study", "figures")
     from tpss.report.render.static import render
     from tpss.sweep.figures import FIGURES, drawable
     from tpss.sweep.outcome import demand_cases, load_outcome
@@ -123,6 +128,7 @@ def report_study(folder: Path, out: Path | None, force: bool) -> None:
     StudyError, ResultError
         The folder has no cases, or the file cannot be written.
     """
+    demand("study", "report")
     from tpss.sweep.report import write_study_report
 
     print(f"Wrote {write_study_report(folder, out or folder / REPORT, force=force)}")

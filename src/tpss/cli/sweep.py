@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Sequence
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ from rich.table import Table
 
 from tpss.cli.run import AUDIT_FAILED, BAD_INPUT, DONE, INTERRUPTED
 from tpss.cli.terminal import Console, announce_compilation, print_in_parts, progress_bar, say
-from tpss.errors import StudyError
+from tpss.extras import demand
 
 if TYPE_CHECKING:
     from tpss.sweep.progress import Advance
@@ -25,19 +24,6 @@ MOST_PROBLEMS = 5
 """Different problems of cases that are printed."""
 
 
-def demand_packages(scheduler: str | None = None) -> None:
-    """Demand the packages that studies need, those of Dask with a scheduler only.
-
-    Raises
-    ------
-    StudyError
-    """
-    needed = ("pyarrow", "scipy", *(("distributed",) if scheduler else ()))
-    absent = [name for name in needed if find_spec(name) is None]
-    if absent:
-        raise StudyError(f'studies need {", ".join(absent)}: pip install "tpss[study]"')
-
-
 def run_study_file(
     file: Path,
     out: Path | None,
@@ -48,7 +34,7 @@ def run_study_file(
     step_check: bool,
 ) -> int:
     """Run a study, or only check it; return the exit code."""
-    demand_packages(scheduler)
+    demand("study", *(["scheduler"] if scheduler else []))
     from tpss.sweep.campaign import run_study
     from tpss.sweep.study import load_study
 
@@ -76,7 +62,7 @@ def run_study_file(
 
 def summarise_folder(folder: Path, quiet: bool = False) -> int:
     """Print the key figures of a study's folder; return the exit code."""
-    demand_packages()
+    demand("study")
     from tpss.sweep.design import design_of
     from tpss.sweep.folder import STEP_CHECK, load_table, read_manifest
     from tpss.sweep.step_sample import sample_in_words

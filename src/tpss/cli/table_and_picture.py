@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tpss.cli.plot import demand_format, figure_bytes
+from tpss.extras import demand
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def demand_room(out: Path | None, plot: Path | None, force: bool) -> None:
-    """Refuse to replace what is there, and pictures of no known kind, before anything runs.
+    """Refuse to replace what is there, and pictures that cannot be drawn, before anything runs.
 
     Raises
     ------
@@ -25,6 +26,7 @@ def demand_room(out: Path | None, plot: Path | None, force: bool) -> None:
             refuse_to_replace(target, force, "a file", Path.is_file)
     if plot is not None:
         demand_format(plot)
+        demand("figures")
 
 
 def write_table(file: Path, table: pd.DataFrame) -> None:

@@ -8,6 +8,7 @@ import pandas as pd
 
 from tpss.api import Prepared, prepare
 from tpss.errors import ScenarioError
+from tpss.extras import demand
 from tpss.many import in_threads
 from tpss.model.legs import build_legs
 from tpss.model.outages import layout_of, service_of
@@ -56,6 +57,7 @@ class Comparison:
         ResultError
             The file exists, or cannot be written.
         """
+        demand("report")
         from tpss.outages.report import write_outages_report  # which takes long to import
 
         return write_outages_report(self, file, force=force)

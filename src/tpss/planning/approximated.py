@@ -18,7 +18,7 @@ import pandas as pd
 
 from tpss.approximator.approximator import Approximator
 from tpss.approximator.forms import Form
-from tpss.approximator.train import Origin, demand_packages, train_on
+from tpss.approximator.train import Origin, train_on
 from tpss.planning.cases import AreaCases
 from tpss.planning.learnt import Learnt
 from tpss.planning.money import Array
@@ -142,7 +142,6 @@ def _trained(
     simulated: Simulated, table: pd.DataFrame, outputs: list[str], digest: str
 ) -> Approximator:
     """An approximator of what is used in an hour."""
-    demand_packages()
     plan, known = simulated.case_list.plan, versions()
     origin = Origin(plan.file.name, digest, known["tpss_version"], known["kernel_hash"], "")
     inputs = [str(name) for name in table if name not in outputs]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tpss.errors import PlanError
+from tpss.extras import demand
 from tpss.planning.linear import LinearProgram
 from tpss.planning.money import Array
 
@@ -54,11 +55,8 @@ def run_highs(
     PlanError
         ``highspy`` is not installed, or HiGHS fails.
     """
-    try:
-        import highspy
-    except ImportError as missing:
-        problem = 'plans with a budget need HiGHS: install it with pip install "tpss[plan]"'
-        raise PlanError(problem) from missing
+    demand("budget")
+    import highspy
 
     solver = _quiet(highspy.Highs)
     options = {

@@ -66,7 +66,8 @@ def write_plan_report(
     Raises
     ------
     PlanError
-        It is no folder of a plan that was solved, or something in it is missing or damaged.
+        It is no folder of a plan that was solved, something in it is missing or damaged, or a package is
+        missing.
     ResultError
         The file exists, or cannot be written.
     """

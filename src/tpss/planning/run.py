@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from tpss.errors import Finding, ScenarioError
+from tpss.extras import demand
 from tpss.planning.answer import Answer, Effort, answer_of, as_today, solver_of
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList
@@ -17,7 +18,7 @@ from tpss.planning.finer import Compared, compare_finer
 from tpss.planning.lazily import prove_lazily
 from tpss.planning.learnt import Learnt
 from tpss.planning.load import Plan
-from tpss.planning.plan import SIMULATION
+from tpss.planning.plan import APPROXIMATOR, SIMULATION
 from tpss.planning.program import demand_enough
 from tpss.planning.prove import Round
 from tpss.planning.simulate import simulate_cases
@@ -46,12 +47,15 @@ def check_plan(plan: Plan) -> CaseList:
         Configurations are no valid scenarios, or there are more cases than the plan allows.
     NoPlanError
         No plan meets the budgets.
+    PlanError
+        The package is missing that plans with a budget need.
     """
     with plan.named_as_given():
         return _checked(plan)
 
 
 def _checked(plan: Plan) -> CaseList:
+    _demand_packages(plan)
     case_list = CaseList(plan)
     most = plan.file.evaluate.most_cases
     if len(case_list) > most and plan.file.evaluate.by == SIMULATION:
@@ -66,6 +70,14 @@ def _checked(plan: Plan) -> CaseList:
         check_configurations(plan, each.area, list(each.configurations), each.states)
     _demand_enough(case_list)
     return case_list
+
+
+def _demand_packages(plan: Plan) -> None:
+    """Demand what some plans need, before anything is simulated."""
+    if plan.file.budget is not None:
+        demand("budget")
+    if plan.file.evaluate.by == APPROXIMATOR:
+        demand("training")
 
 
 def _demand_enough(case_list: CaseList) -> None:
@@ -129,6 +141,7 @@ def run_plan(
     """
     effort = Effort()
     effort = Effort(effort.gap if gap is None else gap, time_limit_s or math.inf)
+    demand("plan")
     case_list, target = check_plan(plan), CaseFolder(Path(folder))
     with plan.named_as_given(), target.opened():
 

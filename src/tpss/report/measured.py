@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from plotly.graph_objects import Figure
 
 from tpss.measured.compare import MeasuredComparison
+from tpss.measured.words import sentences
 from tpss.report.drawings.measured import measured_durations, measured_over_time
 from tpss.report.render.interactive import render
 from tpss.report.tables import Cell, Table, cell
@@ -69,17 +70,6 @@ def measured_part(comparison: MeasuredComparison) -> tuple[MeasuredPart, dict[st
         _table("measured-windows", "Worst means over windows", comparison.windows, WINDOWS),
     ]
     return MeasuredPart(sentences(comparison), comparison.notes, shown), figures
-
-
-def sentences(comparison: MeasuredComparison) -> list[str]:
-    """How the two were compared, in words."""
-    grid = comparison.grid
-    first = (
-        f"{comparison.file.name}, whose time is {comparison.begins} at minute 0 of the run, over "
-        f"{grid.intervals} intervals of {grid.step_s / 60.0:g} min from minute "
-        f"{grid.begin_s / 60.0:.2f} on"
-    )
-    return [first] if comparison.offset is None else [first, comparison.offset.in_words]
 
 
 def _table(key: str, caption: str, frame: Any, headings: dict[str, str]) -> Table:

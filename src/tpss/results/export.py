@@ -4,7 +4,6 @@ Headings carry the units, as in ``energy [MWh]``.
 """
 
 from collections.abc import Callable, Mapping
-from importlib.util import find_spec
 from operator import attrgetter
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pandas as pd
 
 from tpss import units
 from tpss.errors import ResultError
+from tpss.extras import demand
 from tpss.files.refusals import refuse_to_replace
 from tpss.files.several import check_files, save_files
 from tpss.files.single import save_file
@@ -27,8 +27,8 @@ TABLES: dict[str, Callable[[Result], pd.DataFrame]] = {
 }
 """Tables by the names of their files, or of their sheets."""
 
-NEEDS = {Kind.XLSX: ("xlsxwriter", "xlsxwriter"), Kind.PARQUET: ("pyarrow", "tpss[parquet]")}
-"""Package that a file type needs, and what to install for it."""
+NEEDS = {Kind.XLSX: "xlsx", Kind.PARQUET: "parquet"}
+"""What file types need more than others, as `tpss.extras` calls it."""
 
 
 def export(
@@ -64,7 +64,7 @@ def export(
     ResultError
         A file exists, the folder cannot be written, a package is missing, or a table is too long.
     """
-    _demand_package(kind)
+    demand_package(kind)
     names = [WORKBOOK] if kind is Kind.XLSX else [f"{name}.{kind}" for name in TABLES]
     check_files(folder, names, force)
     tables = {name: table(result) for name, table in TABLES.items()}
@@ -77,6 +77,7 @@ def export_workbook(result: Result, file: Path, *, force: bool = False) -> Path:
     """Write the tables of a result into a workbook.  See `Result.to_excel`."""
     if file.suffix.lower() != ".xlsx":
         raise ResultError(f"{file} does not end in .xlsx, by which Excel knows a workbook")
+    demand_package(Kind.XLSX)
     refuse_to_replace(file, force, "a file", Path.is_file)
     tables = {**overview(result), **{name: table(result) for name, table in TABLES.items()}}
     (content,) = contents_of(tables, Kind.XLSX, WORKBOOK).values()
@@ -96,7 +97,7 @@ def contents_of(
     ResultError
         A package is missing, a table is too long, or what is asked for is of CSV only.
     """
-    _demand_package(kind)
+    demand_package(kind)
     if spreadsheet is not None and kind is not Kind.CSV:
         raise ResultError(
             f"--spreadsheet is of csv; {kind} keeps texts and numbers apart anyway: leave it out"
@@ -112,13 +113,10 @@ def with_units(table: pd.DataFrame) -> pd.DataFrame:
     return table.rename(columns=units.heading)
 
 
-def _demand_package(kind: Kind) -> None:
-    package, to_install = NEEDS.get(kind, ("", ""))
-    if package and find_spec(package) is None:
-        raise ResultError(
-            f'{kind} files need {package}, which is not installed: pip install "{to_install}", or '
-            "choose another file type"
-        )
+def demand_package(kind: Kind) -> None:
+    """Raise a `ResultError` if the package is missing that files of a kind need."""
+    if kind in NEEDS:
+        demand(NEEDS[kind])
 
 
 def _bytes(table: pd.DataFrame, kind: Kind, spreadsheet: Spreadsheet | None) -> bytes:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import pandas as pd
 import xarray as xr
 
+from tpss.extras import demand
 from tpss.results import store, tables
 from tpss.results.autotransformers import autotransformers
 from tpss.results.converter_losses import converter_losses
@@ -260,6 +261,7 @@ class Result:
         ResultError
             The file exists, or cannot be written.
         """
+        demand("report")
         from tpss.report.html import write_report
 
         return write_report(self, file, force=force)
@@ -291,6 +293,7 @@ class Result:
         ResultError
             The audit failed, or there is no such figure, train or quantity, or nothing to draw.
         """
+        demand("figures")
         from tpss.report.figures.catalogue import draw
 
         return draw(figure, self, train, against)

@@ -1,9 +1,9 @@
 """What runs the steps of a scenario, by the load flow that it asks for."""
 
 from collections.abc import Callable
-from importlib.util import find_spec
 
 from tpss.errors import Finding, ScenarioError
+from tpss.extras import absent, remedy
 from tpss.run.run import Clock
 from tpss.step.advance import advance
 
@@ -36,9 +36,9 @@ def clock_of(load_flow: str, file: str) -> Clock:
     ScenarioError
         Least squares are asked for, and scipy is not installed.
     """
-    if load_flow == "least-squares" and find_spec("scipy") is None:
+    if load_flow == "least-squares" and absent("least squares"):
         key, value = "simulation.load_flow", f"'{load_flow}'"
         problem = "the least squares of the original program need scipy, which is not installed"
-        remedy = "pip install 'tpss[least-squares]', or load_flow = \"equations\""
-        raise ScenarioError([Finding(file, key, value, problem, remedy)])
+        to_do = f'{remedy("least squares")}, or load_flow = "equations"'
+        raise ScenarioError([Finding(file, key, value, problem, to_do)])
     return CLOCKS[load_flow]()

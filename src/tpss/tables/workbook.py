@@ -9,6 +9,7 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
+from tpss import extras
 from tpss.errors import Finding, ScenarioError, suggest
 from tpss.files.archive import demand_bounded
 from tpss.printable import in_nfc
@@ -50,9 +51,10 @@ def read_sheet(path: Path, content: bytes) -> Sheet:
     Raises
     ------
     ScenarioError
-        It is no workbook, has no such sheet, or is too large.
+        It is no workbook, has no such sheet, or is too large, or openpyxl is missing.
     """
     file, name = of_workbook(path)
+    _demand_package(file)
     try:
         demand_bounded(content, MOST_UNPACKED)
         with _quiet():
@@ -69,6 +71,13 @@ def read_sheet(path: Path, content: bytes) -> Sheet:
         problem, remedy = "the workbook has no such sheet", suggest(name, sheets)
         raise ScenarioError([Finding(str(file), "sheet", name, problem, remedy)])
     return Sheet(path, rows, "", "")
+
+
+def _demand_package(file: Path) -> None:
+    if lacking := extras.absent("sheets"):
+        problem = f"to read a workbook takes {', '.join(lacking)}, which is not installed"
+        remedy = f"{extras.remedy('sheets')}, or save the sheet as CSV"
+        raise ScenarioError([Finding(str(file), "", "", problem, remedy)])
 
 
 def _opened(content: bytes) -> Any:

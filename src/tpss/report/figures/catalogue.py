@@ -1,7 +1,7 @@
 """All figures by their names, with their titles."""
 
 from collections.abc import Callable, Sequence
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 from matplotlib.figure import Figure
 
@@ -28,7 +28,6 @@ from tpss.results.result import Result
 
 Against = Literal["time", "distance"]
 
-
 Minutes = tuple[float | None, float | None]
 
 TIME_DISTANCE = "time-distance"
@@ -36,35 +35,106 @@ TIME_DISTANCE = "time-distance"
 Describe = Callable[..., Drawing]
 """From a result, the name of a train or None, an `Against`, and `Minutes` or nothing."""
 
-FIGURES: dict[str, tuple[Literal["run", "trains", "train"], Describe]] = {
-    "network": ("run", lambda run, *_: network(run)),
-    TIME_DISTANCE: (
+
+class Entry(NamedTuple):
+    """A figure of a result."""
+
+    of: Literal["run", "trains", "train"]
+    """What it needs: a run, trains on the line, or one train, which can be chosen."""
+    shows: str
+    """What it shows, and of which runs, as the gallery of the documentation says it."""
+    describe: Describe
+
+
+FIGURES: dict[str, Entry] = {
+    "network": Entry(
+        "run",
+        "all lines, true to length but without their course over the ground: the lowest voltage along "
+        "them, stations, tracks, coupling posts and section breaks, open ones hollow, and what feeds "
+        "them",
+        lambda run, *_: network(run),
+    ),
+    TIME_DISTANCE: Entry(
         "trains",
+        "paths of all trains, darker where the voltage at their pantographs is lower",
         lambda run, _train, _against, minutes=(None, None): time_distance(run, None, *minutes),
     ),
-    "journey": (
+    "journey": Entry(
         "train",
+        "a train's journey: gradient, speed below its limit, active and reactive power, voltage, angle, "
+        "between the stations",
         lambda run, train, against, *_: journey({"": run}, train, against, explained=True),
     ),
-    "voltage": ("run", lambda run, *_: voltage_envelope(run)),
-    "train-voltage": ("train", lambda run, train, *_: voltage_along_line({"": run}, train, True)),
-    "stations": ("run", lambda run, *_: station_powers({"": run})),
-    "converters": ("run", lambda run, *_: station_loading(run)),
-    "converter-losses": ("run", lambda run, *_: converter_losses({"": run})),
-    "unbalance": ("run", lambda run, *_: unbalance({"": run})),
-    "braking": ("run", lambda run, *_: braking({"": run})),
-    "storage": ("run", lambda run, *_: storage({"": run})),
-    "thermal": ("run", lambda run, *_: thermal({"": run})),
-    "rails": ("run", lambda run, *_: rail_voltage(run)),
-    "energy": ("run", lambda run, *_: energy_flow(run)),
-    "effort": ("train", lambda run, train, *_: effort(run, train)),
+    "voltage": Entry(
+        "run",
+        "lowest, mean and highest voltage along the line, with the limits of EN 50163",
+        lambda run, *_: voltage_envelope(run),
+    ),
+    "train-voltage": Entry(
+        "train",
+        "the voltage that one train met along the line, between the limits of EN 50163",
+        lambda run, train, *_: voltage_along_line({"": run}, train, True),
+    ),
+    "stations": Entry(
+        "run",
+        "active and reactive power that each feeding station feeds",
+        lambda run, *_: station_powers({"": run}),
+    ),
+    "converters": Entry(
+        "run",
+        "loading of the running converters or transformers, and how many run",
+        lambda run, *_: station_loading(run),
+    ),
+    "converter-losses": Entry(
+        "run",
+        "what converter stations take from the 50 Hz grid and lose; where their types describe losses",
+        lambda run, *_: converter_losses({"": run}),
+    ),
+    "unbalance": Entry(
+        "run",
+        "negative-sequence voltage at the busbars of the grid and its means over 10 min, currents of "
+        "the phases; where phases are told",
+        lambda run, *_: unbalance({"": run}),
+    ),
+    "braking": Entry(
+        "run",
+        "what each service brakes, and where it goes; where trains have electric brakes",
+        lambda run, *_: braking({"": run}),
+    ),
+    "storage": Entry(
+        "run",
+        "charge and power of the stores of energy; where trains or stations have any",
+        lambda run, *_: storage({"": run}),
+    ),
+    "thermal": Entry(
+        "run",
+        "thermal state of the equipment with a rating that comes closest to what it bears, and its "
+        "temperature where that is known",
+        lambda run, *_: thermal({"": run}),
+    ),
+    "rails": Entry(
+        "run",
+        "highest and lowest voltage of the rails to earth along each line; where they are conductors of "
+        "their own",
+        lambda run, *_: rail_voltage(run),
+    ),
+    "energy": Entry(
+        "run",
+        "what the stations feed, what the network loses, and what the trains use the rest for",
+        lambda run, *_: energy_flow(run),
+    ),
+    "effort": Entry(
+        "train",
+        "speed and force of a train, and the limits of its machine, its rails, and its resistance",
+        lambda run, train, *_: effort(run, train),
+    ),
 }
-"""Figures by their names: what they need, and the function that describes them."""
+"""Figures by their names."""
 
 ALONG_A_CORRIDOR = ("time-distance", "journey", "voltage", "train-voltage")
 """Figures of a network that are drawn along a corridor; a journey only if one is chosen."""
 
-OF_A_TRAIN = [name for name, (of, _) in FIGURES.items() if of == "train"]
+OF_A_TRAIN = [name for name, figure in FIGURES.items() if figure.of == "train"]
 """Figures for which a train can be chosen."""
 
 ENDED = {
@@ -118,7 +188,7 @@ def draw(
         )
     if result.dataset.sizes["time"] < 2:
         raise NothingToDrawError("no time step was simulated")
-    of, describe = FIGURES[name]
+    of, _, describe = FIGURES[name]
     follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
     seen = along(result, corridor) if follows else result
     chosen = None if train is None and of == "run" else chosen_train(seen, train)
