@@ -38,6 +38,9 @@ NEEDS = {
     "training": Need("approximators", ("sklearn", "pyarrow"), "study", ApproximatorError),
     "plan": Need("plans", ("pyarrow", "scipy", "xlsxwriter"), "plan", PlanError),
     "budget": Need("plans with a budget", ("highspy",), "plan", PlanError),
+    "studio": Need(
+        "pages of the studio", ("starlette", "uvicorn", "tomlkit", "jinja2", "plotly"), "studio"
+    ),
     "least squares": Need("the load flow by least squares", ("scipy",), "least-squares"),
 }
 """What needs more than the core does; a failed import is told as that of the first that needs it."""

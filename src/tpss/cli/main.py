@@ -422,6 +422,36 @@ def new(
     new_scenario(folder, from_)
 
 
+@app.command(epilog="Examples:  tpss studio line.toml, tpss studio line.toml --no-browser")
+def studio(
+    file: ScenarioFile,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address only; open it yourself.")
+    ] = False,
+    folder: Annotated[
+        Path | None,
+        option(
+            metavar="DIR",
+            help="Folder that is opened: files outside it are neither read nor written; by default that "
+            "of the scenario.",
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the address; 0: any that is free.")
+    ] = 0,
+    _library: Library = None,
+) -> None:
+    """Edit a scenario in the browser, while its results follow.
+
+    The page is served on this computer only, at an address with a secret token, and loads nothing from
+    the network. What is edited is kept as a draft in the folder .tpss-studio beside the scenario, and
+    written into the file, whose comments stay, when you save.
+    """
+    from tpss.cli.studio import open_studio
+
+    open_studio(file, folder, port, not no_browser)
+
+
 @app.command(epilog="Examples:  tpss library catenaries, tpss library catenaries AT")
 def library(
     kind: Annotated[

@@ -33,6 +33,7 @@ from tpss.report.measured import MeasuredPart, measured_part
 from tpss.report.moving import network_moving
 from tpss.report.page import fill
 from tpss.report.render.interactive import render
+from tpss.report.status import STATUS_IN_WORDS
 from tpss.report.trains import chosen_train, seen_trains
 from tpss.report.validity import limits_of_validity
 from tpss.results.contents import is_report
@@ -40,14 +41,6 @@ from tpss.results.notes import notes
 from tpss.results.places import LINE
 from tpss.results.result import Result
 from tpss.results.step_words import step_lines
-
-STATUS_IN_WORDS = {
-    "finished": "The run finished.",
-    "collapsed": "The line cannot carry its load: the run collapsed.",
-    "stalled": "A train stalled, which ended the run.",
-    "deadlocked": "Trains wait for each other, which ended the run.",
-    "interrupted": "The run was interrupted.",
-}
 
 OVER_TIME: dict[str, tuple[Callable[[Mapping[str, Result]], Drawing], int]] = {
     "powers": (station_powers, 440),

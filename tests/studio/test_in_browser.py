@@ -1,0 +1,254 @@
+"""The studio in a browser, used by roles and labels, as by someone who does not see the page."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from studio.served import CHROMIUM, SIZES, Shown, serving
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with playwright.sync_playwright() as program:
+        arguments = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+        opened = program.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def home(file: Path) -> Iterator[str]:
+    with serving(file) as address:
+        yield address
+
+
+@pytest.fixture
+def shown(browser: Any, home: str) -> Iterator[Shown]:
+    page = Shown(browser.new_page(viewport=SIZES["wide"]), home).open()
+    yield page
+    page.tab.close()
+    assert page.faults == []
+    assert [url for url in page.requests if not url.startswith((home, "blob:"))] == []
+
+
+def test_what_is_opened_is_shown(shown):
+    tab = shown.tab
+    assert tab.get_by_role("heading", level=1).inner_text() == "short-line"
+    for words in ("Run finished", "Audit passed", "No violations"):
+        assert tab.get_by_text(words, exact=True).is_visible()
+    assert tab.get_by_role("img", name="Voltage along the line").is_visible()
+    assert tab.get_by_role("img", name="Train graph").is_visible()
+    assert " kV" in shown.tile("Lowest voltage")
+
+
+def test_a_number_that_is_typed_moves_the_result(shown):
+    before = shown.tile("Energy")
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    assert shown.tile("Energy") != before
+    assert "+" in shown.tile("Energy")
+    assert shown.button("Changes (1)").is_visible()
+
+
+def test_decimal_commas_are_numbers(shown):
+    shown.field("headway in min").fill("12,5")
+    shown.settle()
+    shown.button("Changes").click()
+    assert "traffic.0.headway_min=12.5" in shown.tab.get_by_role("dialog").inner_text()
+
+
+def test_a_finding_stands_beside_its_field(shown):
+    headway = shown.field("headway in min")
+    headway.fill("zwei")
+    shown.settle()
+    assert headway.get_attribute("aria-invalid") == "true"
+    told = shown.tab.locator(f"#{headway.get_attribute('aria-describedby')}").inner_text()
+    assert told.startswith("not a number")
+    assert shown.tab.get_by_text("1 fault: the result is that before.").is_visible()
+    headway.fill("20")
+    shown.settle()
+    assert headway.get_attribute("aria-invalid") is None
+
+
+def test_edits_are_undone_and_redone_by_keys(shown):
+    headway = shown.field("headway in min")
+    headway.fill("20")
+    shown.settle()
+    shown.tab.keyboard.press("Control+z")
+    shown.settle()
+    assert headway.input_value() == "60"
+    shown.tab.keyboard.press("Control+Shift+z")
+    shown.settle()
+    assert headway.input_value() == "20"
+
+
+def test_arrow_keys_move_a_number(shown):
+    headway = shown.field("headway in min")
+    headway.focus()
+    shown.tab.keyboard.press("ArrowUp")
+    shown.tab.keyboard.press("Shift+ArrowDown")
+    shown.settle()
+    assert headway.input_value() == "51"
+
+
+def test_a_feeding_point_is_moved_by_keys(shown):
+    station = shown.slider("Feeding station East, 2 converters")
+    station.focus()
+    for key in ("ArrowLeft", "Shift+ArrowLeft"):
+        shown.tab.keyboard.press(key)
+    shown.settle()
+    assert station.get_attribute("aria-valuenow") == "18.9"
+    assert shown.button("Changes (1)").is_visible()
+
+
+def test_a_transformer_is_dragged(shown):
+    transformer = shown.slider("Transformer").nth(1)
+    box = transformer.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    shown.tab.mouse.move(x, y)
+    shown.tab.mouse.down()
+    for step in range(1, 6):
+        shown.tab.mouse.move(x - 20 * step, y)
+    shown.tab.mouse.up()
+    shown.settle()
+    km = float(transformer.get_attribute("aria-valuenow"))
+    assert 10.0 < km < 13.0
+    assert shown.button("Changes (1)").is_visible()
+
+
+def test_changes_are_written_in_three_ways(shown):
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    shown.button("Changes").click()
+    dialog = shown.tab.get_by_role("dialog")
+    for kind, words in (
+        ("Command line", "--set traffic.0.headway_min=20.0"),
+        ("Python", '"traffic.0.headway_min": 20.0'),
+        ("File", "+headway_min = 20.0  # one an hour"),
+    ):
+        dialog.get_by_role("button", name=kind).click()
+        assert words in dialog.inner_text()
+
+
+def test_what_is_saved_is_in_the_file(shown, file):
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    shown.tab.keyboard.press("Control+s")
+    shown.wait_for("document.getElementById('save').disabled")
+    assert "headway_min = 20.0  # one an hour" in file.read_text("utf-8")
+
+
+def test_a_file_that_was_changed_meanwhile_is_not_overwritten(shown, file):
+    changed = file.read_text("utf-8") + "# by another program\n"
+    file.write_text(changed, "utf-8")
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    shown.button("Save").click()
+    assert "not overwritten" in shown.tab.get_by_role("alert").inner_text()
+    assert file.read_text("utf-8") == changed
+
+
+def test_a_page_that_is_closed_loses_nothing(browser, home):
+    first = Shown(browser.new_page(), home).open()
+    first.field("headway in min").fill("20")
+    first.settle()
+    first.tab.close()
+    again = Shown(browser.new_page(), home).open()
+    assert again.field("headway in min").input_value() == "20"
+    assert again.button("Changes (1)").is_visible()
+    again.tab.close()
+
+
+def test_a_server_that_is_killed_and_started_again_has_the_draft(browser, file):
+    with serving(file) as home:
+        page = Shown(browser.new_page(), home).open()
+        page.field("headway in min").fill("20")
+        page.settle()
+    page.field("headway in min").fill("30")
+    page.tab.get_by_text("The server does not answer").wait_for()
+    assert f"tpss studio {file}" in page.tab.get_by_role("alert").inner_text()
+    page.tab.close()
+    with serving(file) as home:
+        page = Shown(browser.new_page(), home).open()
+        assert page.field("headway in min").input_value() == "20"
+        page.tab.close()
+
+
+def test_two_pages_do_not_overwrite_each_other(browser, home):
+    one, other = (Shown(browser.new_page(), home).open() for _ in range(2))
+    one.field("headway in min").fill("20")
+    one.settle()
+    other.field("headway in min").fill("30")
+    other.tab.get_by_text("Another page has edited this file").wait_for()
+    other.button("Take over its edits").click()
+    other.wait_for_value("headway in min", "20")
+    one.tab.close()
+    other.tab.close()
+
+
+def test_names_are_text(browser, file):
+    evil = "<img src=x onerror=document.title='evil'>"
+    file.write_text(file.read_text("utf-8").replace('"Middle"', f'"{evil}"'), "utf-8")
+    with serving(file) as home:
+        page = Shown(browser.new_page(), home).open()
+        assert page.slider(f"Station {evil}").is_visible()
+        assert page.tab.title() == "line.toml – TPSS studio"
+        assert page.faults == []
+        page.tab.close()
+
+
+def test_a_pinned_baseline_is_compared_with(shown):
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    shown.button("Pin as baseline").click()
+    assert "+" not in shown.tile("Energy")
+    assert shown.tab.get_by_text("Baseline: after 1 edits").is_visible()
+    shown.tab.keyboard.press("Control+z")
+    shown.settle()
+    assert "−" in shown.tile("Energy")
+
+
+def test_every_chart_has_its_table(shown):
+    shown.button("Voltage along the line as a table").click()
+    table = shown.tab.get_by_role("region", name="Voltage along the line, values")
+    assert table.get_by_role("columnheader").all_inner_texts()[0] == "position [km]"
+    assert table.get_by_role("row").count() > 20
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_keeps_anyone_out(browser, home, size, scheme):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    context = browser.new_context(viewport=SIZES[size], color_scheme=scheme)
+    page = Shown(context.new_page(), home).open()
+    page.field("headway in min").fill("20") if size == "wide" else None
+    page.settle()
+    for view in ("Result", "Edit") if size == "narrow" else ("",):
+        if view:
+            page.button(view).click()
+        found = axe.Axe().run(page.tab)
+        assert found.violations_count == 0, found.generate_report()
+    width = page.tab.evaluate("document.documentElement.scrollWidth")
+    assert width <= SIZES[size]["width"]
+    context.close()
+
+
+def test_the_page_is_used_by_keyboard_alone(shown, file):
+    press = shown.tab.keyboard.press
+    for _ in range(60):
+        press("Tab")
+        if shown.tab.evaluate(
+            "document.activeElement.labels?.[0]?.innerText.startsWith('headway')"
+        ):
+            break
+    shown.tab.keyboard.type("25")
+    shown.settle()
+    press("Control+s")
+    shown.wait_for("document.getElementById('save').disabled")
+    assert tomllib.loads(file.read_text("utf-8"))["traffic"][0]["headway_min"] == 25.0
