@@ -15,7 +15,7 @@ from tpss.printable import printable
 
 Column = TypeVar("Column")
 
-KERNELS = "{task.completed}/{task.total} kernels"
+KERNELS = "{task.fields[detail]}"
 
 
 class _Escaped:
@@ -107,7 +107,8 @@ def counted_kernels(name: str, console: Console) -> Iterator[Callable[[str], Non
 
 
 def _kernels_done(name: str, done: int, kernels: int) -> dict[str, Any]:
-    return {"description": escape(name), "completed": done, "total": kernels}
+    detail = f"{done}/{kernels} kernels"
+    return {"description": escape(name), "completed": done, "total": kernels, "detail": detail}
 
 
 def parts_that_fit(
