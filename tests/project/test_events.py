@@ -30,18 +30,18 @@ def test_a_run_tells_its_beginning_its_end_and_its_place(caplog, tmp_path):
     assert saved.getMessage() == f"{name}: saved in {tmp_path / 'result'}"
 
 
-def test_notes_of_a_run_are_told(caplog):
+def test_notes_of_a_run_are_told(caplog, monkeypatch):
+    monkeypatch.setattr("tpss.api.notes", lambda result: ["West carries more than it is rated for"])
     caplog.set_level(logging.INFO, logger="tpss")
-    weak = {
-        "supply.converter_stations": [
-            {"name": "West", "position_km": 0.0, "type": "Q48/Q49", "converters": 1}
-        ],
-        "simulation.duration_min": 12.0,
-    }
-    tpss.simulate(short_line(weak))
-    notes = [record.fields["note"] for record in caplog.records if record.event == "note"]
-    assert any("West" in note for note in notes)
-    assert caplog.records[-1].fields["notes"] == len(notes)
+    tpss.simulate(short_line(MINUTES))
+    note, end = caplog.records[-2:]
+    assert note.getMessage() == "short-line: West carries more than it is rated for"
+    assert end.fields["notes"] == 1
+
+
+def test_notes_are_not_gathered_for_nobody(monkeypatch):
+    monkeypatch.setattr("tpss.api.notes", lambda result: pytest.fail("nobody listens"))
+    tpss.simulate(short_line(MINUTES))
 
 
 def test_a_failed_audit_is_a_warning(caplog):
