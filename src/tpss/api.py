@@ -188,7 +188,7 @@ class Prepared:
             "step_check": check and check.as_dict(),
             "lost_time": lost and lost.as_dict(),
             "simulation_s": elapsed_s,
-            "provenance": provenance(),
+            "provenance": provenance(self.scenario),
         }
         dataset = build_dataset(outcome, model, self.layout)
         dataset.attrs = attributes(figures, model.options.step_s, run.last_step_s)

@@ -44,6 +44,8 @@ _OPTIONS: dict[str, Any] = {
     "fastmath": {"contract"},
 }
 
+_WITHOUT_CACHE = {name: value for name, value in _OPTIONS.items() if name != "cache"}
+
 KERNEL_PACKAGES = (
     "numerics", "physics", "storage", "vehicle", "sources", "track", "powerflow", "driving", "step",
     "audit",
@@ -177,9 +179,25 @@ def where_any(without: Callable[..., Any]) -> Callable[[_Function], _Function]:
             return without if part == numba.types.Tuple(()) else function
 
         if compiles():
-            options = {name: value for name, value in _OPTIONS.items() if name != "cache"}
-            _overload(call, jit_options=options, strict=False)(choose)
+            _overload(call, jit_options=_WITHOUT_CACHE, strict=False)(choose)
         return call  # type: ignore[return-value]
+
+    return decorate
+
+
+def in_compiled_code(intrinsic: Any) -> Callable[[_Function], _Function]:
+    """Let compiled code generate what `intrinsic` says where plain Python calls a function.
+
+    The function has a record with an `address` and `parameters`, and what it is given.
+    """
+
+    def decorate(function: _Function) -> _Function:
+        def choose(*_: Any) -> Callable[..., Any]:
+            return lambda called, given: intrinsic(called.address, given, called.parameters)
+
+        if compiles():
+            _overload(function, jit_options=_WITHOUT_CACHE, strict=False)(choose)
+        return function
 
     return decorate
 

@@ -1,16 +1,21 @@
 """Every page that shows commands, files or code shows what really happens; see `snippets`."""
 
+import os
 import shutil
+import tomllib
 from pathlib import Path
 
 import pytest
+
+from tpss.laws import registry
 
 from snippets import Block, Reader, assert_same_output, blocks, decimals_in_prose, was_seen
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = DOCS / "tutorial.md"
-FOR_DEVELOPERS = DOCS / "how-to" / "add-a-kind.md"
-HOW_TO = sorted({*DOCS.glob("how-to/*.md")} - {FOR_DEVELOPERS})
+FOR_DEVELOPERS = [DOCS / "how-to" / f"{name}.md" for name in ("add-a-kind", "change-an-equation")]
+FOR_AUTHORS = DOCS / "how-to" / "laws-of-your-own.md"
+HOW_TO = sorted({*DOCS.glob("how-to/*.md")} - {*FOR_DEVELOPERS, FOR_AUTHORS})
 
 
 def follow(page: Path, reader: Reader) -> None:
@@ -60,15 +65,53 @@ class Developer(Reader):
             super().follow(block)
 
 
-def test_every_kind_of_the_developer_s_guide_can_be_added(tmp_path, monkeypatch):
+@pytest.mark.parametrize("page", FOR_DEVELOPERS, ids=lambda page: page.stem)
+def test_a_guide_for_developers_can_be_followed(page, tmp_path, monkeypatch):
     """In a copy of the source, which is what runs there: as plain Python, not to be compiled."""
     source = DOCS.parent / "src"
     shutil.copytree(source, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setenv("PYTHONPATH", str(tmp_path / "src"))
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     developer = Developer(tmp_path)
-    follow(FOR_DEVELOPERS, developer)
-    demand_seen_figures(FOR_DEVELOPERS, developer)
+    follow(page, developer)
+    demand_seen_figures(page, developer)
+
+
+class Author(Developer):
+    """A reader who installs the package that a page shows, as pip would leave it."""
+
+    def follow(self, block: Block) -> None:
+        super().follow(block)
+        if block.language == "sh" and block.text == "pip install .\n":
+            self._install()
+
+    def _install(self) -> None:
+        project = tomllib.loads((self.folder / "pyproject.toml").read_text("utf-8"))["project"]
+        name, version = project["name"], project["version"]
+        info = self.folder / f"{name.replace('-', '_')}-{version}.dist-info"
+        info.mkdir()
+        metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        (info / "METADATA").write_text(metadata, "utf-8")
+        lines = [
+            f"[{group}]\n" + "".join(f"{key} = {value}\n" for key, value in points.items())
+            for group, points in project["entry-points"].items()
+        ]
+        (info / "entry_points.txt").write_text("\n".join(lines), "utf-8")
+
+
+def test_laws_of_one_s_own_can_be_installed_and_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    author = Author(tmp_path, in_shell=False)
+    for block in blocks(TUTORIAL.read_text("utf-8")):
+        if block.language == "toml":
+            author.follow(block)
+    try:
+        follow(FOR_AUTHORS, author)
+    finally:
+        registry._of_packages.cache_clear()
+        registry._registered.clear()
+    demand_seen_figures(FOR_AUTHORS, author)
 
 
 def test_output_is_the_expected_one_up_to_the_last_digit():

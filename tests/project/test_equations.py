@@ -94,6 +94,8 @@ COMPUTE_NO_EQUATION = {
         "unloaded", "unloaded_converter", "unloaded_grid", "unloaded_mixed",
         "set_unloaded", "set_unloaded_converter", "set_unloaded_grid", "set_unloaded_mixed",
         "unloaded_rectifier", "set_unloaded_rectifier",
+        # Of a law of somebody else.
+        "own_residual", "own_is_plausible", "unloaded_own", "set_unloaded_own",
         "rounded",
         # Of several types of converters each is asked.
         "_of_type", "split_all", "mixed_is_plausible", "_is_plausible", "mixed_reserve", "_reserve",
@@ -102,6 +104,7 @@ COMPUTE_NO_EQUATION = {
     "vehicle": {
         # Which law holds, and what is evaluated when.
         "update_effort", "highest_force", "_described_force", "effort_extrapolates", "motors_force",
+        "_by_own_law",
         "evaluate_rows", "update_speed_terms", "update_cap_terms", "certify_free_band",
         "within_free_band", "motor_power_demand", "armature_demand", "motors_current",
         "train_bridge_sine", "effort_outside_training", "outside_table", "effort_by_speed",

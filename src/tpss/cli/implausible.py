@@ -4,10 +4,12 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import Any
 
+import numpy as np
+
 from tpss.kernel import plain
+from tpss.model.effort_curve import level_resistance
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.constants import GRAVITY_M_S2
-from tpss.physics.running_resistance import DavisCoefficients, running_resistance
 from tpss.scenario.machine import EffortLimits, EffortTable
 from tpss.scenario.rolling_stock import Train
 from tpss.units import si
@@ -60,9 +62,7 @@ def _power(name: str, train: Train) -> Iterator[str]:
 
 
 def _resistance(name: str, train: Train) -> Iterator[str]:
-    keys = ("resistance_a_n", "resistance_b_n_s_per_m", "resistance_c_n_s2_per_m2")
-    davis = DavisCoefficients.array([tuple(si(train, key) for key in keys)])[0]
-    resistance_n = plain(running_resistance)(si(train, "max_speed_kmh"), davis)
+    resistance_n = level_resistance(train, np.array([si(train, "max_speed_kmh")]))[0]
     share = resistance_n / (si(train, "mass_t") * GRAVITY_M_S2)
     if share > MOST_RESISTANCE:
         yield (

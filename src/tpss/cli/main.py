@@ -500,6 +500,18 @@ def library(
     print_library(kind, name)
 
 
+@app.command(epilog="Example:  tpss laws")
+def laws() -> None:
+    """List the laws of other packages: resistances, drivers and converters that scenarios can name.
+
+    Packages offer them as entry points "tpss.laws". Of each kind it says what such a law is given, what
+    it has to find, and where a scenario names it.
+    """
+    from tpss.cli.laws import print_laws
+
+    print_laws()
+
+
 @app.command(epilog="Example:  tpss schema --out scenario.schema.json")
 def schema(
     out: Annotated[

@@ -8,7 +8,7 @@ import numpy as np
 from tpss import library
 from tpss.cli.implausible import implausible, rows_of
 from tpss.kernel import plain
-from tpss.model.effort_curve import adhesion
+from tpss.model.effort_curve import adhesion, level_resistance
 from tpss.model.neutral import strands
 from tpss.model.routes import Route, index_of, routes_of, running_trains
 from tpss.model.unfed import bare_in_words, unfed_in_words
@@ -17,6 +17,7 @@ from tpss.scenario import Scenario
 from tpss.scenario.fields import LINE
 from tpss.scenario.line import DECIMALS, Line
 from tpss.scenario.machine import EffortTable
+from tpss.scenario.own_laws import laws_of
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.supply.system import system_named
 from tpss.scenario.traffic import Traffic
@@ -41,6 +42,7 @@ def notes(scenario: Scenario) -> list[str]:
             for note in (*_profile(*each), *_dead_stretches(*each))
         ),
         *_supply(scenario),
+        *(f"not an equation of TPSS: {law}" for law in laws_of(scenario)),
         *filter(None, [unfed_in_words(scenario), bare_in_words(scenario)]),
         *_voltage_limits(scenario),
         *_trains(scenario),
@@ -289,4 +291,5 @@ def _rails(train: Train, scenario: Scenario) -> str:
 
 def _starting_force_n(train: Train, permille: float) -> float:
     """Rolling resistance at standstill, and gravity."""
-    return si(train, "resistance_a_n") + plain(gradient_force)(si(train, "mass_t"), permille * 1e-3)
+    at_rest_n = float(level_resistance(train, np.zeros(1))[0])
+    return at_rest_n + plain(gradient_force)(si(train, "mass_t"), permille * 1e-3)

@@ -275,6 +275,8 @@ def key_figures(result: Result) -> list[str]:
     lines += thermal_in_words(summary.get(THERMAL))
     lines += step_lines(summary)
     lines.append(_audit(summary["audit"]))
+    if laws := summary["provenance"].get("laws"):
+        lines.append(f"Not equations of TPSS: {laws}")
     lines.append(f"Simulated in {1e3 * summary['simulation_s']:.0f} ms")
     return lines
 

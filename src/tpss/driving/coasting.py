@@ -3,7 +3,8 @@ r"""Coasting: stretches before stops on which trains let their speed fall, to sa
 There a train that is faster than its stretch asks for gives no force: resistances slow it down, or a
 gradient speeds it up, as far as the limit, which its brakes hold.  Once it has come down to the speed of
 the stretch it goes on with that, as if it were its limit; but it never brakes for it.  It brakes for
-limits and stops as ever.
+limits and stops as ever.  So it does all along where a driver by a law of his own (`own_driver`) wants
+less than it has.
 """
 
 import math
@@ -64,7 +65,8 @@ def coast(
     """
     motion = passage.motion
     room_m = min(aim.room_m, _room_to_change(motion.position_m, kind, data))
-    v, down_to_m_s = motion.speed_m_s, coasting_speed(motion.position_m, kind, data.coasting)
+    v, on_stretch_m_s = motion.speed_m_s, coasting_speed(motion.position_m, kind, data.coasting)
+    down_to_m_s = min(on_stretch_m_s, train.decision.wanted_m_s)
     acceleration, until_m_s, longest_s = aim.acceleration_m_s2, aim.until_m_s, aim.longest_s
     coasts = acceleration >= 0.0 and v > down_to_m_s * (1.0 + CLOSE)
     if coasts:

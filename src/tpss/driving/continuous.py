@@ -16,12 +16,13 @@ from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import highest_speed, what_to_brake_for
 from tpss.driving.motion import force_to_target, move_uniformly, set_target, spare_motors
 from tpss.driving.neutral import has_neutral, may_lack_power
+from tpss.driving.own_driver import wanted_speed
 from tpss.driving.passage import LONGEST_PHASE_S
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.numerics.staircase import index_at, index_from
 from tpss.physics.gradient import mean_gradient
-from tpss.physics.running_resistance import gradient_force, running_resistance
+from tpss.physics.running_resistance import gradient_force
 from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.braking import braking_square
 from tpss.vehicle.demand import (
@@ -33,6 +34,7 @@ from tpss.vehicle.demand import (
     within_free_band,
 )
 from tpss.vehicle.feed_back import offer, regenerates
+from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.train import Course, Phase, Train, copy_motion
 from tpss.vehicle.train_type import TrainType
 
@@ -53,7 +55,7 @@ def _resist(
         motion.gradient, motion.position_m, distance_m,
         data.gradients.from_m[row], data.gradients.value[row],
     )  # fmt: skip
-    forces.running_resistance_n = running_resistance(mean_speed_m_s, kind.resistance)
+    forces.running_resistance_n = resistance_at(mean_speed_m_s, kind)
     forces.gradient_n = gradient_force(kind.mass_kg, slope)
     train.demand.resistance_n = forces.running_resistance_n + forces.gradient_n
 
@@ -144,6 +146,7 @@ def look_ahead(
         return
     here = index_at(motion.position_m, data.limits.from_m[row])
     cruise = min(highest_speed(data.limits.value[row][at(here)], kind), motion.ceiling_m_s)
+    cruise = min(cruise, decision.wanted_m_s)
     if v > cruise:
         return
     motion.gradient = index_from(motion.gradient, motion.position_m, data.gradients.from_m[row])
@@ -160,10 +163,12 @@ def look_ahead(
 def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) -> None:
     """Find all about a train that stays fixed while this step is solved, but what its driver decides."""
     decision = train.decision
+    kind = data.types[at(train.train_type)]
     train.passage.stays = False
+    decision.wanted_m_s = wanted_speed(train, kind, data)
     train.demand.driven_share = decision.moving_share = 1.0
     decision.hold_s = 0.0
-    look_ahead(train, data.types[at(train.train_type)], data, points, scratch)
+    look_ahead(train, kind, data, points, scratch)
     decision.decided = False
 
 

@@ -8,8 +8,9 @@ from tpss.kernel import at, inlined, kernel
 from tpss.numerics.staircase import index_from
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.locomotive import acceleration
-from tpss.physics.running_resistance import gradient_force, running_resistance
+from tpss.physics.running_resistance import gradient_force
 from tpss.vehicle.billing import force_of_current
+from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.train import Phase, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -34,7 +35,7 @@ def update_resistances(
         motion.gradient, motion.position_m, distance_m, from_m, gradients.value[row]
     )
     standing = motion.phase == Phase.DWELLING
-    forces.running_resistance_n = 0.0 if standing else running_resistance(speed, kind.resistance)
+    forces.running_resistance_n = 0.0 if standing else resistance_at(speed, kind)
     forces.gradient_n = gradient_force(kind.mass_kg, slope)
     train.demand.resistance_n = forces.running_resistance_n + forces.gradient_n
 

@@ -278,7 +278,7 @@ def _drive(
     if has_neutral(data):
         aim = _with_power_unchanged(until_s, aim, motion, kind, data)
     asked_v, coasts = voltage_v, False
-    if has_coasting(data):
+    if has_coasting(data) or train.decision.wanted_m_s < math.inf:
         aim, coasts = coast(aim, passage, train, kind, data, points, scratch)
         if coasts:
             asked_v = 0.0

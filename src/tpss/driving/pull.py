@@ -25,10 +25,11 @@ from tpss.driving.lookahead import time_to_braking, time_to_place
 from tpss.kernel import at, inlined, kernel
 from tpss.numerics.curve import Points
 from tpss.physics.gradient import mean_gradient
-from tpss.physics.running_resistance import gradient_force, running_resistance
+from tpss.physics.running_resistance import gradient_force
 from tpss.vehicle.adhesion import adhesion_of
 from tpss.vehicle.billing import force_of_current
 from tpss.vehicle.phase import force_of_phase
+from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.train import Passage, Train
 from tpss.vehicle.train_type import TrainType
 
@@ -125,7 +126,7 @@ def pull_with(
         data.gradients.from_m[row], data.gradients.value[row],
     )  # fmt: skip
     running, gradient = (
-        running_resistance(mean, kind.resistance),
+        resistance_at(mean, kind),
         gradient_force(kind.mass_kg, slope),
     )
     resistance = running + gradient

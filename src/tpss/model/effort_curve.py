@@ -10,10 +10,10 @@ from tpss.numerics.curve import curve_at
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.physics.adhesion import Rail, adhesion_limit
 from tpss.physics.constants import GRAVITY_M_S2
-from tpss.physics.running_resistance import running_resistance
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.vehicle.demand import FULL_EFFORT_N, update_speed_terms, wheel_force
+from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.terms import Demand
 
 Floats = npt.NDArray[np.float64]
@@ -35,8 +35,8 @@ def machine_limit(train: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
 
 def level_resistance(train: Train, speed_m_s: Floats) -> Floats:
     """Running resistance on level track. [N]"""
-    davis = build_train_types([Running(train)])[0][0].resistance
-    return np.array([plain(running_resistance)(speed, davis) for speed in speed_m_s])
+    kind = build_train_types([Running(train)])[0][0]
+    return np.array([plain(resistance_at)(speed, kind) for speed in speed_m_s])
 
 
 def adhesion(train: Train, speed_m_s: Floats, simulation: Simulation) -> Floats:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from tpss.model.own_laws import own_law
 from tpss.record import Records
 from tpss.scenario.supply import (
     ConverterStation,
@@ -19,6 +20,7 @@ from tpss.sources.converter import ConverterLaw
 from tpss.sources.grid import GridLaw
 from tpss.sources.kinds import Source, SourceKind
 from tpss.sources.mixed import TYPES, MixedLaw
+from tpss.sources.own import OwnStationLaw
 from tpss.sources.rectifier import MOST_POINTS, RectifierLaw
 from tpss.units import si
 
@@ -27,7 +29,7 @@ def _converter_station(node: int, station: ConverterStation) -> Any:
     kind = station.type
     return Source.row(
         node=node,
-        kind=SourceKind.BOUNDED if station.has_bounds else SourceKind.CONVERTER,
+        kind=_converter_kind(station),
         installed=station.converters,
         controlled=station.control == "loading",
         rating_va=si(kind, "rating_mva"),
@@ -38,7 +40,14 @@ def _converter_station(node: int, station: ConverterStation) -> Any:
             grid_angle_rad=si(station, "grid_angle_deg"),
         ),
         bounds=_bounds(station),
+        own=OwnStationLaw.row(voltage=own_law(station.law), turn_rad=si(station, "grid_angle_deg")),
     )
+
+
+def _converter_kind(station: ConverterStation) -> SourceKind:
+    if station.law is not None:
+        return SourceKind.OWN
+    return SourceKind.BOUNDED if station.has_bounds else SourceKind.CONVERTER
 
 
 def _bounds(station: ConverterStation) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 from tpss import library
 from tpss.kernel import plain
 from tpss.model.curves import CurveBook, interpolate
+from tpss.model.own_laws import own_law
 from tpss.model.profiles import row_seen, rows_seen
 from tpss.model.routes import Running
 from tpss.model.stores import store_of
@@ -95,6 +96,8 @@ def _train_type(train: Train, profile: int, book: CurveBook, limits: VoltageLimi
             b_n_s_per_m=si(train, "resistance_b_n_s_per_m"),
             c_n_s2_per_m2=si(train, "resistance_c_n_s2_per_m2"),
         ),
+        own_resistance=own_law(train.resistance_law),
+        driver=own_law(train.driver),
         highest_acceleration_m_s2=_si_or(train, "max_acceleration_m_s2", math.inf),
         **_braking(train),
         highest_speed_m_s=si(train, "max_speed_kmh"),

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from tpss.laws.registry import laws_named
 from tpss.planning.configurations import (
     Configuration,
     configurations_of,
@@ -94,7 +95,8 @@ class CaseList:
         inlined = inline_files(document, area.source).document
         simulation = {k: v for k, v in inlined["simulation"].items() if k not in ENDS}
         kept = {key: value for key, value in inlined.items() if key not in NAMES}
-        return {**kept, "simulation": simulation}
+        laws = laws_named(kept)
+        return {**kept, "simulation": simulation, **({"laws": laws} if laws else {})}
 
     def document(self, case: Case) -> dict[str, Any]:
         """Document of the scenario of a case, with the files that it names: it can be sent anywhere."""

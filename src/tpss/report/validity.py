@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from tpss.model.phases import phases_of
 from tpss.results.thermal.elements import has_ratings
 from tpss.scenario.machine import EffortLimits, EffortTable
+from tpss.scenario.own_laws import laws_of
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.scenario import Scenario
 
@@ -49,6 +50,9 @@ OF_GRIDS = (
 )
 
 
+OF_LAWS = "Not an equation of TPSS: {}. What it leaves out, its author knows."
+
+
 OF_RAILS = (
     "Rails of all tracks are joined at each node and leak to an earth at zero voltage, in lumps; their "
     "voltage is the highest that can be touched, not what a person bridges. Its limits, and that of "
@@ -70,8 +74,17 @@ def limits_of_validity(scenarios: Iterable[Scenario]) -> list[str]:
     rated = [OF_RATINGS] if any(has_ratings(scenario) for scenario in told) else []
     phased = any(phases_of(each) for scenario in told for each in scenario.supply.stations)
     grids = [OF_GRIDS] if phased else []
+    laws = [OF_LAWS.format(law) for scenario in told for law in laws_of(scenario)]
     rails = [OF_RAILS] if any(scenario.supply.conductors for scenario in told) else []
-    return [*ALWAYS, *dict.fromkeys(sentences), *SUPPLY, *rails, *grids, *rated]
+    return [
+        *ALWAYS,
+        *dict.fromkeys(laws),
+        *dict.fromkeys(sentences),
+        *SUPPLY,
+        *rails,
+        *grids,
+        *rated,
+    ]
 
 
 def _of_traffic(scenario: Scenario) -> str:

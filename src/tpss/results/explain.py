@@ -52,6 +52,7 @@ _LIMITED = {
     "curve outside its speeds",
     "efficiency_extrapolated": "an efficiency curve was used outside its speeds, or beyond its loads",
     "too_near": "trains were nearer to others, or to where they had to wait, than they could brake for",
+    "least_wish": "the law of a driver wanted less than 1 km/h, or gave no number, and 1 km/h was taken",
     "motors_spared": "drivers took all that they allow motors to bear, to spare them",
     "current_limited": "the current limitation at low voltage kept a train below the wanted force",
 }

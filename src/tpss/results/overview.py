@@ -30,6 +30,8 @@ def overview(result: "Result") -> dict[str, pd.DataFrame]:
         "TPSS version": summary["provenance"]["tpss_version"],
         "simulated": summary["provenance"]["created"],
     }
+    if laws := summary["provenance"].get("laws"):
+        ran["laws of other packages"] = laws
     figures = {key: value for key, value in summary.items() if key not in TOLD_APART}
     audit = {key: value for key, value in summary["audit"].items() if key != "passed"}
     rows: list[tuple[str, Any, str]] = [(name, value, "") for name, value in ran.items()]

@@ -11,6 +11,7 @@ from tpss.results.current_limits import at_current_limit
 from tpss.results.explain import explain
 from tpss.results.key_figures import KeyFigures
 from tpss.run.run import Outcome
+from tpss.scenario.own_laws import laws_of
 from tpss.scenario.scenario import Scenario
 from tpss.step.model import Model
 
@@ -57,9 +58,10 @@ def _trips(outcome: Outcome) -> list[dict[str, Any]]:
     ]
 
 
-def provenance() -> dict[str, str]:
-    """Versions, platform and time of a run."""
-    return {**_versions(), "created": dt.datetime.now(dt.UTC).isoformat(timespec="seconds")}
+def provenance(scenario: Scenario) -> dict[str, str]:
+    """Versions, platform and time of a run; and the laws of other packages that it used."""
+    laws = {"laws": "; ".join(own)} if (own := laws_of(scenario)) else {}
+    return {**_versions(), **laws, "created": dt.datetime.now(dt.UTC).isoformat(timespec="seconds")}
 
 
 @cache

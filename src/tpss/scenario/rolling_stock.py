@@ -18,9 +18,11 @@ from tpss.scenario.machine import (
 )
 from tpss.scenario.on_board import OnBoardStorage
 from tpss.scenario.over_load import EfficiencyOverLoad
+from tpss.scenario.own_laws import DriverLaw, ResistanceLaw, demand_resistance, demand_wishes
 from tpss.scenario.rating import MotorRating
 from tpss.scenario.regeneration import Regeneration
 from tpss.scenario.supply.system import SystemName
+from tpss.units import si
 
 BY_SYSTEM = "by_system"
 """Key of what a train is under one system or another."""
@@ -91,6 +93,16 @@ class Train(Part):
     )
     resistance_b_n_s_per_m: Real = Field(ge=0, le=1_000_000, description="B.")
     resistance_c_n_s2_per_m2: Real = Field(ge=0, le=100_000, description="C.")
+    resistance_law: ResistanceLaw | None = Field(
+        default=None,
+        description="Running resistance by a law of another package, which is given A, B and C too; "
+        "leave it out: A + B v + C v².",
+    )
+    driver: DriverLaw | None = Field(
+        default=None,
+        description="Driver by a law of another package, with continuous motion: the speed that he "
+        "wants at each step; leave it out: as fast as limits allow.",
+    )
     max_speed_kmh: Real = Field(ge=1, le=500, description="Highest speed of the train.")
     max_motor_current_a: Real | None = Field(
         default=None,
@@ -327,6 +339,17 @@ class Train(Part):
                 f"adhesive_mass_t ({self.adhesive_mass_t} t) is more than mass_t ({self.mass_t} t)",
                 "raise mass_t, which is of the whole train, or lower adhesive_mass_t",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _own_laws_find_numbers(self) -> Self:
+        highest_m_s = si(self, "max_speed_kmh")
+        if self.resistance_law is not None:
+            davis = ("resistance_a_n", "resistance_b_n_s_per_m", "resistance_c_n_s2_per_m2")
+            given = tuple(si(self, name) for name in ("mass_t", *davis))
+            demand_resistance(self.resistance_law, highest_m_s, given)
+        if self.driver is not None:
+            demand_wishes(self.driver, highest_m_s)
         return self
 
     @model_validator(mode="after")

@@ -55,6 +55,13 @@ def _own_stores(document: Mapping[str, Any]) -> Iterator[Asked]:
             yield f"trains.{name}.storage", "", "does not go with {}", ""
 
 
+def _own_drivers(document: Mapping[str, Any]) -> Iterator[Asked]:
+    """Drivers by a law of another package: its drivers decide about whole steps."""
+    for name, train in _trains(document):
+        if table(train, "driver"):
+            yield f"trains.{name}.driver", "", "does not go with {}", ""
+
+
 def _without_contact_line(document: Mapping[str, Any]) -> Iterator[Asked]:
     """Stretches without contact line: trains may stand anywhere there."""
     if table(document, "supply").get("without_contact_line"):
@@ -98,6 +105,7 @@ UNKNOWN: tuple[Callable[[Mapping[str, Any]], Iterator[Asked]], ...] = (
     _neutral_sections,
     _electric_brakes,
     _own_stores,
+    _own_drivers,
     _without_contact_line,
     _coasting,
     _protection,

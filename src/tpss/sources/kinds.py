@@ -34,6 +34,13 @@ from tpss.sources.mixed import (
     set_unloaded_mixed,
     unloaded_mixed,
 )
+from tpss.sources.own import (
+    OwnStationLaw,
+    own_is_plausible,
+    own_residual,
+    set_unloaded_own,
+    unloaded_own,
+)
 from tpss.sources.rectifier import (
     RectifierLaw,
     rectifier_residual,
@@ -51,6 +58,8 @@ class SourceKind(IntEnum):
     BOUNDED = 3
     """A converter station with bounds."""
     RECTIFIER = 4
+    OWN = 5
+    """A converter station by a law of somebody's own."""
 
 
 class Source(Record):
@@ -71,6 +80,7 @@ class Source(Record):
     mixed: MixedLaw = MixedLaw.row()
     bounds: Bounds = Bounds.row()
     rectifier: RectifierLaw = RectifierLaw.row()
+    own: OwnStationLaw = OwnStationLaw.row()
 
 
 @inlined
@@ -106,6 +116,8 @@ def residual(
         return bounded_residual(voltage, current, running, source.converter, source.bounds)
     if source.kind == SourceKind.RECTIFIER:
         return rectifier_residual(voltage, current, running, source.rectifier)
+    if source.kind == SourceKind.OWN:
+        return own_residual(voltage, current, running, source.own)
     return converter_residual(voltage, current, running, source.converter, derivatives)
 
 
@@ -118,6 +130,8 @@ def is_plausible(voltage: complex, current: complex, running: float, source: Sou
         return mixed_is_plausible(voltage, current, source.mixed)
     if source.kind == SourceKind.BOUNDED:
         return bounded_is_plausible(voltage, current, running, source.converter, source.bounds)
+    if source.kind == SourceKind.OWN:
+        return own_is_plausible(voltage, current, running, source.own)
     return True
 
 
@@ -140,6 +154,8 @@ def unloaded(source: Source) -> tuple[float, float]:
         return unloaded_mixed(source.mixed)
     if source.kind == SourceKind.RECTIFIER:
         return unloaded_rectifier(source.rectifier)
+    if source.kind == SourceKind.OWN:
+        return unloaded_own(source.own)
     return unloaded_converter(source.converter)
 
 
@@ -152,6 +168,8 @@ def set_unloaded(magnitude_v: float, angle_rad: float, source: Source) -> None:
         set_unloaded_mixed(magnitude_v, angle_rad, source.mixed)
     elif source.kind == SourceKind.RECTIFIER:
         set_unloaded_rectifier(magnitude_v, source.rectifier)
+    elif source.kind == SourceKind.OWN:
+        set_unloaded_own(magnitude_v, angle_rad, source.own)
     else:
         set_unloaded_converter(magnitude_v, angle_rad, source.converter)
 

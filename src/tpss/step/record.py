@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tpss.driving.own_driver import SLOWEST_WISH_M_S
 from tpss.driving.work import mean_powers
 from tpss.kernel import at, inlined, kernel, where_any
 from tpss.numerics.curve import Points
@@ -23,7 +24,7 @@ from tpss.sources.kinds import loading, losses
 from tpss.step.converter_control import station_power
 from tpss.step.recorded import OnBoardRow, RegenerationRow, StoreRow, TrainRow
 from tpss.step.recording import Call, Indices, Recording
-from tpss.step.state import Floats, TrainState
+from tpss.step.state import Counter, Floats, TrainState
 from tpss.storage.store import energy_after, lost_power
 from tpss.vehicle.breaches import BREACHES, find_breaches
 from tpss.vehicle.demand import armature_demand, motors_power
@@ -109,6 +110,8 @@ def record_trains(
         train, row = trains[at(i)], rows[at(step), at(i)]
         kind = kinds[at(train.train_type)]
         states[at(step), at(i)] = state_code(train)
+        if kind.driver.address != 0 and train.decision.wanted_m_s <= SLOWEST_WISH_M_S:
+            counters[Counter.LEAST_WISH] += 1
         record_train(standing[at(k)].voltage_v, step_s, train, row)
         if without_power_s.shape[0] > 0:
             passes = train.decision.course == Course.PASSAGE

@@ -61,6 +61,7 @@ class Counter(IntEnum):
     SHORT_PIECE = BREACHES
     TOO_NEAR = BREACHES + 1
     MOTORS_SPARED = BREACHES + 2
+    LEAST_WISH = BREACHES + 3
 
 
 class Clock(Record):

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from tpss.errors import Finding, ScenarioError
+from tpss.laws.registry import laws_named
 from tpss.scenario.fields import LINE, Name, Part, Real, Whole, fault
 from tpss.scenario.files import read_toml
 from tpss.scenario.given_path import named_as_given
@@ -133,7 +134,9 @@ class Study:
         drawn = document["gradients"]
         if drawn is not None and drawn["line"] is None:
             del drawn["line"]  # a study of one line has the digest that it always had
-        more = [self.timetables] if self.timetables else []
+        more: list[Any] = [self.timetables] if self.timetables else []
+        if laws := laws_named([document, self.base]):
+            more.append(laws)
         text = json.dumps([document, self.base, *more], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 

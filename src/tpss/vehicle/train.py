@@ -128,6 +128,8 @@ class Decision(Record):
     """Highest speed where it is, at the start of the step, if it moves continuously. [m/s]"""
     braking_square_m2_s2: float
     """Square of the speed from which it has to brake, at the start of the step. [m²/s²]"""
+    wanted_m_s: float
+    """Speed that a driver by a law of his own wants in the step; infinite: any. [m/s]"""
 
 
 class Forces(Record):

@@ -2,6 +2,7 @@
 
 import math
 
+from tpss.numerics.called import Called
 from tpss.numerics.curve import Curve
 from tpss.numerics.neural_network import FeedForwardNetwork
 from tpss.physics.motor import MotorModel
@@ -110,5 +111,9 @@ class TrainType(Record):
     """Its motors, if its driver spares them."""
     on_board: OnBoard = OnBoard.row()
     """Its store of energy."""
+    own_resistance: Called = Called.row()
+    """Its running resistance, where a law of somebody's own gives it."""
+    driver: Called = Called.row()
+    """What its driver wants, by such a law."""
     over_load: LoadCurve = LoadCurve.row()
     """Factor of the efficiency over the power of the motors."""

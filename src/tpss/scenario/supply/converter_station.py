@@ -13,10 +13,12 @@ from tpss.scenario.fields import (
     fault,
     library_name,
 )
+from tpss.scenario.own_laws import ConverterLaw, demand_voltages
 from tpss.scenario.rating import Rating
 from tpss.scenario.supply.feedback import ConverterFeedback, converter_feedback
 from tpss.scenario.supply.feeding_station import FeedingStation
 from tpss.scenario.supply.losses import ConverterLosses
+from tpss.units import si
 
 
 class ConverterType(Part):
@@ -61,6 +63,11 @@ class ConverterStation(FeedingStation):
     control: Literal["all-on", "loading"] = Field(
         default="all-on",
         description="Whether all converters run, or as many as the loading needs.",
+    )
+    law: ConverterLaw | None = Field(
+        default=None,
+        description="Voltage and angle of its converters by a law of another package, in place of those "
+        "of their type; leave it out: by the type's droop and reactances.",
     )
     feedback: ConverterFeedback = converter_feedback()
     station_kw: Real | None = Field(
@@ -117,6 +124,21 @@ class ConverterStation(FeedingStation):
             )
         return self
 
+    @model_validator(mode="after")
+    def _own_law_stands_alone(self) -> Self:
+        if self.law is None:
+            return self
+        for name in ("grid_reactance_ohm", "grid_reactive_power_mvar"):
+            if getattr(self, name) != 0.0:
+                raise fault(f"{name} has no part in {self.law.law!r}", f"leave out {name}, or law")
+        if self.has_bounds:
+            raise fault(
+                f"the law {self.law.law!r} knows neither a limit of the current nor of what is fed back",
+                'leave out law, or current_limit_percent and feedback = "none"',
+            )
+        demand_voltages(self.law, si(self.type, "rating_mva"))
+        return self
+
     @property
     def installed(self) -> int:
         """Number of converters installed."""
@@ -125,6 +147,8 @@ class ConverterStation(FeedingStation):
     @property
     def no_load_voltage_kv(self) -> float:
         """Terminal voltage without load. [kV]"""
+        if self.law is not None:
+            return self.law.unloaded_v / 1e3
         return self.type.no_load_voltage_kv
 
     @property
@@ -136,4 +160,6 @@ class ConverterStation(FeedingStation):
     def in_words(self) -> str:
         """What stands there."""
         converter = library_name("converters", self.type)
-        return f"{self.converters} x {converter} of {self.unit_mva:g} MVA, control {self.control}"
+        by_law = f" by the law {self.law.law}" if self.law is not None else ""
+        size = f"{self.converters} x {converter} of {self.unit_mva:g} MVA"
+        return f"{size}{by_law}, control {self.control}"
