@@ -6,7 +6,6 @@ On the site both become links, so that every equation is one click from its code
 
 import posixpath
 import re
-from pathlib import Path
 
 from markdown import Extension, Markdown
 from markdown.postprocessors import Postprocessor

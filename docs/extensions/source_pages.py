@@ -1,4 +1,4 @@
-"""A page for each file of ``src/tpss`` that a page names: its text with colours, each line with an anchor."""
+"""A page for each file of ``src/tpss`` that is named: its text with colours, each line with an anchor."""
 
 import html
 import posixpath

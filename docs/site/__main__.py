@@ -1,7 +1,7 @@
 """Make the site: ``python docs/site build --strict``, or ``serve`` to see it while you write.
 
 Zensical builds it by `mkdocs.yml`; here its Markdown is taught two more things, and the pages of the
-source are written, which it copies. 
+source are written, which it copies.
 """
 
 import sys
