@@ -1,4 +1,4 @@
-"""A page for each file of ``src/tpss`` that is named: its text with colours, each line with an anchor."""
+"""A page for each file of ``src/tpss`` that is named: its text in colours, an anchor at each line."""
 
 import html
 import posixpath
@@ -34,7 +34,10 @@ _PAGE = """<!doctype html>
 </html>
 """
 
-_LOOKS = """body { margin: 1rem auto; max-width: 72rem; padding: 0 1rem; font-family: sans-serif; background: white; color: black; }
+_LOOKS = """body {
+  margin: 1rem auto; max-width: 72rem; padding: 0 1rem;
+  font-family: sans-serif; background: white; color: black;
+}
 header a { margin-right: 1rem; color: inherit; }
 h1 { font-size: 1.3rem; }
 :target { background: #ff02; outline: 1px solid; }
