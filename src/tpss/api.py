@@ -9,6 +9,7 @@ from pathlib import Path
 from tpss.accuracy.check import StepCheck, check_step
 from tpss.accuracy.choose import StepChoice, choose_step
 from tpss.accuracy.trial import Trial
+from tpss.events import is_heard, tell
 from tpss.model import build_model
 from tpss.model.build import Layout, at_step
 from tpss.model.start import start_of
@@ -16,6 +17,7 @@ from tpss.results.contents import FORMAT, FORMAT_KEY
 from tpss.results.converter_losses import converter_losses, describes_losses, totals
 from tpss.results.dataset import attributes, build_dataset
 from tpss.results.key_figures import Frame, KeyFigures, frame_of, key_figures_of
+from tpss.results.notes import notes
 from tpss.results.result import Result
 from tpss.results.storage import has_stores, storage
 from tpss.results.storage import totals as totals_of_stores
@@ -108,6 +110,23 @@ def _clock_of(scenario: Scenario) -> Clock:
     return clock_of(scenario.simulation.load_flow, scenario.given_source)
 
 
+def _tell_end(result: Result) -> None:
+    """Tell those who listen how a run ended."""
+    name, summary, audit = result.scenario.name, result.summary, result.audit
+    remarks = notes(result) if audit["passed"] and is_heard("note") else []
+    for remark in remarks:
+        tell("note", scenario=name, note=remark)
+    tell(
+        "simulated",
+        scenario=name,
+        notes=len(remarks),
+        limited=sum(summary["limited"].values()),
+        **{key: summary[key] for key in ("status", "duration_min", "simulation_s")},
+    )
+    if not audit["passed"]:
+        tell("audit failed", scenario=name, failures="; ".join(audit["failures"]))
+
+
 def _in_check(
     progress: Callable[[Progress], None] | None,
 ) -> Callable[[Progress], None] | None:
@@ -154,6 +173,7 @@ class Prepared:
             As of `simulate`.
         """
         start = self.start
+        tell("simulating", scenario=self.scenario.name)
         started = time.perf_counter()
         run, status = run_to_end(start, self.clock, report=progress, interrupted=interrupted)
         elapsed_s = time.perf_counter() - started
@@ -177,7 +197,9 @@ class Prepared:
             figures["converter_losses"] = totals(table, dataset, self.scenario)
         if has_stores(dataset):  # a table of none takes as long as a run
             figures["storage"] = totals_of_stores(storage(dataset, self.scenario))
-        return Result(self.scenario, dataset, figures)
+        result = Result(self.scenario, dataset, figures)
+        _tell_end(result)
+        return result
 
     def find_lost_time(
         self,

@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 import numba
 import numba.extending
 import numpy as np
+import platformdirs
 
 from tpss.kernel_cache import KernelCache
 
@@ -28,6 +29,9 @@ _config: Any = numba.config
 _njit: Any = numba.njit
 _cache_of: Any = KernelCache
 _overload: Any = numba.extending.overload
+
+_indices: list[Path] = []
+"""Files that say what of each kernel is compiled, within the folder of all."""
 
 _OPTIONS: dict[str, Any] = {
     "cache": True,
@@ -65,16 +69,54 @@ def source_digest(package_folder: Path) -> str:
 
 @cache
 def cache_folder() -> Path:
-    """Folder of the compiled kernels: the user's cache, or a temporary one if that is not writable."""
-    home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
-    name = f"tpss/{source_digest(Path(__file__).parent)}"
-    folder = Path(home).expanduser() / name
+    """Folder of the compiled kernels, in `kernels_home` or, if that is not writable, a temporary one."""
+    digest = source_digest(Path(__file__).parent)
     try:
+        folder = kernels_home() / digest
         folder.mkdir(parents=True, exist_ok=True)
         writable = os.access(folder, os.W_OK)
-    except (OSError, RuntimeError):
+    except (OSError, RuntimeError):  # also of a user without a home
         writable = False
-    return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / name
+    return folder if writable else Path(tempfile.mkdtemp(prefix="tpss-kernels-")) / "tpss" / digest
+
+
+def kernels_home() -> Path:
+    """Folder of compiled kernels of all versions: that of the system for caches of the user.
+
+    ``NUMBA_CACHE_DIR`` names another one.
+
+    Raises
+    ------
+    RuntimeError
+        The user has no home.
+    """
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    home = Path(chosen, "tpss") if chosen else platformdirs.user_cache_path("tpss", appauthor=False)
+    return home.expanduser()
+
+
+def compiles() -> bool:
+    """Whether kernels are compiled; they stay plain Python under ``NUMBA_DISABLE_JIT=1``."""
+    return not _config.DISABLE_JIT
+
+
+def is_kept() -> bool:
+    """Whether compiled kernels are there for later processes, not in a folder for this one only."""
+    try:
+        return cache_folder().parent == kernels_home()
+    except RuntimeError:
+        return False
+
+
+def compiled_kernels() -> tuple[int, int]:
+    """How many of the kernels that were imported are on disk, and how many there are.
+
+    Those count that another process compiles for this one in a folder of its own.  Kernels that become
+    part of others do not count, as they are not compiled by themselves.
+    """
+    folders = [cache_folder(), *cache_folder().glob("part-*/tpss/*")]
+    done = sum(any((folder / index).exists() for folder in folders) for index in _indices)
+    return done, len(_indices)
 
 
 def kernels_are_compiled(last: str) -> bool:
@@ -85,7 +127,7 @@ def kernels_are_compiled(last: str) -> bool:
     last : str
         Name of the kernel that is compiled last.
     """
-    return bool(_config.DISABLE_JIT) or any(cache_folder().rglob(f"*.{last}-*.nbi"))
+    return not compiles() or any(cache_folder().rglob(f"*.{last}-*.nbi"))
 
 
 def kernel(function: _Function) -> _Function:
@@ -136,7 +178,7 @@ def where_any(without: Callable[..., Any]) -> Callable[[_Function], _Function]:
         def choose(part: Any, *_: Any) -> Callable[..., Any]:
             return without if part == numba.types.Tuple(()) else function
 
-        if not _config.DISABLE_JIT:
+        if compiles():
             _overload(call, jit_options=_WITHOUT_CACHE, strict=False)(choose)
         return call  # type: ignore[return-value]
 
@@ -153,7 +195,7 @@ def in_compiled_code(intrinsic: Any) -> Callable[[_Function], _Function]:
         def choose(*_: Any) -> Callable[..., Any]:
             return lambda called, given: intrinsic(called.address, given, called.parameters)
 
-        if not _config.DISABLE_JIT:
+        if compiles():
             _overload(function, jit_options=_WITHOUT_CACHE, strict=False)(choose)
         return function
 
@@ -166,8 +208,10 @@ def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     _config.CACHE_DIR = str(cache_folder())
     try:
         compiled: _Function = _njit(inline=inline, **options)(function)
-        if not _config.DISABLE_JIT:
+        if compiles():
             setattr(compiled, "_cache", _cache_of(function))  # noqa: B010
+            if inline == "never":
+                _indices.append(compiled._cache.index.relative_to(cache_folder()))  # type: ignore[attr-defined]
     finally:
         _config.CACHE_DIR = folder_before
     return compiled

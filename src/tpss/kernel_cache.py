@@ -36,9 +36,14 @@ class KernelCache(_FunctionCache):  # type: ignore[misc]
             _tell("written", f"{error}; the next start compiles again")
             self._throw_away()
 
+    @property
+    def index(self) -> Path:
+        """File that says what of the kernel is compiled."""
+        return Path(self._cache_file._index_path)
+
     def _throw_away(self) -> None:
         """Remove the files of this kernel, which may be damaged, or written in part."""
-        index = Path(self._cache_file._index_path)
+        index = self.index
         for file in [index, *index.parent.glob(f"{index.stem}.*.nbc")]:
             try:
                 file.unlink(missing_ok=True)

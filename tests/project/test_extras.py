@@ -3,6 +3,7 @@
 import ast
 import importlib
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -83,6 +84,20 @@ def test_all_has_every_extra_of_users():
     of_developers = {"test", "bench", "docs", "all"}
     users = set(PROJECT["optional-dependencies"]) - of_developers
     assert names_of("all") == {name for extra in users for name in names_of(extra)}
+
+
+def test_the_matrix_tries_every_extra_of_users():
+    matrix = runpy.run_path(str(ROOT / ".ci" / "matrix"))
+    extras_of_users = set(PROJECT["optional-dependencies"]) - {"test", "bench", "docs"}
+    assert set(matrix["TESTS"]) == set(matrix["ANSWERED"]) == {"", *extras_of_users}
+    for files in matrix["TESTS"].values():
+        assert all((ROOT / file).exists() for file in files)
+
+
+def test_the_installation_page_lists_every_extra_of_users():
+    page = (ROOT / "docs" / "how-to" / "install.md").read_text("utf-8")
+    listed = set(re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE))
+    assert listed == set(PROJECT["optional-dependencies"]) - {"test", "bench", "docs"}
 
 
 def test_the_tests_ask_for_all_that_they_import():

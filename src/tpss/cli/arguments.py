@@ -1,6 +1,8 @@
 """Arguments and options that several commands take."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -64,6 +66,36 @@ def _use_library(context: typer.Context, folder: Path | None) -> Path | None:
         context.with_resource(_named_in_the_environment(folder))
     return folder
 
+
+JIT_VARIABLE = "NUMBA_DISABLE_JIT"
+
+
+def _use_plain_python(context: typer.Context, value: bool) -> bool:
+    """Let numba compile nothing, which it has to know when it is imported.
+
+    Where that is done already, as in a program that calls the command line, the command is called again
+    in a process of its own.
+    """
+    if not value or context.resilient_parsing:
+        return value
+    if "numba" in sys.modules and not os.environ.get(JIT_VARIABLE):
+        environment = {**os.environ, JIT_VARIABLE: "1"}
+        call = [sys.executable, "-m", "tpss", *sys.argv[1:]]
+        raise typer.Exit(subprocess.call(call, env=environment))
+    os.environ[JIT_VARIABLE] = "1"
+    return value
+
+
+Plain = Annotated[
+    bool,
+    typer.Option(
+        "--plain",
+        callback=_use_plain_python,
+        is_eager=True,
+        help="Run the equations as plain Python, without compiling them: an edited one takes effect at "
+        "once, and a debugger stops in it. Short runs only: a step takes some hundred times as long.",
+    ),
+]
 
 Library = Annotated[
     Path | None,

@@ -6,6 +6,7 @@ saved), 4 the audit failed, 5 a better plan may exist, 130 interrupted (results 
 
 import atexit
 import gc
+import logging
 import os
 import sys
 from pathlib import Path
@@ -20,6 +21,7 @@ from tpss.cli.arguments import (
     GeometryFile,
     Library,
     NoStepCheck,
+    Plain,
     Quiet,
     ScenarioFile,
     argument,
@@ -99,6 +101,7 @@ def run(
             help="Run with an outage of the scenario's [[outages]], which otherwise do not apply.",
         ),
     ] = None,
+    _plain: Plain = False,
 ) -> None:
     """Simulate a scenario, print the key figures, and save the result.
 
@@ -452,6 +455,21 @@ def studio(
     open_studio(file, folder, port, not no_browser)
 
 
+@app.command(epilog="Example:  tpss warm")
+def warm(quiet: Quiet = False) -> None:
+    """Compile all numerical kernels ahead, so that no run has to wait for them.
+
+    Otherwise the first run compiles what every run needs, in up to a minute, and a line with coupled
+    tracks, conductors of its own or stations at one busbar compiles more. Kernels are kept for this user
+    and this version of TPSS; results are the same with and without.
+
+    Exit codes: 0 done, 2 the kernels cannot be kept, 130 interrupted (what was compiled is kept).
+    """
+    from tpss.cli.warm import warm_up
+
+    raise typer.Exit(warm_up(quiet))
+
+
 @app.command(epilog="Examples:  tpss library catenaries, tpss library catenaries AT")
 def library(
     kind: Annotated[
@@ -527,6 +545,9 @@ def main() -> None:
     from tpss.printable import printable
 
     say_everything()
+    # What the command line does not print itself: that compiled kernels cannot be kept.
+    if logging.lastResort is not None:
+        logging.getLogger("tpss.kernels").addHandler(logging.lastResort)
     # Most objects of a short-lived process are modules: collecting garbage among them, repeatedly
     # while they load and again at the end, takes a quarter of the time of a run.
     gc.disable()

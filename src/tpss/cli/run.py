@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tpss.cli.terminal import Console, announce_compilation, progress_bar, say
+from tpss.cli.terminal import Console, compilation, progress_bar, say
 from tpss.errors import ResultError
 from tpss.extras import demand
 from tpss.results.contents import REPORT
@@ -122,8 +122,8 @@ def _simulate_and_save(
     console = Console(stderr=True, quiet=quiet)
     for note in scenario.file_notes:
         say(console, f"Note: {note}")
-    announce_compilation(console)
-    prepared = prepare(scenario)
+    with compilation(console):
+        prepared = prepare(scenario)
     with interruptible(None if quiet else _notice) as interrupted:
         with progress_bar(scenario.name, PROGRESS, _progress, console) as progress:
             result = prepared.run(progress, interrupted, step_check=step_check, lost_time=True)

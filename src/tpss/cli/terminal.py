@@ -1,5 +1,6 @@
 """What several commands print: progress bars, plain lines, tables, and that the kernels are compiled."""
 
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -13,6 +14,8 @@ from rich.table import Table
 from tpss.printable import printable
 
 Column = TypeVar("Column")
+
+KERNELS = "{task.fields[detail]}"
 
 
 class _Escaped:
@@ -54,12 +57,58 @@ def say(console: Console, text: str) -> None:
     console.print(text, highlight=False, markup=False, soft_wrap=True)
 
 
-def announce_compilation(console: Console) -> None:
-    """Print that the kernels have to be compiled, if they have."""
+def announce_compilation(console: Console) -> bool:
+    """Print that the kernels have to be compiled, if they have; tell whether."""
     from tpss.run.kernels import are_ready
 
-    if not are_ready():
-        console.print("Compiling the numerical kernels; this takes up to a minute, once.")
+    ready = are_ready()
+    if not ready:
+        console.print(
+            "Compiling the numerical kernels; this takes up to a minute, once (tpss warm does it ahead)."
+        )
+    return not ready
+
+
+@contextmanager
+def compilation(console: Console) -> Iterator[None]:
+    """Announce a compilation that has to be, and show a bar of the kernels that are done."""
+    if not announce_compilation(console):
+        yield
+        return
+    with counted_kernels("Compiling", console):
+        yield
+
+
+COUNTED_S = 0.2
+"""Time between two counts of compiled kernels. [s]"""
+
+
+@contextmanager
+def counted_kernels(name: str, console: Console) -> Iterator[Callable[[str], None]]:
+    """A bar of the kernels that are compiled, also by other processes; gives what renames it."""
+    from tpss.kernel import compiled_kernels
+
+    ended, named = threading.Event(), [name]
+
+    def count(report: Callable[..., None]) -> None:
+        while not ended.wait(COUNTED_S):
+            report(named[0], *compiled_kernels())
+
+    with progress_bar(name, KERNELS, _kernels_done, console) as report:
+        counter = threading.Thread(target=count, args=(report,), daemon=True)
+        if report is not None:
+            counter.start()
+        try:
+            yield lambda text: named.__setitem__(0, text)
+        finally:
+            ended.set()
+            if report is not None:
+                counter.join()
+
+
+def _kernels_done(name: str, done: int, kernels: int) -> dict[str, Any]:
+    detail = f"{done}/{kernels} kernels"
+    return {"description": escape(name), "completed": done, "total": kernels, "detail": detail}
 
 
 def parts_that_fit(

@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from tpss.events import tell
 from tpss.planning.case_folder import CaseFolder
 from tpss.planning.cases import Case, CaseList, distinct
 from tpss.planning.cluster import rows_on_cluster
@@ -57,6 +58,7 @@ def simulate_cases(
     # Closed at once, whatever ends it: processes end with it.
     with closing(rows), closing(_written(rows, folder)) as written:
         for done in written:
+            tell("cases", name=case_list.plan.file.name, done=before + done, cases=len(wanted))
             if report is not None:
                 elapsed_s = time.perf_counter() - started
                 report(Advance(len(wanted), before + done, before, elapsed_s))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import pandas as pd
 import xarray as xr
 
+from tpss.events import tell
 from tpss.extras import demand
 from tpss.results import store, tables
 from tpss.results.autotransformers import autotransformers
@@ -207,7 +208,9 @@ class Result:
             The folder exists, or cannot be written.
         """
         place = None if folder is None else Path(folder)
-        return store.save(self.scenario, self.dataset, self.summary, place, force)
+        saved = store.save(self.scenario, self.dataset, self.summary, place, force)
+        tell("saved", scenario=self.scenario.name, folder=str(saved))
+        return saved
 
     def to_csv(self, folder: str | Path, *, force: bool = False) -> list[Path]:
         """Write all tables into a folder, as a CSV file each.

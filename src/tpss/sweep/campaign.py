@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from tpss.events import tell
 from tpss.sweep.batch import (
     Plan,
     batch_size,
@@ -149,6 +150,7 @@ def run_study(
             for first, end, content in results:
                 target.add(first, end, content)
                 count += end - first
+                tell("cases", name=study.file.name, done=count, cases=design.cases)
                 if report is not None:
                     report(Advance(design.cases, count, before, time.perf_counter() - started))
     return Advance(design.cases, count, before, time.perf_counter() - started)
