@@ -180,15 +180,6 @@ def test_results_that_are_overlaid_are_told_apart_by_their_labels(demo, other):
     assert told == ["heavy", "light"]
 
 
-def _legend_of(each):
-    legends = (
-        getattr(each, "legends", None) or [each.get_legend()]
-        if hasattr(each, "get_legend")
-        else each.legends
-    )
-    return [text for legend in legends if legend is not None for text in legend.get_texts()]
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
