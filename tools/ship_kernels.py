@@ -2,8 +2,8 @@
 
     python tools/ship_kernels.py && pip wheel . --no-deps --wheel-dir dist
 
-A wheel built after that holds kernels for the Python, the packages and the operating system that ran this;
-on all others it compiles as ever.  Levels that this processor has not are left out.
+A wheel built after that holds kernels for the Python, the packages and the operating system that ran
+this; on all others it compiles as ever.  Levels that this processor has not are left out.
 """
 
 import argparse

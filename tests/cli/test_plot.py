@@ -1,9 +1,10 @@
 """The command ``tpss plot``: files of figures, and requests that are refused."""
 
 import pytest
+from matplotlib.legend import Legend
 
 import tpss
-from tpss.report.figures import FIGURES, draw
+from tpss.report.figures import FIGURES, draw, overlay
 
 SHORT = ("--set", "simulation.duration_min=3", "--out", "demo", "--quiet")
 UNTOLD = ("converter-losses", "unbalance", "braking", "storage", "thermal", "rails")
@@ -147,3 +148,51 @@ def test_minutes_that_cannot_be_drawn_are_refused(tpss_command, demo, options, w
     said = tpss_command("plot", "demo", "--figure", "time-distance", *options)
     assert said.code == 2
     assert words in said.err
+
+
+@pytest.fixture
+def other(tpss_command, short_file, demo, tmp_path):
+    """Another saved result, of lighter trains."""
+    lighter = ("--set", "trains.freight.mass_t=900", "--out", "other", "--set", "name=lighter")
+    assert tpss_command("run", short_file, *SHORT, *lighter).code == 0
+    return tmp_path / "other"
+
+
+@pytest.mark.parametrize("name", [name for name in FIGURES if FIGURES[name].overlaid])
+def test_several_results_are_drawn_into_one_figure_if_one_of_them_can_be(
+    tpss_command, demo, other, tmp_path, name
+):
+    one = tpss_command("plot", "demo", "--figure", name)
+    both = tpss_command("plot", "demo", "other", "--figure", name, "--out", "both.png")
+    assert both.code == one.code
+    if one.code == 0:
+        assert both.out == "Wrote both.png"
+        assert (tmp_path / "both.png").read_bytes().startswith(BEGINS["png"])
+    else:
+        assert "holds nothing to draw" in both.err
+
+
+def test_results_that_are_overlaid_are_told_apart_by_their_labels(demo, other):
+    runs = {"heavy": tpss.load_result(demo), "light": tpss.load_result(other)}
+    figure = overlay("train-voltage", runs)
+    assert figure.get_suptitle().startswith("heavy / light")
+    told = [text.get_text() for text in figure.findobj(Legend)[0].get_texts()]
+    assert told == ["heavy", "light"]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--out", "a.png"), "of several results one figure is drawn; name it by --figure"),
+        (("--figure", "journey"), "belongs to none of them; give its --out"),
+        (("--figure", "network", "--out", "a.png"), "network shows a single result; name one, or"),
+        (("--figure", "journey", "--label", "a", "--out", "a.png"), "1 labels for 2 results"),
+    ],
+)
+def test_what_several_results_cannot_be_drawn_as_is_said(
+    tpss_command, demo, other, tmp_path, options, words
+):
+    said = tpss_command("plot", "demo", "other", *options)
+    assert said.code == 2
+    assert words in said.err
+    assert not (tmp_path / "a.png").exists()

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tpss.cli.report import labels
+from tpss.cli.labels import labels
 from tpss.results.contents import HEAD_BYTES, REPORT_MARK
 
 from conftest import EXAMPLES

@@ -12,6 +12,9 @@ from studio.served import CHROMIUM, SIZES, Shown, serving
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 
 
+TABS = ("Curves", "What if", "Variants", "Outages")
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
@@ -221,6 +224,78 @@ def test_every_chart_has_its_table(shown):
     assert table.get_by_role("row").count() > 20
 
 
+def test_cells_of_a_spreadsheet_take_the_place_of_a_table(shown):
+    shown.tab.get_by_text("line", exact=True).first.click()
+    cell = shown.field("from 1 of gradients")
+    cell.focus()
+    shown.tab.evaluate(
+        """text => {
+            const data = new DataTransfer();
+            data.setData("text/plain", text);
+            document.activeElement.dispatchEvent(
+                new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true }));
+        }""",
+        "0,0\t2,5\n10,0\t-1,5\n",
+    )
+    shown.wait_for_value("permille 2 of gradients", "-1.5")
+    shown.settle()
+    shown.button("Changes").click()
+    shown.tab.get_by_role("dialog").get_by_role("button", name="File").click()
+    assert "permille = 2.5" in shown.tab.get_by_role("dialog").inner_text()
+
+
+def test_a_station_is_taken_out_of_service_by_a_key(shown):
+    station = shown.slider("Feeding station East, 2 converters")
+    station.focus()
+    shown.tab.keyboard.press("o")
+    shown.settle()
+    assert shown.tab.get_by_text("Outage: East out").is_visible()
+    shown.tab.keyboard.press("o")
+    shown.settle()
+    assert not shown.tab.get_by_text("Outage: East out").is_visible()
+
+
+def test_an_outage_of_the_table_is_shown_by_a_click(shown):
+    shown.tab.get_by_role("tab", name="Outages").click()
+    shown.button("Run all single outages").click()
+    shown.button("Show West out").click()
+    shown.settle()
+    assert shown.tab.get_by_text("Outage: West out").is_visible()
+
+
+def test_edits_are_kept_as_a_variant(shown):
+    shown.field("headway in min").fill("20")
+    shown.settle()
+    shown.tab.get_by_role("tab", name="Variants").click()
+    shown.tab.get_by_role("textbox", name="Name", exact=True).fill("dense traffic")
+    shown.button("Keep edits as a variant").click()
+    row = shown.tab.get_by_role("row", name="dense-traffic finished 1")
+    row.wait_for()
+    assert shown.field("headway in min").input_value() == "60"
+    row.get_by_role("button", name="Show dense-traffic").click()
+    shown.wait_for_value("headway in min", "20")
+
+
+def test_a_slider_asks_what_if(shown):
+    shown.tab.get_by_role("tab", name="What if").click()
+    assert shown.tab.get_by_label("Number", exact=True).input_value() == "traffic.0.headway_min"
+    shown.slider("Value").focus()
+    shown.tab.keyboard.press("ArrowLeft")
+    shown.settle()
+    assert float(shown.field("headway in min").input_value()) < 60.0
+    shown.button("Response curve").click()
+    shown.tab.get_by_role("img", name="Response").wait_for()
+
+
+def test_a_report_is_made_with_the_words_of_its_author(shown):
+    shown.button("Report").click()
+    shown.tab.get_by_role("textbox", name="Title").fill("The line tomorrow")
+    shown.button("Report (HTML)").click()
+    with shown.tab.expect_download() as download:
+        shown.tab.get_by_role("link", name="Download").click()
+    assert "The line tomorrow" in Path(download.value.path()).read_text("utf-8")
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_keeps_anyone_out(browser, home, size, scheme):
@@ -229,9 +304,9 @@ def test_nothing_keeps_anyone_out(browser, home, size, scheme):
     page = Shown(context.new_page(), home).open()
     page.field("headway in min").fill("20") if size == "wide" else None
     page.settle()
-    for view in ("Result", "Edit") if size == "narrow" else ("",):
-        if view:
-            page.button(view).click()
+    views = [page.tab.get_by_role("tab", name=name) for name in TABS]
+    for view in [*views, *([page.button("Edit")] if size == "narrow" else [])]:
+        view.click()
         found = axe.Axe().run(page.tab)
         assert found.violations_count == 0, found.generate_report()
     width = page.tab.evaluate("document.documentElement.scrollWidth")

@@ -10,6 +10,7 @@ import pytest
 import tpss
 from studio.conftest import Page
 from tpss.studio import live as live_module
+from tpss.studio import runs
 from tpss.studio.charts import CHARTS
 from tpss.studio.newest import DroppedError, Newest
 
@@ -159,7 +160,7 @@ def test_a_run_that_was_overtaken_is_dropped(page: Page):
 
 
 def test_a_run_that_takes_too_long_is_told(page, monkeypatch):
-    monkeypatch.setattr(live_module, "LONGEST_S", 0.0)
+    monkeypatch.setattr(runs, "LONGEST_S", 0.0)
     edits = (("simulation.time_step_min", 0.001), ("traffic.0.headway_min", 1.0))
     (finding,) = page.see(*edits)["findings"]
     assert "takes too long" in finding["problem"]

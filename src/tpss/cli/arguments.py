@@ -122,6 +122,15 @@ NoStepCheck = Annotated[
 
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]
 
+Labels = Annotated[
+    list[str] | None,
+    option(
+        metavar="TEXT",
+        help="What a compared result is called, in their order; once for each. By default they have "
+        "the names of their scenarios or folders.",
+    ),
+]
+
 Corridor = Annotated[
     str | None,
     option(

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from tpss.cli.labels import demand_fitting, labels
 from tpss.errors import ResultError
 from tpss.extras import demand
 from tpss.results.contents import FIGURE_NAMES, FIGURES
@@ -20,8 +21,8 @@ DOTS_PER_INCH = 200
 """Resolution of png files."""
 
 
-def plot_result(
-    folder: Path,
+def plot_results(
+    folders: Sequence[Path],
     figure: str,
     train: str | None,
     against: Literal["time", "distance"],
@@ -29,8 +30,9 @@ def plot_result(
     minutes: tuple[float | None, float | None],
     out: Path | None,
     force: bool,
+    given: Sequence[str] = (),
 ) -> None:
-    """Write a figure of a result, or all of them, and print where they are.
+    """Write a figure of a result or several, or all of one result, and print where they are.
 
     Raises
     ------
@@ -54,28 +56,44 @@ def plot_result(
             raise ResultError(
                 f"{figure} shows the whole run; leave --corridor, --from and --to out, or {remedy}"
             )
-    place, names = _target(folder, figure, out)
-    result = load_result(folder)
+    _demand_one_file(folders, figure, out)
+    demand_fitting(given, folders)
+    place, names = _target(folders[0], figure, out)
+    results = [load_result(folder) for folder in folders]
+    runs = dict(zip(given or labels(folders, results), results, strict=True))
     if figure == ALL:
-        names = {name: file for name, file in names.items() if catalogue.applies(name, result)}
+        names = {name: file for name, file in names.items() if catalogue.applies(name, results[0])}
     check_files(place, names.values(), force)
     contents: dict[str, bytes] = {}
     left_out: list[tuple[str, str]] = []
     for name, file in names.items():
         try:
-            drawn = catalogue.draw(name, result, train, against, corridor, minutes)
+            drawn = catalogue.overlay(name, runs, train, against, corridor, minutes)
         except NothingToDrawError as error:
             left_out.append((name, str(error)))
             continue
         contents[file] = figure_bytes(drawn, Path(file).suffix.removeprefix("."))
     if not contents:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in left_out))
-        raise ResultError(f"{folder} ({result.status}) holds nothing to draw: {reasons}")
+        which = ", ".join(
+            f"{folder} ({run.status})" for folder, run in zip(folders, results, strict=True)
+        )
+        raise ResultError(f"{which} holds nothing to draw: {reasons}")
     files = save_files(place, contents, force)
     listed = f"Wrote into {place}: {', '.join(file.name for file in files)}"
     print(listed if figure == ALL else f"Wrote {files[0]}")
     for name, reason in left_out:
         print(f"Left out {name}: {reason}")
+
+
+def _demand_one_file(folders: Sequence[Path], figure: str, out: Path | None) -> None:
+    """Refuse several results without one figure, or without a place for it."""
+    if len(folders) == 1:
+        return
+    if figure == ALL:
+        raise ResultError("of several results one figure is drawn; name it by --figure")
+    if out is None:
+        raise ResultError("a figure of several results belongs to none of them; give its --out")
 
 
 def _demand_use(figure: str, train: str | None, against: str, of_a_train: Sequence[str]) -> None:

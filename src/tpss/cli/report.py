@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tpss.errors import ResultError
+from tpss.cli.labels import demand_fitting, labels
 from tpss.extras import demand
 from tpss.results.contents import REPORT
 
 if TYPE_CHECKING:
-    from tpss.results.result import Result
+    pass
 
 COMPARISON = "comparison.html"
 
@@ -43,7 +43,7 @@ def report_results(
     from tpss.report.html import check_target, write_report
     from tpss.results.result import load_result
 
-    _demand_fitting(given, folders)
+    demand_fitting(given, folders)
     own = Path(COMPARISON) if len(folders) > 1 else folders[0] / REPORT
     # A damaged result is reported before an existing report.
     results = [load_result(folder) for folder in folders]
@@ -52,29 +52,3 @@ def report_results(
     shown = results[0] if len(results) == 1 else named
     file = write_report(shown, out or own, force=force, corridor=corridor)
     print(f"Wrote {file}")
-
-
-def _demand_fitting(given: Sequence[str], folders: Sequence[Path]) -> None:
-    """Raise a `ResultError` unless there is a label for each of several results, or none."""
-    if not given:
-        return
-    if len(folders) == 1:
-        raise ResultError("labels tell compared results apart; leave --label out for a single one")
-    if len(given) != len(folders):
-        counts = f"{len(given)} labels for {len(folders)} results"
-        raise ResultError(f"{counts}; give --label once for each, in their order")
-    twice = next((label for k, label in enumerate(given) if label in given[:k]), None)
-    if twice is not None:
-        raise ResultError(f"two results have the label {twice!r}; give each its own")
-
-
-def labels(folders: Sequence[Path], results: Sequence["Result"]) -> list[str]:
-    """Names of the scenarios, or of the folders where those are the same; each only once."""
-    for names in (
-        [result.scenario.name for result in results],
-        [folder.resolve().name for folder in folders],
-        [str(folder) for folder in folders],
-    ):
-        if len(set(names)) == len(names):
-            return names
-    return [f"{number}: {folder}" for number, folder in enumerate(folders, 1)]

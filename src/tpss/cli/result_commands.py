@@ -11,6 +11,7 @@ from tpss.cli.arguments import (
     Corridor,
     Force,
     From,
+    Labels,
     OneResult,
     ResultFolder,
     To,
@@ -52,14 +53,7 @@ def report(
             "results comparison.html here."
         ),
     ] = None,
-    label: Annotated[
-        list[str] | None,
-        option(
-            metavar="TEXT",
-            help="What a compared result is called, in their order; once for each. By default they have "
-            "the names of their scenarios or folders.",
-        ),
-    ] = None,
+    label: Labels = None,
     corridor: Corridor = None,
     from_: From = None,
     to: To = None,
@@ -162,7 +156,14 @@ def compare(
 
 
 def plot(
-    result: ResultFolder,
+    results: Annotated[
+        list[Path],
+        argument(
+            metavar="RESULT",
+            help="Folder written by tpss run, of which several are drawn into one figure, or by tpss "
+            "sweep.",
+        ),
+    ],
     figure: Annotated[
         str,
         typer.Option(
@@ -178,6 +179,7 @@ def plot(
     against: Annotated[
         Against, typer.Option(metavar="AXIS", help="time or distance, of the journey.")
     ] = Against.DISTANCE,
+    label: Labels = None,
     corridor: Corridor = None,
     from_: From = None,
     to: To = None,
@@ -191,7 +193,7 @@ def plot(
         Path | None,
         option(
             help="File to write, .png, .svg or .pdf, or a folder for all; by default "
-            "RESULT/figures/NAME.png."
+            "RESULT/figures/NAME.png. Of several results it has to be given."
         ),
     ] = None,
     force: Force = False,
@@ -201,19 +203,25 @@ def plot(
     Of a study they are parallel, for parallel coordinates of what varied and what came of it, and
     trade-offs, two key figures against each other.
 
+    Several results are overlaid: the first solid, the next dashed. That can be journey, train-voltage,
+    stations, converters, converter-losses, unbalance, braking, storage and thermal.
+
     Exit codes: 0 done, 2 the folder holds no result, its audit failed, there is no such figure or
     train or nothing to draw, or the files cannot be written.
     """
-    from tpss.cli.plot import plot_result
+    from tpss.cli.plot import plot_results
     from tpss.cli.study import demand_unused, is_study, plot_study
 
     stations = stations_of(corridor, from_, to)
-    if is_study(result):
+    if len(results) == 1 and is_study(results[0]):
         minutes = {"from-min": from_min is not None, "to-min": to_min is not None}
-        demand_unused("a study", train=train, corridor=stations, **minutes)
-        plot_study(result, figure, out, force)
+        demand_unused("a study", train=train, corridor=stations, label=label, **minutes)
+        plot_study(results[0], figure, out, force)
         return
-    plot_result(result, figure, train, against.value, stations, (from_min, to_min), out, force)
+    minutes_shown = from_min, to_min
+    plot_results(
+        results, figure, train, against.value, stations, minutes_shown, out, force, label or []
+    )
 
 
 def export(

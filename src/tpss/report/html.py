@@ -16,6 +16,7 @@ from tpss.model.supply import system_of
 from tpss.report import sampling, tables
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import ALONG, along, gradients_along, is_corridor
+from tpss.report.cover import Cover, drawing_of, worst_places
 from tpss.report.drawings.braking import braking
 from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.journey import journey
@@ -64,6 +65,7 @@ def write_report(
     force: bool = False,
     corridor: Sequence[str] = (),
     measured: MeasuredComparison | None = None,
+    cover: Cover | None = None,
 ) -> Path:
     """Write a report of one result, or a comparison of several, into one HTML file.
 
@@ -80,6 +82,8 @@ def write_report(
         first service; or two stations of a single line.
     measured : MeasuredComparison, optional
         Comparison of a single result with measurements, which becomes a part of its report.
+    cover : Cover, optional
+        Title and remarks of an author, for the first page of the report of a single result.
 
     Returns
     -------
@@ -90,7 +94,7 @@ def write_report(
     ------
     ResultError
         The file exists, or cannot be written; there is no such corridor; or measurements are given for
-        several results, or for another one.
+        several results, or for another one; or a cover is given for several results.
     """
     place = Path(file)
     check_target(place, force)
@@ -98,8 +102,10 @@ def write_report(
         raise ResultError(
             "measurements belong into the report of the result they are compared with"
         )
+    if cover is not None and not isinstance(results, Result):
+        raise ResultError("a cover belongs to the report of a single result")
     text = (
-        report(results, corridor, measured)
+        report(results, corridor, measured, cover)
         if isinstance(results, Result)
         else comparison(results, corridor)
     )
@@ -114,7 +120,10 @@ def check_target(file: Path, force: bool) -> None:
 
 
 def report(
-    result: Result, corridor: Sequence[str] = (), measured: MeasuredComparison | None = None
+    result: Result,
+    corridor: Sequence[str] = (),
+    measured: MeasuredComparison | None = None,
+    cover: Cover | None = None,
 ) -> str:
     """Page about one result, perhaps with its comparison with measurements.
 
@@ -146,7 +155,8 @@ def report(
         *tables.of_standards(result),
     ]
     return _page(
-        title=result.scenario.name,
+        title=(cover and cover.title) or result.scenario.name,
+        cover=cover,
         results={"": result},
         figures={**figures, **drawn},
         data=data,
@@ -323,6 +333,7 @@ def _page(
     notes: Sequence[str],
     differing: tables.Table | None = None,
     measured: MeasuredPart | None = None,
+    cover: Cover | None = None,
 ) -> str:
     first = next(iter(results.values()))
     return fill(
@@ -338,6 +349,9 @@ def _page(
         key_figures=key_figures,
         differing=differing,
         measured=measured,
+        cover=cover,
+        picture=drawing_of(first) if cover else "",
+        worst=worst_places(first) if cover else [],
         notes=notes,
         limits={label: _limits(result) for label, result in results.items()},
         judged=JUDGED,

@@ -53,6 +53,8 @@ def plan_of(scenario: Scenario, document: Mapping[str, Any]) -> dict[str, Any]:
         *_feeding(supply, own, first),
         *_transformers(scenario, own, first),
     ]
+    for place in places:
+        place["out"] = _is_out(place, scenario)
     return {"lines": lines, "places": places, "stretches": list(_stretches(supply, first))}
 
 
@@ -120,6 +122,16 @@ def _stretches(supply: Mapping[str, Any], first: str) -> Iterator[dict[str, Any]
             ends = [each.get("from_km"), each.get("to_km")]
             if None not in ends:
                 yield {"kind": kind, "line": each.get("line") or first, "ends_km": ends}
+
+
+def _is_out(place: Place, scenario: Scenario) -> bool:
+    """Whether a station or transformer is out of service in the outage that applies."""
+    outage = scenario.outage
+    if outage is None:
+        return False
+    if place["kind"] == "transformer":
+        return place["km"] in outage.transformers_km
+    return place["kind"] == FEEDING and place["name"] in outage.stations
 
 
 def _place(kind: str, name: str, line: str, km: float, path: str | None) -> Place:

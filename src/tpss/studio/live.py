@@ -1,24 +1,21 @@
 """Runs of a scenario while it is edited: what comes of edits, as soon as can be."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from threading import Timer
+from dataclasses import dataclass, field
 from typing import Any
 
-from tpss.api import Prepared, build
+from tpss.api import build
 from tpss.errors import Finding, ScenarioError
 from tpss.results.result import Result
-from tpss.run.run import INTERRUPTED
 from tpss.scenario.paths import NoSuchPlaceError, places_of
 from tpss.scenario.scenario import Scenario
 from tpss.studio.charts import CHARTS, drawn
 from tpss.studio.corridor_plan import plan_of
 from tpss.studio.desk import Desk, Document, Edits
-from tpss.studio.newest import DroppedError, Newest
+from tpss.studio.newest import Newest
+from tpss.studio.runs import run_for
+from tpss.studio.shelf import Shelf
 from tpss.studio.told import notes_of, told_of
-
-LONGEST_S = 30.0
-"""Time that a run may take while one edits; the command line runs longer ones."""
 
 STEP = "simulation.time_step_min"
 
@@ -29,6 +26,8 @@ class Live:
 
     desk: Desk
     newest: Newest
+    shelf: Shelf = field(default_factory=Shelf)
+    """Reports that were made."""
     chosen_step_min: float | None = None
     """Step that was chosen for the scenario, if it gives none; edits keep it until the hand rests."""
 
@@ -102,41 +101,6 @@ class Live:
         if scenario.simulation.time_step_min is None:
             self.chosen_step_min = prepared.scenario.simulation.time_step_min
         return run_for(prepared, interrupted)
-
-
-def run_for(prepared: Prepared, interrupted: list[int], *, step_check: bool = False) -> Result:
-    """Run that ends early for a newer one, or when it has taken too long.
-
-    Raises
-    ------
-    DroppedError
-        It ended for a newer one.
-    ScenarioError
-        It took too long.
-    """
-    late: list[int] = []
-
-    def end() -> None:
-        late.append(1)
-        interrupted.append(0)
-
-    if interrupted:
-        raise DroppedError("a newer run was asked for")
-    timer = Timer(LONGEST_S, end)
-    timer.daemon = True
-    timer.start()
-    try:
-        result = prepared.run(interrupted=interrupted, step_check=step_check)
-    finally:
-        timer.cancel()
-    if result.status == INTERRUPTED and late:
-        source, value = prepared.scenario.given_source, f"more than {LONGEST_S:g} s"
-        problem = "the run takes too long to be made while editing"
-        remedy = "take a longer step or a shorter time, or save, and run it with tpss run"
-        raise ScenarioError([Finding(source, "simulation", value, problem, remedy)])
-    if interrupted and not late:
-        raise DroppedError("a newer run was asked for")
-    return result
 
 
 def findings_of(error: ScenarioError, document: Document) -> list[dict[str, str]]:

@@ -20,12 +20,14 @@ def told_of(result: Result) -> dict[str, Any]:
 
     Of a run whose audit failed there are no figures: they cannot be trusted.
     """
-    summary = result.summary
+    summary, outage = result.summary, result.scenario.outage
     trusted, stepped = bool(result.audit["passed"]), result.dataset.sizes["time"] > 1
     violations: list[Any] = list(result.standards.violations.words) if trusted and stepped else []
     return {
         "status": result.status,
         "status_words": STATUS_IN_WORDS[result.status],
+        "outage": outage.name if outage else None,
+        "outage_words": outage.in_words if outage else "",
         "problem": summary.get("problem", ""),
         "advice": summary.get("advice", ""),
         "audit": {"passed": trusted, "failures": list(map(str, result.audit["failures"]))},

@@ -2,7 +2,8 @@
 
 Those of one train or of stations accept runs by their labels and overlay them: the first solid, the next
 dashed, then dash-dotted.  All return a matplotlib figure, which is neither shown nor saved:
-``journey({"as built": result}).savefig("journey.png")``.  `draw` makes one by its name.
+``journey({"as built": result}).savefig("journey.png")``.  `draw` makes one by its name,
+`overlay` one of several results.
 """
 
 from tpss.report.drawings import braking as _braking
@@ -19,6 +20,7 @@ from tpss.report.drawings import unbalance as _unbalance
 from tpss.report.drawings import voltage as _voltage
 from tpss.report.figures.catalogue import FIGURES as FIGURES
 from tpss.report.figures.catalogue import draw as draw
+from tpss.report.figures.catalogue import overlay as overlay
 from tpss.report.render.static import static
 
 braking = static(_braking.braking)

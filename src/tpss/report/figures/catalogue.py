@@ -1,6 +1,6 @@
 """All figures by their names, with their titles."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple, get_args
 
 from matplotlib.figure import Figure
@@ -33,7 +33,8 @@ Minutes = tuple[float | None, float | None]
 TIME_DISTANCE = "time-distance"
 
 Describe = Callable[..., Drawing]
-"""From a result, the name of a train or None, an `Against`, and `Minutes` or nothing."""
+"""From a result, or results by their labels, the name of a train or None, an `Against`, and `Minutes` or
+nothing."""
 
 
 class Entry(NamedTuple):
@@ -44,6 +45,8 @@ class Entry(NamedTuple):
     shows: str
     """What it shows, and of which runs, as the gallery of the documentation says it."""
     describe: Describe
+    overlaid: bool = False
+    """Whether it can show several results: then it is described from results by their labels."""
 
 
 FIGURES: dict[str, Entry] = {
@@ -63,7 +66,8 @@ FIGURES: dict[str, Entry] = {
         "train",
         "a train's journey: gradient, speed below its limit, active and reactive power, voltage, angle, "
         "between the stations",
-        lambda run, train, against, *_: journey({"": run}, train, against, explained=True),
+        lambda runs, train, against, *_: journey(runs, train, against, explained=len(runs) == 1),
+        overlaid=True,
     ),
     "voltage": Entry(
         "run",
@@ -73,44 +77,52 @@ FIGURES: dict[str, Entry] = {
     "train-voltage": Entry(
         "train",
         "the voltage that one train met along the line, between the limits of EN 50163",
-        lambda run, train, *_: voltage_along_line({"": run}, train, True),
+        lambda runs, train, *_: voltage_along_line(runs, train, True),
+        overlaid=True,
     ),
     "stations": Entry(
         "run",
         "active and reactive power that each feeding station feeds",
-        lambda run, *_: station_powers({"": run}),
+        lambda runs, *_: station_powers(runs),
+        overlaid=True,
     ),
     "converters": Entry(
         "run",
         "loading of the running converters or transformers, and how many run",
-        lambda run, *_: station_loading(run),
+        lambda runs, *_: station_loading(runs),
+        overlaid=True,
     ),
     "converter-losses": Entry(
         "run",
         "what converter stations take from the 50 Hz grid and lose; where their types describe losses",
-        lambda run, *_: converter_losses({"": run}),
+        lambda runs, *_: converter_losses(runs),
+        overlaid=True,
     ),
     "unbalance": Entry(
         "run",
         "negative-sequence voltage at the busbars of the grid and its means over 10 min, currents of "
         "the phases; where phases are told",
-        lambda run, *_: unbalance({"": run}),
+        lambda runs, *_: unbalance(runs),
+        overlaid=True,
     ),
     "braking": Entry(
         "run",
         "what each service brakes, and where it goes; where trains have electric brakes",
-        lambda run, *_: braking({"": run}),
+        lambda runs, *_: braking(runs),
+        overlaid=True,
     ),
     "storage": Entry(
         "run",
         "charge and power of the stores of energy; where trains or stations have any",
-        lambda run, *_: storage({"": run}),
+        lambda runs, *_: storage(runs),
+        overlaid=True,
     ),
     "thermal": Entry(
         "run",
         "thermal state of the equipment with a rating that comes closest to what it bears, and its "
         "temperature where that is known",
-        lambda run, *_: thermal({"": run}),
+        lambda runs, *_: thermal(runs),
+        overlaid=True,
     ),
     "rails": Entry(
         "run",
@@ -133,6 +145,9 @@ FIGURES: dict[str, Entry] = {
 
 ALONG_A_CORRIDOR = ("time-distance", "journey", "voltage", "train-voltage")
 """Figures of a network that are drawn along a corridor; a journey only if one is chosen."""
+
+OVERLAID = [name for name, figure in FIGURES.items() if figure.overlaid]
+"""Figures that can show several results."""
 
 OF_A_TRAIN = [name for name, figure in FIGURES.items() if figure.of == "train"]
 """Figures for which a train can be chosen."""
@@ -177,10 +192,49 @@ def draw(
     NothingToDrawError
         No step was simulated, or no train was on the line.
     """
+    return overlay(name, {"": result}, train, against, corridor, minutes)
+
+
+def overlay(
+    name: str,
+    runs: Mapping[str, Result],
+    train: str | None = None,
+    against: Against = "distance",
+    corridor: Sequence[str] = (),
+    minutes: Minutes = (None, None),
+) -> Figure:
+    """`draw` a figure of one or several results, which it shows by their labels.
+
+    Raises
+    ------
+    ResultError
+        As `draw`, of any of them; or the figure shows a single result, and there are several.
+    NothingToDrawError
+        As `draw`.
+    """
     demand_figure(name)
     if against not in get_args(Against):
         known = " or ".join(get_args(Against))
         raise ResultError(f"a journey is drawn against {known}, not {against!r}")
+    if len(runs) > 1 and not FIGURES[name].overlaid:
+        raise ResultError(f"{name} shows a single result; name one, or draw {', '.join(OVERLAID)}")
+    for result in runs.values():
+        _demand_drawable(result)
+    entry = FIGURES[name]
+    follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
+    seen = {label: along(run, corridor) if follows else run for label, run in runs.items()}
+    first = next(iter(seen.values()))
+    chosen = None if train is None and entry.of == "run" else chosen_train(first, train)
+    asked = chosen if len(runs) == 1 else train  # of several each its own
+    shown = seen if entry.overlaid else first
+    figure = render(entry.describe(shown, asked, against, minutes))
+    told = [chosen if entry.of == "train" else None, first.dataset.attrs.get(ALONG)]
+    _entitle(figure, runs, [each for each in told if each])
+    return figure
+
+
+def _demand_drawable(result: Result) -> None:
+    """Raise an error if the figures of a result cannot be trusted, or there is nothing in it."""
     if not result.audit["passed"]:
         raise ResultError(
             "the audit of the result failed, so its figures cannot be trusted and are not drawn: "
@@ -188,18 +242,20 @@ def draw(
         )
     if result.dataset.sizes["time"] < 2:
         raise NothingToDrawError("no time step was simulated")
-    of, _, describe = FIGURES[name]
-    follows = name in ALONG_A_CORRIDOR and (corridor or name != "journey")
-    seen = along(result, corridor) if follows else result
-    chosen = None if train is None and of == "run" else chosen_train(seen, train)
-    figure = render(describe(seen, chosen, against, minutes))
-    told = [chosen if of == "train" else None, seen.dataset.attrs.get(ALONG)]
-    title = ": ".join([result.scenario.name, *(as_text(each) for each in told if each)])
+
+
+def _entitle(figure: Figure, runs: Mapping[str, Result], told: Sequence[str]) -> None:
+    """Write above a figure what it shows, and which run ended early."""
+    names = [result.scenario.name for result in runs.values()]
+    whole = names[0] if len(runs) == 1 else " / ".join(runs)
+    title = ": ".join([whole, *map(as_text, told)])
     figure.suptitle(title, fontsize="large")
-    if result.status in ENDED:
-        title += f"\n{ENDED[result.status]} at {float(result.dataset.time[-1]) / 60.0:.1f} min"
+    early = [(label, run) for label, run in runs.items() if run.status in ENDED]
+    for label, run in early:
+        which = f"{label} " if label else ""
+        title += f"\n{which}{ENDED[run.status]} at {float(run.dataset.time[-1]) / 60.0:.1f} min"
+    if early:
         figure.suptitle(title, fontsize="large", color=COLOURS[1], fontweight="bold")
-    return figure
 
 
 def applies(name: str, result: Result) -> bool:

@@ -29,6 +29,14 @@ export class History {
     this.changed();
   }
 
+  /** Put one edit in place of all; undone, it leaves none. */
+  replace(label, pairs) {
+    this.edits = pairs.length ? [{ label, pairs }] : [];
+    this.undone = [];
+    this.last.key = "";
+    this.changed();
+  }
+
   undo() { return this.move(this.edits, this.undone); }
 
   redo() { return this.move(this.undone, this.edits); }

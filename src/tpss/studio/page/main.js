@@ -8,12 +8,17 @@ import { el, element } from "./dom.js";
 import { Drafts } from "./drafts.js";
 import { Form } from "./form.js";
 import { History } from "./history.js";
+import { Outages, toggled } from "./outages.js";
 import { Live } from "./live.js";
 import { Plan } from "./plan.js";
 import { Lost, ask, isReady } from "./server.js";
+import { Reports } from "./reports.js";
+import { Tabs } from "./tabs.js";
 import { Tiles } from "./tiles.js";
 import { TrainGraph } from "./traingraph.js";
+import { Tray } from "./tray.js";
 import { Verdicts } from "./verdicts.js";
+import { WhatIf } from "./whatif.js";
 
 const SHOWN = ["voltage", "graph", "powers", "loading"];
 const WARM_MS = 400;
@@ -24,8 +29,18 @@ const history = new History(() => { live.request(); drafts.later(); showActions(
 const drafts = new Drafts(history, overtaken, failed, settle);
 const live = new Live({ pairs: () => history.pairs(), charts: () => SHOWN, isSound: () => page.answer?.findings.length === 0, answered, checked, failed, busy, settle });
 const verdicts = new Verdicts(element("verdicts"));
-const tiles = new Tiles(element("tiles"), element("tables"));
-const plan = new Plan((path, km, label) => history.push(label, [[path, km]], path));
+const drawings = el("div", { id: "drawings" }), tables = el("div", { id: "tables" });
+const tiles = new Tiles(element("tiles"), tables);
+const plan = new Plan({
+  move: (path, km, label) => history.push(label, [[path, km]], path),
+  toggle: place => history.push(`${place.name} out of service, or back`, toggled(page.document, place)),
+});
+const tool = {
+  page: live.page, pairs: () => history.pairs(), failed,
+  push: (label, pairs) => pairs.length && history.push(label, pairs),
+  replace: (label, pairs) => history.replace(label, pairs),
+};
+const tools = { tray: new Tray(tool), outages: new Outages(tool), reports: new Reports(tool) };
 let form = null;
 
 /** Say in the page whether all that was edited is shown and kept. */
@@ -38,6 +53,7 @@ function answered(answer) {
   document.body.classList.toggle("at-fault", answer.findings.length > 0);
   form.show(answer.document || page.document, answer.effective, answer.findings);
   page.document = answer.document || page.document;
+  tools.whatIf.show(page.document, answer.effective);
   if (answer.plan) plan.show(answer.plan);
   if (answer.result) show(answer.result);
   document.body.dataset.number = answer.number;
@@ -131,7 +147,7 @@ function startFrom(draft) {
 
 async function readPasted(text, columns, path) {
   try {
-    return (await ask("read-rows", { text, columns: columns.map(each => each.key), path })).rows;
+    return (await ask("read-rows", { text, columns: columns.map(each => [each.key, each.kind === "number"]), path })).rows;
   } catch (error) {
     failed(error);
     return null;
@@ -141,7 +157,7 @@ async function readPasted(text, columns, path) {
 // ---- the page as it is built
 
 function buildCharts() {
-  const place = element("drawings");
+  const place = drawings;
   place.append(plan.element);
   for (const name of SHOWN) {
     const { title, over } = page.opened.charts[name];
@@ -153,7 +169,18 @@ function buildCharts() {
   element("verdicts").after(el("div", { class: "baseline" }, page.pinned, button));
 }
 
+function buildTabs(schemas) {
+  tools.whatIf = new WhatIf(tool, schemas);
+  new Tabs(element("tabs"), element("panels"), [
+    { key: "curves", words: "Curves", element: [drawings, tables] },
+    { key: "what-if", words: "What if", element: tools.whatIf.element },
+    { key: "variants", words: "Variants", element: tools.tray.element, shown: () => tools.tray.run() },
+    { key: "outages", words: "Outages", element: tools.outages.element },
+  ]);
+}
+
 function listen() {
+  element("report").addEventListener("click", () => tools.reports.open());
   element("undo").addEventListener("click", () => history.undo());
   element("redo").addEventListener("click", () => history.redo());
   element("changes").addEventListener("click", () => trying(async () =>
@@ -190,9 +217,11 @@ async function open() {
   element("name").textContent = opened.document.name || opened.name;
   element("file").textContent = opened.name;
   document.title = `${opened.name} – TPSS studio`;
-  form = new Form(element("edit"), new Schema(opened.schema, opened.labels), (...edit) => history.push(...edit), readPasted);
+  const schemas = new Schema(opened.schema, opened.labels);
+  form = new Form(element("edit"), schemas, (...edit) => history.push(...edit), readPasted);
   form.show(opened.document, undefined, []);
   buildCharts();
+  buildTabs(schemas);
   listen();
   if (opened.draft.digest === opened.digest || !opened.draft.edits.length) startFrom(opened.draft);
   else {

@@ -13,14 +13,17 @@ const SYMBOLS = {
   storage: () => [svg("rect", { x: -7, y: -5, width: 14, height: 10, class: "symbol-storage" })],
 };
 
+const OUTAGES = ["feeding", "transformer"];
+/** Kinds that may be taken out of service here. */
+
 const WORDS = { station: "Station", feeding: "Feeding station", transformer: "Transformer", post: "Post", break: "Section break", storage: "Store" };
 
 const rounded = (km, step) => Number((Math.round(km / step) * step).toFixed(3));
 
 export class Places {
-  /** @param move (path, km, label): edits the scenario; toKm (clientX, clientY, line): place under the pointer. */
-  constructor(layer, move, toKm) {
-    Object.assign(this, { layer, move, toKm });
+  /** @param of {move, toggle}: move (path, km, label) edits a place, toggle (place) takes it out of service or back; toKm (event, line): kilometre under the pointer. */
+  constructor(layer, of, toKm) {
+    Object.assign(this, { layer, ...of, toKm });
     this.handles = new Map();
   }
 
@@ -53,16 +56,18 @@ export class Places {
       element.addEventListener("pointerdown", event => this.grab(event, handle));
       element.addEventListener("keydown", event => this.byKey(event, handle));
     }
+    if (OUTAGES.includes(place.kind)) element.addEventListener("dblclick", () => this.toggle(handle.place));
     return handle;
   }
 
   bringUpToDate(handle, [x, y]) {
     const { place, element, ends } = handle;
     const name = place.kind === "transformer" ? "" : ` ${place.name}`;
-    const words = `${WORDS[place.kind]}${name}${place.detail ? `, ${place.detail}` : ""}`;
+    const words = `${WORDS[place.kind]}${name}${place.detail ? `, ${place.detail}` : ""}${place.out ? ", out of service" : ""}`;
+    element.classList.toggle("out", place.out === true);
     element.setAttribute("transform", `translate(${x} ${y})`);
     element.setAttribute("aria-label", handle.movable ? words : `${words} at km ${shown(place.km, 1)}`);
-    handle.title.textContent = `${words}, km ${shown(place.km, 2)}${handle.movable ? ": drag it, or use the arrow keys" : ""}`;
+    handle.title.textContent = `${words}, km ${shown(place.km, 2)}${handle.movable ? ": drag it, or use the arrow keys" : ""}${OUTAGES.includes(place.kind) ? "; double-click, or press o, to take it out of service or back" : ""}`;
     if (!handle.movable) return;
     element.setAttribute("aria-valuemin", ends[0]);
     element.setAttribute("aria-valuemax", ends[1]);
@@ -78,6 +83,11 @@ export class Places {
   }
 
   byKey(event, handle) {
+    if (event.key === "o" && OUTAGES.includes(handle.kind)) {
+      event.preventDefault();
+      this.toggle(handle.place);
+      return;
+    }
     const step = event.shiftKey ? LARGE_KM : event.altKey ? FINE_KM : STEP_KM;
     const moves = { ArrowLeft: -step, ArrowRight: step, ArrowDown: -step, ArrowUp: step, PageDown: -PAGE_KM, PageUp: PAGE_KM };
     if (!(event.key in moves)) return;

@@ -8,7 +8,8 @@ import { LEFT, RIGHT } from "./scales.js";
 const TRACK = 40, BELOW = 26, NAMES = 46, GAP = 10, ROW = 74, TRACK_GAP = 4;
 
 export class Plan {
-  constructor(move) {
+  /** @param of {move, toggle}, as of `Places`. */
+  constructor(of) {
     this.scene = svg("g", {});
     this.layer = svg("g", {});
     this.labels = svg("g", { "aria-hidden": "true" });
@@ -16,8 +17,8 @@ export class Plan {
     this.choice = el("select", { "aria-label": "Line of the profile", onchange: () => this.draw() });
     this.chosen = el("span", { class: "chosen", hidden: true }, "profile of ", this.choice);
     this.element = el("figure", { class: "chart" }, el("figcaption", {}, el("h2", {}, "Line"),
-      el("p", { class: "legend" }, "Drag stations and feeding points, or move them with the arrow keys."), this.chosen), this.image);
-    this.places = new Places(this.layer, move, (event, line) => this.kmAt(event, line));
+      el("p", { class: "legend" }, "Drag stations and feeding points, or move them with the arrow keys; o takes one out of service."), this.chosen), this.image);
+    this.places = new Places(this.layer, of, (event, line) => this.kmAt(event, line));
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 

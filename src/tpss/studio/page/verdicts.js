@@ -26,6 +26,7 @@ export class Verdicts {
     refill(this.place,
       this.verdict("run", good ? "good" : "bad", good ? "Run finished" : `Run ${result.status}`,
         [result.status_words, result.problem, result.advice].filter(Boolean)),
+      result.outage && this.verdict("outage", "warn", `Outage: ${result.outage}`, [`${result.outage_words}; the whole supply is in service again with "Intact supply" in the view of outages.`]),
       this.verdict("audit", audit.passed ? "good" : "bad", audit.passed ? "Audit passed" : "Audit failed",
         audit.passed ? ["Powers, energies and motion balance within the limits of the audit."]
           : ["The figures cannot be trusted, and are not shown.", ...audit.failures]),
