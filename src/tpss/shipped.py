@@ -2,7 +2,7 @@
 
 Machine code fits one release of numba and of LLVM, one Python, one operating system and processors of
 one level.  All of that, and the digest of the kernels' sources, is in the name of the file: what does
-not fit is not found, and kernels are compiled as ever.  ``python tools/ship_kernels.py`` makes the files.
+not fit is not found, and kernels are compiled as ever.  ``python tools/ship_kernels.py`` makes files.
 
 A level is named as compilers do: x86-64-v3 has AVX2 and fused products, x86-64-v4 the parts of AVX-512
 that all its processors have.  The same kernel gives the same numbers on both, to the last bit.
