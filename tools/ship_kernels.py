@@ -1,4 +1,4 @@
-"""Compile the kernels for processors of each level, for a wheel that carries them.
+"""Compile the kernels of every run for processors of each level, for a wheel that carries them.
 
     python tools/ship_kernels.py && pip wheel . --no-deps --wheel-dir dist
 
@@ -25,6 +25,9 @@ import tpss
 from tpss.kernel import KERNEL_PACKAGES, source_digest
 from tpss.shipped import FOLDER, file_name, key_of, levels_of
 
+SHIPPED = ("every run",)
+"""Of `tpss.warm.OCCASIONS`: what few lines need would make the wheel several times as large."""
+
 PACKAGE = Path(tpss.__file__).parent
 
 
@@ -47,8 +50,8 @@ def compile_for_level(level: str, folder: Path) -> None:
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_CACHE_DIR": str(folder),
     }
-    command = [sys.executable, "-m", "tpss", "warm", "--quiet"]
-    subprocess.run(command, env=environment, check=True)
+    call = f"from tpss.warm import warm; warm(names={SHIPPED!r})"
+    subprocess.run([sys.executable, "-c", call], env=environment, check=True)
 
 
 def indices(folder: Path, level: str) -> Iterator[tuple[str, dict[Any, Path]]]:
