@@ -91,6 +91,7 @@ def _listen(port: int) -> socket.socket:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listening.bind((HOST, port))
+        listening.listen()  # whoever comes before the server is up waits for it
     except OSError as error:
         listening.close()
         raise ResultError(f"port {port} is taken; name another one, or none") from error
