@@ -152,6 +152,16 @@ def test_a_line_with_faults_is_not_written(call, tmp_path):
     assert not (tmp_path / "ours").exists()
 
 
+def test_a_part_of_a_line_with_faults_is_refused_when_it_is_shown(call, tmp_path):
+    """The rest of the line is taken to be plain; nothing is written, nor shown as if it were sound."""
+    (tmp_path / "limits.csv").write_text("km;V\n0;80\n10;-80\n20;90\n")
+    code, said = call("limits.csv")
+    assert code == 2
+    assert "limits.csv: line.speed_limits.1.speed_kmh = -80.0" in said
+    (tmp_path / "whole.csv").write_text("km;V\n0;80\n")
+    assert call("whole.csv")[0] == 0
+
+
 def test_existing_files_need_force(call):
     assert call("heights.csv", "--out", "ours")[0] == 0
     code, said = call("heights.csv", "--out", "ours")

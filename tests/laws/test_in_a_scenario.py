@@ -132,6 +132,13 @@ def test_the_result_says_whose_laws_it_used():
         ),
         (
             {
+                "trains.freight.driver": {"law": "calm", "parameters": {"share": 0.9}},
+                "traffic.0.supplement_percent": 5.0,
+            },
+            "the driver of freight follows a law of his own, not this",
+        ),
+        (
+            {
                 "supply.converter_stations.0.law": {
                     "law": "droops",
                     "parameters": {"fall_v_per_var": 5.0},

@@ -1,5 +1,7 @@
 """A train that has the line to itself, from stop to stop in one step of its own, at one voltage."""
 
+import math
+
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.passage import pass_through
 from tpss.kernel import at, kernel
@@ -22,4 +24,6 @@ def drive_alone(
     """
     train = trains[0]
     kind = data.types[at(train.train_type)]
+    # Drivers by laws of their own wish anew in each step, of which there is none here.
+    train.decision.wanted_m_s = math.inf
     pass_through(voltage_v, train.passage, train, kind, data, points, scratch)

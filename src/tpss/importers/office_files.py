@@ -19,13 +19,21 @@ OF_A_LINE = (STATIONS.name, GRADIENTS.name, SPEED_LIMITS.name)
 """Kinds of tables of a line; the first that is there says where it begins and ends."""
 
 
+PLACEHOLDER_KMH = 80.0
+"""Speed limit of a line whose limits are not known, while the rest of it is looked at. [km/h]"""
+
+
+PLACEHOLDER_KM = 1.0
+"""Length of a line that its tables do not tell. [km]"""
+
+
 def files(tables: Sequence[OfficeTable]) -> dict[str, str]:
     """Texts by file name: a table in CSV of each, and the line if tables are of one.
 
     Raises
     ------
     ScenarioError
-        They are all that a line needs, and it has faults.
+        The line that they make has faults; what is missing of it is taken to be plain.
     """
     texts = {each.file: _csv(each) for each in tables}
     own = {each.kind.name: each for each in tables if each.kind.name in OF_A_LINE}
@@ -61,8 +69,7 @@ def _line(own: dict[str, OfficeTable]) -> str:
         document[f"{name.replace('-', '_')}_file"] = each.file
     missing = [name for name in IN_FILES if f"{name}_file" not in document]
     lines += [f"# MISSING, add it: {name}, or {name}_file" for name in missing]
-    if not missing:
-        _check(own, document)
+    _check(own, document)
     return "\n".join([*lines, "", tomli_w.dumps(document)])
 
 
@@ -76,17 +83,27 @@ def ends_of(own: dict[str, OfficeTable]) -> tuple[float, float, str]:
 
 
 def _check(own: dict[str, OfficeTable], line: dict[str, Any]) -> None:
-    """Validate the line in a scenario whose other parts are placeholders.
+    """Validate the line in a scenario whose other parts, and missing tables, are placeholders.
 
     Raises
     ------
     ScenarioError
         It has faults.
     """
-    rows = {name: _rows(each) for name, each in own.items()}
-    first, last = (rows[STATIONS.name][k]["name"] for k in (0, -1))
     begin_km = line.get("begins_at_km", 0.0)
-    plain = {key: line[key] for key in ("begins_at_km", "length_km") if key in line}
+    length_km = line["length_km"] or PLACEHOLDER_KM  # a table of one row has no end
+    end_km = begin_km + length_km
+    rows: dict[str, list[dict[str, Any]]] = {
+        STATIONS.name: [
+            {"name": "begin", "position_km": begin_km},
+            {"name": "end", "position_km": end_km},
+        ],
+        GRADIENTS.name: [{"from_km": begin_km, "permille": 0.0}],
+        SPEED_LIMITS.name: [{"from_km": begin_km, "speed_kmh": PLACEHOLDER_KMH}],
+        **{name: _rows(each) for name, each in own.items()},
+    }
+    first, last = (rows[STATIONS.name][k]["name"] for k in (0, -1))
+    plain = {"begins_at_km": begin_km, "length_km": length_km}
     station = {"name": "S", "position_km": begin_km, "type": "Q48/Q49", "converters": 1}
     document: dict[str, Any] = {
         "format": 1,
@@ -97,7 +114,7 @@ def _check(own: dict[str, OfficeTable], line: dict[str, Any]) -> None:
         "trains": {"t": {"model": "Rc4-freight-1470t"}},
         "traffic": [{"name": "t", "train": "t", "from": first, "to": last, "headway_min": 10.0}],
     }
-    Scenario.from_document(document, own[STATIONS.name].table.path)
+    Scenario.from_document(document, next(iter(own.values())).table.path)
 
 
 def _rows(each: OfficeTable) -> list[dict[str, Any]]:

@@ -26,6 +26,9 @@ from tpss.scenario.wiring import check_wiring
 LONGEST_AGGRESSIVE_STEP_MIN = 1.0
 """Longest step with the aggressive driver, and the longest in the thesis. [min]"""
 
+USING_SPARE_TIME = ("spare_time", "supplement_percent", "supplement_min_per_100km")
+"""Keys of a service whose trains hold speeds, or coast, to use time."""
+
 
 def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     """All faults between the parts of a document."""
@@ -35,7 +38,7 @@ def cross_check(document: Mapping[str, Any], file: str) -> list[Finding]:
     findings += [*check_stations_named(document), *check_feeding_points(supply)]
     findings += [*check_feeds(document), *check_wiring(document), *check_busbars(document)]
     findings += [*_open_step(simulation), *_driver(simulation), *check_stepped_motion(document)]
-    findings += _planned_order(document, simulation)
+    findings += [*_own_drivers(document), *_planned_order(document, simulation)]
     findings += _other_systems(document, supply.get("system", DEFAULT_SYSTEM))
     findings += [*check_traffic(document), *check_events(document)]
     findings += [*check_direct_current(document), *check_storage(document)]
@@ -57,6 +60,20 @@ def _driver(simulation: Mapping[str, Any]) -> Iterator[Fault]:
         problem = "too long for the aggressive driver, who checks the speed only once per step"
         remedy = f'use {LONGEST_AGGRESSIVE_STEP_MIN:g} min or less, or driver = "regulated"'
         yield "simulation.time_step_min", f"{step_min:g}", problem, remedy
+
+
+def _own_drivers(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Trains with time to spare, and a driver by a law of his own: each would use it in his own way."""
+    entries, trains = document.get("traffic"), table(document, "trains")
+    for place, entry in enumerate(entries if isinstance(entries, list) else ()):
+        if not isinstance(entry, Mapping) or not isinstance(entry.get("train"), str):
+            continue
+        if not table(table(trains, entry["train"]), "driver"):
+            continue
+        for key in USING_SPARE_TIME:
+            if entry.get(key):
+                problem = f"the driver of {entry['train']} follows a law of his own, not this"
+                yield f"traffic.{place}.{key}", repr(entry[key]), problem, f"leave {key} out"
 
 
 def _planned_order(document: Mapping[str, Any], simulation: Mapping[str, Any]) -> Iterator[Fault]:
