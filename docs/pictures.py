@@ -27,6 +27,8 @@ import gallery_page  # noqa: E402, found where the line above says
 
 PICTURES = DOCS / "figures"
 SCENARIO = "thesis-3-7-2"
+STUDIO = "thesis-160km"
+STUDIO_SIZE = {"width": 1280, "height": 1000}
 MINUTE = 64
 SIZE = {"width": 1100, "height": 1440}
 PLAN_SIZE = {"width": 960, "height": 880}
@@ -40,6 +42,7 @@ def main() -> None:
     drawn = io.BytesIO()
     draw("time-distance", result).savefig(drawn, format="png", dpi=130)
     keep(drawn.getvalue(), PICTURES / "time_distance.png")
+    photograph_studio()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         report = tpss.write_report(result, folder / "report.html")
@@ -79,6 +82,36 @@ def photograph(report: Path, size: Any = SIZE, begins_at: str = "plots") -> byte
         picture = page.screenshot()
         browser.close()
     return picture
+
+
+def photograph_studio() -> None:
+    """Two views of the studio: a transformer that was moved, and what follows from the headway."""
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as program:
+        copied = ["new", ".", "--from", STUDIO]
+        subprocess.run([sys.executable, "-m", "tpss", *copied], cwd=folder, check=True)
+        file = tpss.examples.path(STUDIO).name
+        command = [sys.executable, "-m", "tpss", "studio", file, "--no-browser"]
+        with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True) as server:
+            assert server.stdout is not None
+            home = server.stdout.readline().split()[-1]
+            browser = program.chromium.launch(
+                executable_path=shutil.which("chromium"), args=["--no-sandbox", "--disable-gpu"]
+            )
+            page = browser.new_page(viewport=STUDIO_SIZE)
+            page.goto(home)
+            page.wait_for_selector("body[data-number]", timeout=180_000)
+            page.get_by_role("slider", name="Transformer").nth(1).focus()
+            for _ in range(8):
+                page.keyboard.press("Shift+ArrowLeft")
+            page.wait_for_timeout(3_000)  # the step is checked once the hand rests
+            keep(page.screenshot(), PICTURES / "studio.png")
+            page.get_by_role("tab", name="What if").click()
+            page.get_by_role("button", name="Response curve").click()
+            page.get_by_role("button", name="Find").click()
+            page.wait_for_timeout(5_000)
+            keep(page.screenshot(), PICTURES / "studio_what_if.png")
+            browser.close()
+            server.kill()
 
 
 def keep(picture: bytes, file: Path, widest_px: int | None = None) -> None:

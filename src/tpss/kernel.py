@@ -21,6 +21,7 @@ import numpy as np
 import platformdirs
 
 from tpss.kernel_cache import KernelCache
+from tpss.shipped import Shipped, shipped
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _Int = TypeVar("_Int", bound=int)
@@ -95,6 +96,12 @@ def kernels_home() -> Path:
     return home.expanduser()
 
 
+@cache
+def shipped_kernels() -> Shipped | None:
+    """The kernels that came compiled with the package; None if none fit."""
+    return shipped(source_digest(Path(__file__).parent))
+
+
 def compiles() -> bool:
     """Whether kernels are compiled; they stay plain Python under ``NUMBA_DISABLE_JIT=1``."""
     return not _config.DISABLE_JIT
@@ -120,14 +127,17 @@ def compiled_kernels() -> tuple[int, int]:
 
 
 def kernels_are_compiled(last: str) -> bool:
-    """Whether compiled kernels of exactly this source exist on disk (or compilation is off).
+    """Whether compiled kernels of exactly this source exist (or compilation is off).
 
     Parameters
     ----------
     last : str
         Name of the kernel that is compiled last.
     """
-    return not compiles() or any(cache_folder().rglob(f"*.{last}-*.nbi"))
+    if not compiles() or any(cache_folder().rglob(f"*.{last}-*.nbi")):
+        return True
+    fitting = shipped_kernels()
+    return fitting is not None and fitting.has(last)
 
 
 def kernel(function: _Function) -> _Function:
@@ -209,7 +219,7 @@ def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     try:
         compiled: _Function = _njit(inline=inline, **options)(function)
         if compiles():
-            setattr(compiled, "_cache", _cache_of(function))  # noqa: B010
+            setattr(compiled, "_cache", _cache_of(function, shipped_kernels))  # noqa: B010
             if inline == "never":
                 _indices.append(compiled._cache.index.relative_to(cache_folder()))  # type: ignore[attr-defined]
     finally:

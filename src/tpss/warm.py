@@ -4,7 +4,7 @@ Kernels are compiled for the types and shapes of a scenario.  So some examples a
 for minutes of their time, and what comes of them is thrown away.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
 from tpss import examples
@@ -74,13 +74,17 @@ class Warming(NamedTuple):
     occasions: int
 
 
-def warm(report: Callable[[Warming], None] | None = None) -> int:
+def warm(
+    report: Callable[[Warming], None] | None = None, names: Collection[str] = tuple(OCCASIONS)
+) -> int:
     """Compile all kernels that are not compiled yet.
 
     Parameters
     ----------
     report : callable, optional
         Called before each occasion.
+    names : collection of str
+        Of the occasions; by default all.
 
     Returns
     -------
@@ -88,7 +92,9 @@ def warm(report: Callable[[Warming], None] | None = None) -> int:
         How many were compiled, each type of arguments counted.
     """
     possible = {
-        name: each for name, each in OCCASIONS.items() if not (each.need and absent(each.need))
+        name: OCCASIONS[name]
+        for name in names
+        if not ((need := OCCASIONS[name].need) and absent(need))
     }
     before = _on_disk()
     for number, (name, each) in enumerate(possible.items()):

@@ -4,10 +4,11 @@ import tomllib
 
 import pytest
 
-from studio.conftest import LINE
 from tpss.errors import ScenarioError
 from tpss.studio.desk import MOST_EDITS, Desk
 from tpss.studio.drafts import OvertakenError
+
+from studio_page import LINE
 
 HEADWAY = ["traffic.0.headway_min", 12]
 

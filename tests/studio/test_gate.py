@@ -2,7 +2,7 @@
 
 import pytest
 
-from studio.conftest import HOME, TOKEN
+from studio_page import HOME, TOKEN
 
 
 def test_the_page_is_at_the_address_with_the_token(page):

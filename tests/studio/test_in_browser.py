@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from studio.served import CHROMIUM, SIZES, Shown, serving
+from served_studio import CHROMIUM, SIZES, Shown, serving
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 
 
-TABS = ("Curves", "What if", "Variants", "Outages")
+TABS = ("Curves", "What if", "Variants", "Outages", "Research")
 
 
 @pytest.fixture(scope="module")
@@ -285,6 +285,33 @@ def test_a_slider_asks_what_if(shown):
     assert float(shown.field("headway in min").input_value()) < 60.0
     shown.button("Response curve").click()
     shown.tab.get_by_role("img", name="Response").wait_for()
+
+
+def test_trains_move_over_the_drawing(shown):
+    shown.button("Trains").click()
+    shown.tab.get_by_text("1 trains; lowest voltage").wait_for()
+    before = shown.tab.locator("circle.train").get_attribute("cx")
+    shown.slider("Time").focus()
+    for _ in range(20):
+        shown.tab.keyboard.press("ArrowRight")
+    assert float(shown.tab.locator("circle.train").get_attribute("cx")) > float(before)
+    shown.button("Play").click()
+    shown.wait_for("Number(document.getElementById('moment').value) > 25")
+
+
+def test_a_chart_more_is_chosen(shown):
+    shown.tab.get_by_role("checkbox", name="Losses of the network").check()
+    shown.tab.get_by_role("img", name="Losses of the network").wait_for()
+
+
+def test_the_equations_behind_a_chart_are_told(shown):
+    shown.tab.get_by_role("tab", name="Research").click()
+    shown.tab.get_by_label("Behind").select_option("Train graph")
+    shown.tab.get_by_text("adhesion_limit").click()
+    text = shown.tab.locator("pre[aria-label=adhesion_limit]").inner_text()
+    assert text.startswith("Largest tractive force that wheel and rail transmit")
+    steps = shown.tab.get_by_role("region", name="Steps of a train")
+    steps.get_by_role("row").nth(5).wait_for()
 
 
 def test_a_report_is_made_with_the_words_of_its_author(shown):

@@ -2,25 +2,20 @@
 
 import shutil
 import threading
-from base64 import b64decode
 
 import numpy as np
 import pytest
 
 import tpss
-from studio.conftest import Page
 from tpss.studio import live as live_module
 from tpss.studio import runs
 from tpss.studio.charts import CHARTS
 from tpss.studio.newest import DroppedError, Newest
 
 from conftest import EXAMPLES
+from studio_page import Page, numbers
 
 HEADWAY = ("traffic.0.headway_min", 30.0)
-
-
-def numbers(packed) -> np.ndarray:
-    return np.frombuffer(b64decode(packed["f4"]), dtype="<f4")
 
 
 def test_what_is_opened_tells_all_that_a_page_has_to_know(page, file):

@@ -6,9 +6,10 @@ import openpyxl
 import pytest
 
 import tpss
-from studio.conftest import TOKEN
 from tpss.studio.respond import MOST_RUNS
 from tpss.studio.variants import edits_of
+
+from studio_page import TOKEN
 
 HEADWAY = ["traffic.0.headway_min", 20.0]
 

@@ -425,9 +425,15 @@ def new(
     new_scenario(folder, from_)
 
 
-@app.command(epilog="Examples:  tpss studio line.toml, tpss studio line.toml --no-browser")
+@app.command(epilog="Examples:  tpss studio line.toml, tpss studio my-line --new")
 def studio(
     file: ScenarioFile,
+    new: Annotated[
+        bool,
+        typer.Option(
+            "--new", help="FILE is a folder, into which a small example is written to start from."
+        ),
+    ] = False,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address only; open it yourself.")
     ] = False,
@@ -452,7 +458,7 @@ def studio(
     """
     from tpss.cli.studio import open_studio
 
-    open_studio(file, folder, port, not no_browser)
+    open_studio(file, folder, port, not no_browser, new)
 
 
 @app.command(epilog="Example:  tpss warm")

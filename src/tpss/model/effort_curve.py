@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.kernel import plain
+from tpss.model.resistance import resistance_of
 from tpss.model.routes import Running
 from tpss.model.trains import build_train_types
 from tpss.numerics.curve import curve_at
@@ -13,7 +14,6 @@ from tpss.physics.constants import GRAVITY_M_S2
 from tpss.scenario.rolling_stock import Train
 from tpss.scenario.simulation import Simulation
 from tpss.vehicle.demand import FULL_EFFORT_N, update_speed_terms, wheel_force
-from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.terms import Demand
 
 Floats = npt.NDArray[np.float64]
@@ -36,7 +36,7 @@ def machine_limit(train: Train, speed_m_s: Floats, voltage_v: float) -> Floats:
 def level_resistance(train: Train, speed_m_s: Floats) -> Floats:
     """Running resistance on level track. [N]"""
     kind = build_train_types([Running(train)])[0][0]
-    return np.array([plain(resistance_at)(speed, kind) for speed in speed_m_s])
+    return np.array([resistance_of(speed, kind) for speed in speed_m_s])
 
 
 def adhesion(train: Train, speed_m_s: Floats, simulation: Simulation) -> Floats:

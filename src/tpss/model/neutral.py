@@ -8,6 +8,7 @@ import numpy as np
 from tpss.driving.data import WITH_POWER, Profile, Profiles
 from tpss.kernel import plain
 from tpss.model.profiles import Seen, filled
+from tpss.model.resistance import resistance_of
 from tpss.model.routes import Course
 from tpss.numerics.staircase import index_at
 from tpss.physics.running_resistance import gradient_force
@@ -15,7 +16,6 @@ from tpss.scenario.scenario import Scenario
 from tpss.scenario.supply import NeutralSection
 from tpss.step.model import Model
 from tpss.units import si
-from tpss.vehicle.resistance import resistance_at
 from tpss.vehicle.train_type import TrainType
 
 PIECE_M = 5.0
@@ -123,7 +123,7 @@ def _coast(
     for piece in range(pieces):
         here_m = begin_m + piece * way_m
         slope = gradients.value[plain(index_at)(here_m + way_m / 2.0, gradients.from_m)]
-        force = plain(resistance_at)(math.sqrt(square), kind)
+        force = resistance_of(math.sqrt(square), kind)
         force += plain(gradient_force)(kind.mass_kg, slope)
         square -= 2.0 * way_m * force / kind.inertia_kg
         if square <= 0.0:

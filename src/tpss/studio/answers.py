@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from tpss import units
 from tpss.scenario.schema import scenario_schema
-from tpss.studio import outages, pasted, reported, respond, variants
+from tpss.studio import equations, outages, pasted, reported, respond, steps, variants
 from tpss.studio.changed import as_options, as_python, changes_between
 from tpss.studio.charts import CHARTS
 from tpss.studio.desk import Content
@@ -30,6 +30,7 @@ def opened(live: Live, _: Asked) -> dict[str, Any]:
         "schema": (schema := scenario_schema()),
         "labels": labels_of(schema),
         "charts": {name: {"title": c.title, "over": c.over} for name, c in CHARTS.items()},
+        "explained": list(equations.BEHIND),
         "draft": live.desk.drafts.read().as_dict(),
         **_content(live, live.desk.content),
     }
@@ -132,6 +133,16 @@ def report_of(live: Live, asked: Asked) -> dict[str, Any]:
     return {"name": file.name, "address": f"files/{live.shelf.put(file)}/{quote(file.name)}"}
 
 
+def equations_of(_: Live, asked: Asked) -> dict[str, Any]:
+    """What stands behind a chart."""
+    return {"behind": equations.behind(str(asked["chart"]))}
+
+
+def train_steps_of(live: Live, asked: Asked) -> dict[str, Any]:
+    """Every step of a train."""
+    return steps.steps_of(live.desk, _edits(asked), str(asked["train"]), _begun(live, asked))
+
+
 def _begun(live: Live, asked: Asked) -> list[int]:
     """Begin what takes longer, which ends whatever a page's other such request does."""
     return live.newest.begin(f"{asked['page']} {asked['what']}", int(asked["number"]))
@@ -152,6 +163,8 @@ ANSWERS: dict[str, Answer] = {
     "respond": respond_to,
     "fewest": fewest_of,
     "report": report_of,
+    "equations": equations_of,
+    "train-steps": train_steps_of,
 }
 """What a page may ask for, by the last part of its address."""
 

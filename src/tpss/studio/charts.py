@@ -7,7 +7,6 @@ from typing import Any
 
 from tpss.report.contact_line import LineVoltage, line_voltage
 from tpss.report.corridor import along
-from tpss.report.drawings.braking import braking
 from tpss.report.drawings.converter_losses import converter_losses
 from tpss.report.drawings.losses import losses
 from tpss.report.drawings.parts import Drawing
@@ -90,12 +89,6 @@ CHARTS = {
         lambda seen: rail_voltage(seen.result),
         lambda result: len(result.rails) > 0,
         over="line",
-    ),
-    "braking": Chart(
-        "Where braked energy goes",
-        lambda seen: braking({"": seen.result}),
-        lambda result: len(result.regeneration) > 0,
-        over="bars",
     ),
 }
 """A chart more is one line here, and one more drawing of `tpss.report.drawings`."""

@@ -9,6 +9,7 @@ from typing import Any
 from tpss.errors import Finding, ScenarioError
 from tpss.files.whole import write_file
 from tpss.scenario.files import read_text, read_toml
+from tpss.scenario.given_path import named_as_given
 from tpss.scenario.override import copy_of, put_in
 from tpss.scenario.paths import NoSuchPlaceError, places_of
 from tpss.scenario.scenario import Scenario
@@ -67,8 +68,9 @@ class Desk:
 
     def read(self) -> Content:
         """What stands on the disk now."""
-        digest = hashlib.sha256(self.file.read_bytes()).hexdigest()
-        return Content(read_text(self.file), read_toml(self.file), digest)
+        with named_as_given(self.file, self.given):
+            text, document = read_text(self.file), read_toml(self.file)
+        return Content(text, document, hashlib.sha256(self.file.read_bytes()).hexdigest())
 
     def document(self, edits: Edits) -> Document:
         """The document with edits, made one after another.

@@ -15,7 +15,11 @@ from tpss.studio.desk import Desk, Document, Edits
 from tpss.studio.newest import Newest
 from tpss.studio.runs import run_for
 from tpss.studio.shelf import Shelf
+from tpss.studio.steps import moving
 from tpss.studio.told import notes_of, told_of
+
+MOVING = "moving"
+"""Among the names of charts it asks for the trains over the plan."""
 
 STEP = "simulation.time_step_min"
 
@@ -71,6 +75,7 @@ class Live:
             **told,
             "chosen_step": scenario.simulation.time_step_min is None,
             "charts": drawn(result, charts) if has_curves else {},
+            "moving": moving(result) if has_curves and MOVING in charts else None,
             "offered": [name for name, each in CHARTS.items() if each.is_there(result)],
             "simulation_ms": 1e3 * result.summary["simulation_s"],
         }

@@ -1,6 +1,8 @@
 """Serve the studio on this computer until it is interrupted."""
 
+import gc
 import logging
+import os
 import socket
 import threading
 import webbrowser
@@ -40,6 +42,9 @@ class Warmth:
         except ScenarioError as error:
             logging.getLogger(__name__).info("not warmed: %s", error)
         finally:
+            # The command line collects no garbage; a server runs for hours.
+            gc.freeze()
+            gc.enable()
             self._done.set()
 
 
@@ -82,8 +87,12 @@ def serve(
 
 def _listen(port: int) -> socket.socket:
     listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    if os.name != "nt":  # where it would let two servers have one port
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listening.bind((HOST, port))
+        listening.listen()  # whoever comes before the server is up waits for it
     except OSError as error:
+        listening.close()
         raise ResultError(f"port {port} is taken; name another one, or none") from error
     return listening

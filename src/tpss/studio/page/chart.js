@@ -146,7 +146,10 @@ export class Chart {
     this.element = el("figure", { class: "chart" },
       el("figcaption", {}, el("h2", {}, title), this.legend, this.button), this.plots, this.table);
     this.panels = [];
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    new ResizeObserver(([entry]) => {
+      this.width = Math.floor(entry.contentRect.width);
+      this.draw();
+    }).observe(this.plots);
   }
 
   show(drawing, ghost) {
@@ -157,7 +160,7 @@ export class Chart {
   }
 
   draw() {
-    const width = this.plots.clientWidth;
+    const width = this.width;
     if (!this.drawing || !width) return;
     const panels = this.drawing.panels;
     if (this.panels.length !== panels.length) {

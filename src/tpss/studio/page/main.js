@@ -1,33 +1,33 @@
 // The page: opens the scenario, hands edits to the server, and shows what comes of them.
 
 import { drawingOf } from "./arrays.js";
-import { Chart } from "./chart.js";
+import { Charts } from "./charts.js";
 import { showChanges } from "./changes.js";
 import { Schema } from "./documents.js";
 import { el, element } from "./dom.js";
 import { Drafts } from "./drafts.js";
 import { Form } from "./form.js";
 import { History } from "./history.js";
+import { Moving } from "./moving.js";
 import { Outages, toggled } from "./outages.js";
 import { Live } from "./live.js";
 import { Plan } from "./plan.js";
 import { Lost, ask, isReady } from "./server.js";
 import { Reports } from "./reports.js";
+import { Research } from "./research.js";
 import { Tabs } from "./tabs.js";
 import { Tiles } from "./tiles.js";
-import { TrainGraph } from "./traingraph.js";
 import { Tray } from "./tray.js";
 import { Verdicts } from "./verdicts.js";
 import { WhatIf } from "./whatif.js";
 
-const SHOWN = ["voltage", "graph", "powers", "loading"];
 const WARM_MS = 400;
 
-const page = { opened: null, answer: null, baseline: null, charts: {} };
+const page = { opened: null, answer: null, baseline: null, charts: null };
 
 const history = new History(() => { live.request(); drafts.later(); showActions(); settle(); });
 const drafts = new Drafts(history, overtaken, failed, settle);
-const live = new Live({ pairs: () => history.pairs(), charts: () => SHOWN, isSound: () => page.answer?.findings.length === 0, answered, checked, failed, busy, settle });
+const live = new Live({ pairs: () => history.pairs(), charts: () => [...page.charts.names, ...(moving.on ? ["moving"] : [])], isSound: () => page.answer?.findings.length === 0, answered, checked, failed, busy, settle });
 const verdicts = new Verdicts(element("verdicts"));
 const drawings = el("div", { id: "drawings" }), tables = el("div", { id: "tables" });
 const tiles = new Tiles(element("tiles"), tables);
@@ -35,6 +35,7 @@ const plan = new Plan({
   move: (path, km, label) => history.push(label, [[path, km]], path),
   toggle: place => history.push(`${place.name} out of service, or back`, toggled(page.document, place)),
 });
+const moving = new Moving(plan, () => live.request());
 const tool = {
   page: live.page, pairs: () => history.pairs(), failed,
   push: (label, pairs) => pairs.length && history.push(label, pairs),
@@ -44,7 +45,10 @@ const tools = { tray: new Tray(tool), outages: new Outages(tool), reports: new R
 let form = null;
 
 /** Say in the page whether all that was edited is shown and kept. */
-function settle() { document.body.dataset.settled = String(!live.isBusy && !drafts.isBehind); }
+function settle() {
+  document.body.dataset.answered = String(!live.isBusy);
+  document.body.dataset.settled = String(!live.isBusy && !drafts.isBehind);
+}
 
 // ---- what the server tells
 
@@ -65,6 +69,7 @@ function show(result) {
   page.result = result;
   if (!page.baseline) pin();
   verdicts.show(result);
+  moving.show(result.moving);
   compare();
 }
 
@@ -73,7 +78,7 @@ function compare() {
   const { result, baseline } = page;
   const other = baseline === result ? null : baseline;
   tiles.show(result, other);
-  for (const [name, chart] of Object.entries(page.charts)) chart.show(result.drawings[name], other?.drawings[name]);
+  page.charts.show(result.offered, result.drawings, other?.drawings);
 }
 
 function checked(told) { verdicts.check(told); }
@@ -157,13 +162,8 @@ async function readPasted(text, columns, path) {
 // ---- the page as it is built
 
 function buildCharts() {
-  const place = drawings;
-  place.append(plan.element);
-  for (const name of SHOWN) {
-    const { title, over } = page.opened.charts[name];
-    page.charts[name] = over === "train" ? new TrainGraph(title) : new Chart(title, over);
-    place.append(page.charts[name].element);
-  }
+  drawings.append(plan.element);
+  page.charts = new Charts(drawings, page.opened.charts, () => live.request());
   page.pinned = el("span", {}, "");
   const button = el("button", { type: "button", class: "quiet", id: "pin", onclick: () => { pin(); compare(); } }, "Pin as baseline");
   element("verdicts").after(el("div", { class: "baseline" }, page.pinned, button));
@@ -171,11 +171,13 @@ function buildCharts() {
 
 function buildTabs(schemas) {
   tools.whatIf = new WhatIf(tool, schemas);
+  const research = new Research(tool, page.opened.explained.map(name => [name, page.opened.charts[name].title]));
   new Tabs(element("tabs"), element("panels"), [
     { key: "curves", words: "Curves", element: [drawings, tables] },
     { key: "what-if", words: "What if", element: tools.whatIf.element },
     { key: "variants", words: "Variants", element: tools.tray.element, shown: () => tools.tray.run() },
     { key: "outages", words: "Outages", element: tools.outages.element },
+    { key: "research", words: "Research", element: research.element, shown: () => research.shown() },
   ]);
 }
 
@@ -200,7 +202,7 @@ function listen() {
       element(id).setAttribute("aria-pressed", "true");
       element(other).setAttribute("aria-pressed", "false");
     });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const each of Object.values(page.charts)) each.draw(); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => page.charts.draw());
 }
 
 async function warm() {

@@ -13,13 +13,17 @@ export class Plan {
     this.scene = svg("g", {});
     this.layer = svg("g", {});
     this.labels = svg("g", { "aria-hidden": "true" });
-    this.image = svg("svg", { class: "plan", role: "group", "aria-label": "Drawing of the line" }, this.scene, this.labels, this.layer);
+    this.trains = svg("g", { "aria-hidden": "true" });
+    this.image = svg("svg", { class: "plan", role: "group", "aria-label": "Drawing of the line" }, this.scene, this.labels, this.layer, this.trains);
     this.choice = el("select", { "aria-label": "Line of the profile", onchange: () => this.draw() });
     this.chosen = el("span", { class: "chosen", hidden: true }, "profile of ", this.choice);
     this.element = el("figure", { class: "chart" }, el("figcaption", {}, el("h2", {}, "Line"),
       el("p", { class: "legend" }, "Drag stations and feeding points, or move them with the arrow keys; o takes one out of service."), this.chosen), this.image);
     this.places = new Places(this.layer, of, (event, line) => this.kmAt(event, line));
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    new ResizeObserver(([entry]) => {
+      this.width = Math.floor(entry.contentRect.width);
+      this.draw();
+    }).observe(this.element);
   }
 
   show(plan) {
@@ -32,9 +36,8 @@ export class Plan {
   }
 
   draw() {
-    const width = this.element.clientWidth;
+    const width = this.width;
     if (!this.plan || !width) return;
-    this.width = width;
     this.single = this.plan.lines.length === 1;
     this.lines = new Map(this.plan.lines.map(line => [line.name, line]));
     const shownLine = this.lines.get(this.choice.value) || this.plan.lines[0];
@@ -49,7 +52,11 @@ export class Plan {
     this.image.setAttribute("height", height);
     this.places.show(this.plan.places, place => this.positionOf(place), name => [this.lines.get(name).begin_km, this.lines.get(name).end_km]);
     this.name();
+    this.moved();
   }
+
+  /** Called when the drawing was drawn anew. */
+  moved() {}
 
   /** Scales of the plan, and of the profile below it. */
   fit(line) {
@@ -80,7 +87,7 @@ export class Plan {
     const most = Math.max(...line.tracks.map(each => each[2]));
     const tracks = line.tracks.flatMap(([from, to, count]) => Array.from({ length: count }, (_, k) =>
       svg("path", { class: "track", d: d(from, to), transform: `translate(0 ${(k - (count - 1) / 2) * TRACK_GAP})` })));
-    const name = !this.single && svg("text", { class: "line-name", x: this.at(line, line.begin_km)[0], y: this.at(line, line.begin_km)[1] - 20 - 2 * most }, line.name);
+    const name = !this.single && svg("text", { class: "line-name", x: this.at(line, line.end_km)[0], y: this.at(line, line.end_km)[1] + 18 + 2 * most, "text-anchor": "end" }, line.name);
     return [...tracks, name];
   }
 

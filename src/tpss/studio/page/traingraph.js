@@ -13,7 +13,10 @@ export class TrainGraph {
     this.plots = el("div", { class: "plots", role: "img" });
     this.scale = el("span", { class: "colour-scale" });
     this.element = el("figure", { class: "chart" }, el("figcaption", {}, el("h2", {}, title), this.legend), this.plots);
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    new ResizeObserver(([entry]) => {
+      this.width = Math.floor(entry.contentRect.width);
+      this.draw();
+    }).observe(this.plots);
   }
 
   show(drawing, ghost) {
@@ -28,7 +31,7 @@ export class TrainGraph {
   }
 
   draw() {
-    const width = this.plots.clientWidth;
+    const width = this.width;
     if (!this.drawing || !width) return;
     this.xs = this.drawing.span || spanOf([this.curve.x], 0);
     this.ys = this.drawing.panels[0].span || spanOf([this.curve.y], 0.02);
