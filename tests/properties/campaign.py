@@ -23,6 +23,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from .crowds import crowded_scenarios
 from .judge import judge, warm_up
+from .own_laws import scenarios_by_own_laws
 from .strategies import (
     direct_scenarios,
     network_scenarios,
@@ -45,6 +46,7 @@ KINDS = {
     "direct current": direct_scenarios,
     "conductors": scenarios_of_conductors,
     "networks": network_scenarios,
+    "laws of one's own": lambda: scenarios_by_own_laws(sound_scenarios()),
 }
 
 

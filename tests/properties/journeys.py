@@ -106,6 +106,7 @@ class Journey:
         self.brakes_no_harder_than_it_may()
         free = self.train.tractive_effort == "Rc4" and self.train.current_limitation is None
         rating = self.train.motor_rating
+        free &= self.train.driver is None  # who may want less than the limits
         free &= not self.kept_apart and not (rating is not None and rating.spared)
         if regulated and free and self.continuous:
             self.gives_all_it_can_between_two_speeds()

@@ -17,6 +17,7 @@ import tpss
 from properties.crowds import crowded_scenarios
 from properties.judge import judge, warm_up
 from properties.junctions import junctions
+from properties.own_laws import scenarios_by_own_laws
 from properties.phases import scenarios_at_phases
 from properties.strategies import direct_scenarios, sound_scenarios, spoilt_scenarios
 
@@ -100,6 +101,19 @@ def test_railways_of_direct_current_run_by_the_rules_or_say_why_not():
 
     look()
     assert outcomes["finished"] > sum(outcomes.values()) / 3, outcomes
+
+
+def test_laws_of_one_s_own_run_by_the_rules_or_say_why_not():
+    """The same lines and traffic, with drivers, resistances and stations by registered laws."""
+    outcomes: Counter[str] = Counter()
+
+    @settings(CASES, max_examples=40)
+    @given(scenarios_by_own_laws(sound_scenarios()))
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge(document)] += 1
+
+    look()
+    assert outcomes["finished"] > sum(outcomes.values()) / 4, outcomes
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():
