@@ -86,6 +86,13 @@ def test_comments_stay_where_they_were():
     assert written == COMMENTED.replace("1.0]", "2.5]").replace("a = 1", "a = 4")
 
 
+def test_a_table_that_loses_its_only_part_stays():
+    text = 'a = 1  # one\n\n[supply.high_voltage_line]\ntype = "132kV"\n'
+    changed = changed_text(text, {"a": 1, "supply": {}}, HERE)
+    assert tomllib.loads(changed) == {"a": 1, "supply": {}}
+    assert changed.startswith("a = 1  # one\n")
+
+
 def test_an_item_more_is_parted_from_what_follows():
     text = '[[stations]]\nname = "West"\n\n[other]\nb = 1\n'
     after = tomllib.loads(text)

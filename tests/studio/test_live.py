@@ -128,7 +128,7 @@ def test_a_newer_run_ends_the_one_before():
 
 def test_a_run_that_was_overtaken_is_dropped(page: Page):
     began, done = threading.Event(), []
-    prepare = live_module.build
+    prepare = live_module.built
 
     def slowly(scenario):
         prepared = prepare(scenario)
@@ -137,19 +137,19 @@ def test_a_run_that_was_overtaken_is_dropped(page: Page):
         return prepared
 
     overtaken = threading.Event()
-    live_module.build = slowly
+    live_module.built = slowly
     try:
         slow = threading.Thread(
             target=lambda: done.append(page.ask("see", page="one", number=1, edits=[]))
         )
         slow.start()
         assert began.wait(30.0)
-        live_module.build = prepare
+        live_module.built = prepare
         newer = page.ask("see", page="one", number=2, edits=[])
         overtaken.set()
         slow.join(30.0)
     finally:
-        live_module.build = prepare
+        live_module.built = prepare
     assert newer["result"]["status"] == "finished"
     assert done[0]["dropped"] is True
 
@@ -159,6 +159,23 @@ def test_a_run_that_takes_too_long_is_told(page, monkeypatch):
     edits = (("simulation.time_step_min", 0.001), ("traffic.0.headway_min", 1.0))
     (finding,) = page.see(*edits)["findings"]
     assert "takes too long" in finding["problem"]
+
+
+@pytest.mark.parametrize(
+    ("edits", "path", "value"),
+    [
+        ([("traffic.0.headway_min", 0.01)], "traffic.0", "about 4,001 trains"),
+        (
+            [("simulation.duration_min", 100_000.0), ("simulation.time_step_min", 0.001)],
+            "simulation.time_step_min",
+            "100,000,000 steps",
+        ),
+    ],
+)
+def test_more_than_a_page_can_wait_for_is_refused(page, edits, path, value):
+    (finding,) = page.see(*edits)["findings"]
+    assert (finding["path"], finding["value"]) == (path, value)
+    assert "while editing" in finding["problem"]
 
 
 def test_changes_are_told_in_three_ways(page, file):

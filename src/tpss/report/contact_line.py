@@ -68,10 +68,13 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
         order = np.argsort(at_m, kind="stable")
         volts = np.abs(np.interp(position_m, at_m[order], at_v[order]))
         total += volts
-        cell = np.abs(position_m[:, None] - train_m[k, there]).argmin(axis=0)
-        for extreme, worse in ((columns[k // per_column], np.minimum), (highest, np.maximum)):
-            worse(extreme, volts, out=extreme)
-            worse.at(extreme, cell, np.abs(train_v[k, there]))
+        column = columns[k // per_column]
+        np.minimum(column, volts, out=column)
+        np.maximum(highest, volts, out=highest)
+    step, train = np.nonzero(np.isfinite(train_v))
+    cell, at_train = _nearest(position_m, train_m[step, train]), np.abs(train_v[step, train])
+    np.minimum.at(columns, (step // per_column, cell), at_train)
+    np.maximum.at(highest, cell, at_train)
     return LineVoltage(
         position_km=position_m / 1e3,
         lowest_kv=columns.min(axis=0) / 1e3,
@@ -81,6 +84,14 @@ def line_voltage(dataset: xr.Dataset) -> LineVoltage | None:
         map_kv=columns.T / 1e3,
         steps_a_column=per_column,
     )
+
+
+def _nearest(position_m: Floats, place_m: Floats) -> npt.NDArray[np.int64]:
+    """Index of the position that is nearest to each place, of two as near the first one."""
+    behind = np.clip(np.searchsorted(position_m, place_m), 1, len(position_m) - 1)
+    before = behind - 1
+    nearer = np.abs(position_m[behind] - place_m) < np.abs(position_m[before] - place_m)
+    return np.where(nearer, behind, before)
 
 
 def phasors_at(dataset: xr.Dataset, place_m: float) -> Phasors:

@@ -17,7 +17,11 @@ from tpss.report.drawings.thermal import thermal
 from tpss.report.drawings.time_distance import time_distance
 from tpss.report.drawings.unbalance import unbalance
 from tpss.report.drawings.voltage import envelopes
+from tpss.results.converter_losses import describes_losses
+from tpss.results.rails import has_rails
 from tpss.results.result import Result
+from tpss.results.storage import has_stores
+from tpss.results.thermal.elements import has_ratings
 from tpss.studio.packed import of_drawing
 
 
@@ -67,7 +71,7 @@ CHARTS = {
     "converter-losses": Chart(
         "Losses of the converter stations",
         lambda seen: converter_losses({"": seen.result}),
-        lambda result: len(result.converter_losses) > 0,
+        lambda result: describes_losses(result.scenario),
     ),
     "unbalance": Chart(
         "Unbalance of the grid",
@@ -77,17 +81,17 @@ CHARTS = {
     "storage": Chart(
         "Stores of energy",
         lambda seen: storage({"": seen.result}),
-        lambda result: len(result.storage) > 0,
+        lambda result: has_stores(result.dataset),
     ),
     "thermal": Chart(
         "Thermal state of equipment",
         lambda seen: thermal({"": seen.result}),
-        lambda result: bool(result.equipment.elements),
+        lambda result: has_ratings(result.scenario),
     ),
     "rails": Chart(
         "Voltage of the rails",
         lambda seen: rail_voltage(seen.result),
-        lambda result: len(result.rails) > 0,
+        lambda result: has_rails(result.dataset),
         over="line",
     ),
 }

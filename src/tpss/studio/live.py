@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tpss.api import build
 from tpss.errors import Finding, ScenarioError
 from tpss.results.result import Result
 from tpss.scenario.paths import NoSuchPlaceError, places_of
@@ -13,7 +12,7 @@ from tpss.studio.charts import CHARTS, drawn
 from tpss.studio.corridor_plan import plan_of
 from tpss.studio.desk import Desk, Document, Edits
 from tpss.studio.newest import Newest
-from tpss.studio.runs import run_for
+from tpss.studio.runs import built, run_for
 from tpss.studio.shelf import Shelf
 from tpss.studio.steps import moving
 from tpss.studio.told import notes_of, told_of
@@ -89,7 +88,7 @@ class Live:
         """
         interrupted = self.newest.begin(page, number)
         scenario = self.desk.scenario(self.desk.document(edits))
-        prepared = build(scenario)
+        prepared = built(scenario)
         if scenario.simulation.time_step_min is None:
             self.chosen_step_min = prepared.scenario.simulation.time_step_min
         result = run_for(prepared, interrupted, step_check=True)
@@ -102,7 +101,7 @@ class Live:
         return scenario
 
     def _run(self, scenario: Scenario, interrupted: list[int]) -> Result:
-        prepared = build(scenario)
+        prepared = built(scenario)
         if scenario.simulation.time_step_min is None:
             self.chosen_step_min = prepared.scenario.simulation.time_step_min
         return run_for(prepared, interrupted)

@@ -4,6 +4,7 @@ from typing import Any
 
 from tpss.outages.cases import outages_of
 from tpss.outages.run import compare_outages
+from tpss.studio.bounds import demand_bounded
 from tpss.studio.desk import Desk, Document, Edits
 from tpss.studio.newest import DroppedError
 from tpss.studio.told import plain, table_of
@@ -27,6 +28,7 @@ def compared(desk: Desk, edits: Edits, interrupted: list[int]) -> dict[str, Any]
     """
     document = desk.document(edits)
     scenario = desk.scenario(document)
+    demand_bounded(scenario)
     comparison = compare_outages(scenario, every=True, interrupted=interrupted)
     if interrupted:
         raise DroppedError("a newer one was asked for")

@@ -5,14 +5,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from tpss.api import build
 from tpss.errors import ResultError
 from tpss.report.cover import Cover
 from tpss.report.html import report
 from tpss.report.tables import Cell, Table, cell
 from tpss.results.result import Result
 from tpss.studio.desk import Desk, Edits
-from tpss.studio.runs import run_for
+from tpss.studio.runs import built, run_for
 from tpss.studio.shelf import Made
 from tpss.studio.variants import compared
 
@@ -62,7 +61,7 @@ def made(
     if kind not in KINDS:
         raise ResultError(f"there is no file of the kind {kind!r}; kinds: {', '.join(KINDS)}")
     scenario = desk.scenario(desk.document(edits))
-    result = run_for(build(scenario), interrupted, step_check=True)
+    result = run_for(built(scenario), interrupted, step_check=True)
     said = {name: str(words.get(name, "")) for name in WORDS}
     cover = Cover(**said, variants=_table(compared(desk, edits, interrupted)))
     return KINDS[kind](result, cover)

@@ -9,6 +9,7 @@ from tpss.many import simulate_many
 from tpss.results.key_figures import KeyFigures
 from tpss.scenario.override import override
 from tpss.scenario.scenario import Scenario
+from tpss.studio.bounds import demand_bounded
 from tpss.studio.desk import Desk, Document, Edits
 from tpss.studio.newest import DroppedError
 
@@ -77,9 +78,11 @@ def _until(runs: Any, interrupted: list[int]) -> Any:
 def _tried(desk: Desk, document: Document, path: str, value: Any) -> Scenario | None:
     """The scenario with a value, if it may have it."""
     try:
-        return desk.scenario(override(document, {path: value}, desk.file))
+        scenario = desk.scenario(override(document, {path: value}, desk.file))
+        demand_bounded(scenario)
     except ScenarioError:
         return None
+    return scenario
 
 
 def _number(take: Callable[[KeyFigures], float], row: KeyFigures | None) -> float | None:
@@ -133,6 +136,7 @@ def fewest(
             raise DroppedError("a newer one was asked for")
         if count not in tried:
             scenario = desk.scenario(override(document, {path: count}, desk.file))
+            demand_bounded(scenario)
             (tried[count],) = simulate_many([scenario])
         return keeps(tried[count], lowest_kv, loading_percent)
 

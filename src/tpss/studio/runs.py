@@ -2,14 +2,28 @@
 
 from threading import Timer
 
-from tpss.api import Prepared
+from tpss.api import Prepared, build
 from tpss.errors import Finding, ScenarioError
 from tpss.results.result import Result
 from tpss.run.run import INTERRUPTED
+from tpss.scenario.scenario import Scenario
+from tpss.studio.bounds import demand_bounded
 from tpss.studio.newest import DroppedError
 
 LONGEST_S = 30.0
 """Time that a run may take while one edits; the command line runs longer ones."""
+
+
+def built(scenario: Scenario) -> Prepared:
+    """A scenario that is ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        It asks for more than can be simulated while one edits.
+    """
+    demand_bounded(scenario)
+    return build(scenario)
 
 
 def run_for(prepared: Prepared, interrupted: list[int], *, step_check: bool = False) -> Result:

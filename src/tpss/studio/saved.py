@@ -49,13 +49,29 @@ def changed_text(text: str, document: Mapping[str, Any], source: Path) -> str:
         put_in(written, {path: value}, source)
         if path.endswith(f".{ONE_MORE}") and isinstance(value, Mapping):
             _part_from_what_follows(_at(written, above))
-    changed = tomlkit.dumps(written)
+    changed = _with_what_is_missing(tomlkit.dumps(written), document)
     if tomllib.loads(changed) != document:
         raise NotSavedError(
             f"{source} is not changed: written into it, the changes would say something else; "
             "copy them from the list of changes"
         )
     return changed
+
+
+def _with_what_is_missing(text: str, document: Mapping[str, Any]) -> str:
+    """A text in which tables that do not say what they should are written anew, without comments.
+
+    So is one that lost its only part, and with it the heading that implied it.
+    """
+    said = tomllib.loads(text)
+    missing = {key: part for key, part in document.items() if said.get(key) != part}
+    if not missing:
+        return text
+    written = tomlkit.parse(text)
+    for key, part in missing.items():
+        written.pop(key, None)
+        written[key] = part
+    return tomlkit.dumps(written)
 
 
 def _at(document: Any, path: str) -> Any:

@@ -4,13 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from tpss.api import build
 from tpss.errors import ResultError, no_such
 from tpss.report.moving import network_moving
 from tpss.results.result import Result
 from tpss.studio.desk import Desk, Edits
 from tpss.studio.packed import packed
-from tpss.studio.runs import run_for
+from tpss.studio.runs import built, run_for
 from tpss.studio.told import table_of
 
 MOST_ROWS = 5_000
@@ -46,7 +45,7 @@ def steps_of(desk: Desk, edits: Edits, train: str, interrupted: list[int]) -> di
         There is no such train.
     ScenarioError, DroppedError
     """
-    result = run_for(build(desk.scenario(desk.document(edits))), interrupted)
+    result = run_for(built(desk.scenario(desk.document(edits))), interrupted)
     if not result.audit["passed"]:
         raise ResultError("the audit failed: the steps of trains cannot be trusted")
     table = result.train_steps

@@ -3,14 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
-from tpss.api import build
 from tpss.errors import ScenarioError
 from tpss.many import in_threads
 from tpss.results.result import Result
 from tpss.scenario.scenario import Scenario
 from tpss.studio.changed import Change, changes_between
 from tpss.studio.desk import Desk, Edits
-from tpss.studio.runs import run_for
+from tpss.studio.runs import built, run_for
 from tpss.studio.told import plain
 
 FILE, EDITED = "the file", "edited"
@@ -114,7 +113,7 @@ def _figures(case: Scenario | ScenarioError, interrupted: list[int]) -> dict[str
     if isinstance(case, ScenarioError):
         return {"fault": f"{case.findings[0].key}: {case.findings[0].problem}"}
     try:
-        return figures_of(run_for(build(case), interrupted))
+        return figures_of(run_for(built(case), interrupted))
     except ScenarioError as error:
         return {"fault": error.findings[0].problem}
 

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
 from tpss import units
 from tpss.errors import Finding, ScenarioError, alike_together, shortened
 from tpss.files.content import content_of
+from tpss.kept import Kept
 from tpss.tables.aliases import ALIASES
 from tpss.tables.header import MOST_ABOVE, Column, Header, cell_of, demand_header, find_header
 from tpss.tables.kinds import Kind
@@ -120,8 +121,17 @@ def read_table(
         The file cannot be read, or has faults; all are listed, those of one kind once.
     """
     content = content_of(of_workbook(path)[0], named_by) if content is None else content
-    sheet = sheet_of(path, content, kind)
-    return table_of(sheet, kind, decimal)
+    if len(content) > MOST_KEPT:
+        return table_of(sheet_of(path, content, kind), kind, decimal)
+    key = path, kind, decimal, content
+    table = _kept.of(key, lambda: table_of(sheet_of(path, content, kind), kind, decimal))
+    return replace(table, notes=list(table.notes))  # to which whoever makes something of it adds
+
+
+MOST_KEPT = 100_000
+"""Bytes of a file whose table is kept: a scenario that is changed reads its files again and again."""
+
+_kept: Kept[Table] = Kept(8)
 
 
 def sheet_of(path: Path, content: bytes, kind: Kind) -> Sheet:

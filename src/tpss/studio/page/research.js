@@ -31,9 +31,10 @@ export class Research {
   }
 
   async explain() {
+    const chart = this.chart.value;
     try {
-      const { behind } = await ask("equations", { chart: this.chart.value });
-      refill(this.texts, behind.map(each => el("details", { class: "group" },
+      const { behind } = await ask("equations", { chart });
+      if (chart === this.chart.value) refill(this.texts, behind.map(each => el("details", { class: "group" },
         el("summary", {}, el("code", {}, each.function), el("span", { class: "hint" }, ` ${each.file}`)),
         el("pre", { class: "equation", tabindex: "0", "aria-label": each.function }, each.text),
         el("p", { class: "hint" }, `How it is read: ${each.page} of the documentation.`))));
