@@ -101,3 +101,11 @@ def completed(words: str, folder) -> list[str]:
 def test_words_are_completed(tmp_path, words, offered):
     (tmp_path / "examples").symlink_to(EXAMPLES)
     assert completed(words, tmp_path) == offered
+
+
+def test_options_without_a_value_show_none(tpss_command):
+    """Only ``--help`` is typer's own."""
+    lines = [line.split() for line in tpss_command("run", "--help").out.splitlines()]
+    flags = [words for words in lines if words[1:2] and words[1] in ("--quiet", "--force")]
+    assert len(flags) == 2
+    assert not any("<bool>" in words for words in flags)

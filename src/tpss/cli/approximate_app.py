@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Force, Library, Quiet, argument, option
+from tpss.cli.arguments import Force, Library, Quiet, argument, flag, option
 
 app = typer.Typer(
     help="TPSA, the approximator: learn from the simulations of a study, and predict further ones.",
@@ -93,7 +93,7 @@ def predict(
     ] = None,
     flag: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--flag",
             help="Predict outside the trained region too, with a warning, instead of an error.",
         ),

@@ -16,10 +16,12 @@ from tpss.errors import ResultError
 
 option = partial(typer.Option, show_default=False)
 argument = partial(typer.Argument, show_default=False)
+flag = partial(typer.Option, show_default=False, metavar=" ")
+"""An option that takes no value; with nothing in the place of one, typer would show it as a `bool`."""
 
 LIBRARY_VARIABLE = "TPSS_LIBRARY"
 
-Force = Annotated[bool, typer.Option("--force", help="Replace existing files.")]
+Force = Annotated[bool, flag("--force", help="Replace existing files.")]
 
 ScenarioFile = Annotated[
     Path,
@@ -88,7 +90,7 @@ def _use_plain_python(context: typer.Context, value: bool) -> bool:
 
 Plain = Annotated[
     bool,
-    typer.Option(
+    flag(
         "--plain",
         callback=_use_plain_python,
         is_eager=True,
@@ -117,10 +119,10 @@ OneResult = Annotated[Path, argument(metavar="RESULT", help="Folder written by t
 
 NoStepCheck = Annotated[
     bool,
-    typer.Option("--no-step-check", help="Leave out what moves at half the time step."),
+    flag("--no-step-check", help="Leave out what moves at half the time step."),
 ]
 
-Quiet = Annotated[bool, typer.Option("--quiet", help="Print only errors.")]
+Quiet = Annotated[bool, flag("--quiet", help="Print only errors.")]
 
 Labels = Annotated[
     list[str] | None,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tpss.cli.arguments import Force, argument, option
+from tpss.cli.arguments import Force, argument, flag, option
 
 app = typer.Typer(help="Make scenario files from files of other formats.", no_args_is_help=True)
 
@@ -144,7 +144,7 @@ def tables(
         ),
     ] = None,
     headings: Annotated[
-        bool, typer.Option("--headings", help="List the headings that are known, and units.")
+        bool, flag("--headings", help="List the headings that are known, and units.")
     ] = False,
     force: Force = False,
 ) -> None:

@@ -30,6 +30,7 @@ from tpss.cli.arguments import (
     Quiet,
     ScenarioFile,
     argument,
+    flag,
     option,
 )
 
@@ -58,7 +59,7 @@ def _print_version(value: bool) -> None:
 def _options(
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+        flag("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
     pass
@@ -75,9 +76,7 @@ def run(
     ] = None,
     set_: Assignments = None,
     _library: Library = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace an existing result folder.")
-    ] = False,
+    force: Annotated[bool, flag("--force", help="Replace an existing result folder.")] = False,
     quiet: Quiet = False,
     show: Annotated[
         str | None,
@@ -88,7 +87,7 @@ def run(
         ),
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report", help="Also write report.html into the result folder.")
+        bool, flag("--report", help="Also write report.html into the result folder.")
     ] = False,
     no_step_check: NoStepCheck = False,
     variant: Annotated[
@@ -194,7 +193,7 @@ def sweep(
     ] = None,
     dry_run: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--dry-run",
             help="Check the study, and print the number of cases and the expected time.",
         ),
@@ -252,7 +251,7 @@ def outages(
     file: ScenarioFile,
     n_1: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--n-1",
             help="Also take out each single element: every station, every station with one unit fewer, "
             "every transformer of the high-voltage line, every autotransformer, every store at the "
@@ -271,9 +270,7 @@ def outages(
     ] = None,
     report: Annotated[
         bool,
-        typer.Option(
-            "--report", help="Also write a report with the table, beside the CSV file, in HTML."
-        ),
+        flag("--report", help="Also write a report with the table, beside the CSV file, in HTML."),
     ] = False,
     force: Force = False,
     quiet: Quiet = False,

@@ -16,6 +16,7 @@ from tpss.cli.arguments import (
     ResultFolder,
     To,
     argument,
+    flag,
     option,
     stations_of,
 )
@@ -130,7 +131,7 @@ def compare(
     ] = None,
     report: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--report",
             help="Also write the result's report with the comparison, report.html in --out or else in "
             "the result folder.",
@@ -270,7 +271,7 @@ def export_profiles(
     ] = None,
     lowest: Annotated[
         bool,
-        typer.Option("--lowest", help="The lowest voltage of a stretch; by default the mean."),
+        flag("--lowest", help="The lowest voltage of a stretch; by default the mean."),
     ] = False,
     stretch_km: Annotated[
         float, typer.Option(min=0.01, max=1000.0, help="Length of a stretch.", metavar="KM")

@@ -6,7 +6,16 @@ from typing import Annotated
 import typer
 
 from tpss.cli import complete
-from tpss.cli.arguments import Force, GeometryFile, Library, Quiet, ScenarioFile, argument, option
+from tpss.cli.arguments import (
+    Force,
+    GeometryFile,
+    Library,
+    Quiet,
+    ScenarioFile,
+    argument,
+    flag,
+    option,
+)
 
 
 def line_constants(
@@ -71,12 +80,12 @@ def studio(
     file: ScenarioFile,
     new: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--new", help="FILE is a folder, into which a small example is written to start from."
         ),
     ] = False,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address only; open it yourself.")
+        bool, flag("--no-browser", help="Print the address only; open it yourself.")
     ] = False,
     folder: Annotated[
         Path | None,
@@ -161,11 +170,11 @@ def schema(
         Path | None, option(help="File to write; by default the schema is printed.")
     ] = None,
     plan: Annotated[
-        bool, typer.Option("--plan", help="The schema of plan files, in place of scenarios.")
+        bool, flag("--plan", help="The schema of plan files, in place of scenarios.")
     ] = False,
     geometry: Annotated[
         bool,
-        typer.Option("--geometry", help="The schema of conductors, for tpss line-constants."),
+        flag("--geometry", help="The schema of conductors, for tpss line-constants."),
     ] = False,
 ) -> None:
     """Print the JSON Schema of scenario files, which editors use to complete and check them.
