@@ -56,7 +56,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def build(project: Path) -> None:
     """Build the site of a copy of the documentation."""
     project.mkdir()
-    for name in ("docs", "benchmarks"):
+    for name in ("docs", "benchmarks", "tools"):
         shutil.copytree(ROOT / name, project / name, ignore=shutil.ignore_patterns("source"))
     for name in ("mkdocs.yml", "CHANGELOG.md", "CITATION.cff"):
         shutil.copy(ROOT / name, project)
