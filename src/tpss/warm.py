@@ -75,7 +75,7 @@ class Warming(NamedTuple):
 
 
 def warm(
-    report: Callable[[Warming], None] | None = None, names: Collection[str] = tuple(OCCASIONS)
+    report: Callable[[Warming], None] | None = None, names: Collection[str] | None = None
 ) -> int:
     """Compile all kernels that are not compiled yet.
 
@@ -83,7 +83,7 @@ def warm(
     ----------
     report : callable, optional
         Called before each occasion.
-    names : collection of str
+    names : collection of str, optional
         Of the occasions; by default all.
 
     Returns
@@ -93,7 +93,7 @@ def warm(
     """
     possible = {
         name: OCCASIONS[name]
-        for name in names
+        for name in (OCCASIONS if names is None else names)
         if not ((need := OCCASIONS[name].need) and absent(need))
     }
     before = _on_disk()

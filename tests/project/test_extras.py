@@ -19,7 +19,12 @@ from tpss.extras import NEEDS, PACKAGES, demand, imports_explained, remedy
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 OF_EXTRAS = sorted({module for need in NEEDS.values() for module in need.modules})
-WITHIN = {"PIL": "matplotlib", "threadpoolctl": "scikit-learn", "psutil": "distributed"}
+WITHIN = {
+    "PIL": "matplotlib",
+    "threadpoolctl": "scikit-learn",
+    "psutil": "distributed",
+    "llvmlite": "numba",
+}
 """Modules that come with a package that is asked for."""
 
 ALONE = (

@@ -46,7 +46,8 @@ def described():
 
 @pytest.mark.parametrize("name", [name for name in FIGURES if name != "rails"])
 def test_every_figure_for_print_is_drawn_for_a_page_too(described, name):
-    drawing = FIGURES[name].describe(described, "eastbound 1", "distance")
+    shown = {"": described} if FIGURES[name].overlaid else described
+    drawing = FIGURES[name].describe(shown, "eastbound 1", "distance")
     figure = interactive.render(drawing, 400)
     assert len(figure.data) == counted(drawing)
     assert figure.layout.meta in ("time", "position", "speed", "energy")
@@ -90,7 +91,7 @@ def test_a_long_curve_of_many_pieces_keeps_the_gaps_between_them():
 
 
 def test_the_legend_is_that_of_the_first_panel(short):
-    figure = interactive.render(FIGURES["stations"].describe(short, None, "distance"), 440)
+    figure = interactive.render(FIGURES["stations"].describe({"": short}, None, "distance"), 440)
     assert [trace.name for trace in figure.data if trace.showlegend] == ["West", "East"]
 
 

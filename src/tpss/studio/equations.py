@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import threading
 from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
@@ -70,6 +71,10 @@ def behind(chart: str) -> list[dict[str, str]]:
     ]
 
 
+_one_parses = threading.Lock()
+"""Held while a source is parsed: Python 3.11 counts the depth of trees for all threads together."""
+
+
 @cache
 def text_of(file: str, function: str) -> str:
     """The docstring of a function, or of a whole file, from the source, so that nothing is imported.
@@ -79,7 +84,8 @@ def text_of(file: str, function: str) -> str:
     KeyError
         The file has no such function.
     """
-    tree = ast.parse((files("tpss") / file).read_text(encoding="utf-8"))
+    with _one_parses:
+        tree = ast.parse((files("tpss") / file).read_text(encoding="utf-8"))
     if not function:
         return inspect.cleandoc(ast.get_docstring(tree) or "")
     found = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
