@@ -15,6 +15,7 @@ import pytest
 
 from tpss.kernel import plain
 
+from chromium import browser as browser
 from one_compile import compile_once
 
 SHARED = Path(__file__).parents[2] / "shared"

@@ -1,6 +1,5 @@
 """The studio as it is served, and a browser that shows it."""
 
-import shutil
 import socket
 import threading
 import time
@@ -18,7 +17,6 @@ from tpss.studio.live import Live
 from tpss.studio.newest import Newest
 
 TOKEN = "a-secret"
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SIZES = {"wide": {"width": 1280, "height": 900}, "narrow": {"width": 390, "height": 844}}
 PATIENCE_MS = 30_000
 

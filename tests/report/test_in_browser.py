@@ -1,7 +1,6 @@
 """A report in a browser, opened from the disk: it draws, moves, sorts, and asks nobody for anything."""
 
 import csv
-import shutil
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,9 +13,9 @@ from sweep.studies import study_with_stalls
 from tpss.report.html import report, write_report
 from tpss.sweep.report import write_study_report
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+from chromium import needs_chromium
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+pytestmark = needs_chromium
 
 
 @dataclass
@@ -43,16 +42,6 @@ class Opened:
 
     def column(self, table: str, number: int) -> list[str]:
         return self.tab.locator(f"#{table} tbody tr > :nth-child({number})").all_inner_texts()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    with playwright.sync_playwright() as program:
-        arguments = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
-        opened = program.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield opened
-        opened.close()
 
 
 def open_page(browser: Any, file: Path, **options: Any) -> Opened:
@@ -99,7 +88,9 @@ def test_a_comparison_with_measurements_is_drawn_and_follows_the_time(
     opened.tab.locator("#time").focus()
     for _ in range(3):
         opened.tab.keyboard.press("ArrowRight")
-    opened.wait_for("document.getElementById('measured').layout.shapes.at(-1).x0 > 0")
+    at = "document.getElementById('{}').layout.shapes.at(-1).x0"
+    measured, losses = at.format("measured"), at.format("losses")
+    opened.wait_for(f"{measured} > 0 && {measured} === {losses}")  # of the last press, in both
     assert opened.cursor("measured") == opened.cursor("losses")
     opened.tab.close()
     assert opened.faults == []

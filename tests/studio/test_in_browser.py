@@ -7,22 +7,13 @@ from typing import Any
 
 import pytest
 
-from served_studio import CHROMIUM, SIZES, Shown, serving
+from chromium import needs_chromium
+from served_studio import SIZES, Shown, serving
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+pytestmark = needs_chromium
 
 
 TABS = ("Curves", "What if", "Variants", "Outages", "Research")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    with playwright.sync_playwright() as program:
-        arguments = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
-        opened = program.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

@@ -34,6 +34,7 @@ DRIVER = LawKind(
             "m/s",
             "speed wanted: a slower train accelerates up to it, a faster one coasts down to it; "
             "infinite: whatever the limits allow",
+            may_be_infinite=True,
         ),
     ),
     place="trains.*.driver",

@@ -35,6 +35,7 @@ class Quantity:
     name: str
     unit: str
     describes: str
+    may_be_infinite: bool = False
 
 
 @dataclass(frozen=True)

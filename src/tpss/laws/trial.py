@@ -35,7 +35,7 @@ def try_law(law: Law, values: Sequence[float], tried: Iterable[tuple[float, ...]
     for given in tried:
         found = numbers_of(law, values, given)
         for quantity, value in zip(law.kind.found, found, strict=True):
-            if math.isnan(value) or (math.isinf(value) and law.kind.name != "driver"):
+            if math.isnan(value) or (math.isinf(value) and not quantity.may_be_infinite):
                 raise LawError(
                     f"the law {law.name!r} finds {quantity.name} = {value} at {_in_words(law, given)}",
                     _MEND,
