@@ -166,3 +166,16 @@ def test_a_workplace_in_use_is_left_alone(tmp_path):
         clear_left(target)
         assert theirs.is_dir()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_many_work_on_one_target_at_once(tmp_path):
+    """Each of them clears first what it takes for left behind, and none of them loses its folder."""
+
+    def work_once(number: int) -> str:
+        with workplace(tmp_path / "result") as work:
+            (work / NEW).write_text(str(number))
+            return (work / NEW).read_text()
+
+    with ThreadPoolExecutor(8) as workers:
+        assert list(workers.map(work_once, range(400))) == [str(number) for number in range(400)]
+    assert list(tmp_path.iterdir()) == []

@@ -43,16 +43,35 @@ def workplace(target: Path, put_right: PutRight = nothing_to_put_right) -> Itera
         Called first for every workplace of the same target that was left behind.
     """
     clear_left(target, put_right)
-    parent = next(folder for folder in target.parents if os.path.lexists(folder))
-    work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=parent))
+    work, lock = _locked(target)
     try:
-        with FileLock(work / LOCK):
-            try:
-                yield work
-            finally:
-                _empty(work)
+        yield work
     finally:
+        _empty(work)
+        lock.release()
         _remove(work)
+
+
+def _locked(target: Path) -> tuple[Path, FileLock]:
+    """A new hidden folder, and its lock, which is held.
+
+    Between the two, another process may take the folder for one that was left behind, and remove it;
+    then the next one is made.
+    """
+    parent = next(folder for folder in target.parents if os.path.lexists(folder))
+    while True:
+        work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=parent))
+        lock = FileLock(work / LOCK)
+        try:
+            lock.acquire()
+        except OSError:
+            if work.exists():
+                _remove(work)
+                raise
+            continue
+        if (work / LOCK).exists():
+            return work, lock
+        lock.release()
 
 
 def _empty(work: Path) -> None:
@@ -82,7 +101,8 @@ def clear_left(target: Path, put_right: PutRight = nothing_to_put_right) -> None
                 with FileLock(left / LOCK, timeout=0):
                     put_right(left)
                     _empty(left)
-                _remove(left)
+                    _remove(left)  # while it is held, so that nobody who waits for it works in it
+                _remove(left)  # where no file can be removed that is open
             elif is_abandoned(left):
                 left.rmdir()  # before it was locked there was nothing in it
 
