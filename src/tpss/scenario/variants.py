@@ -1,5 +1,6 @@
 """Variants of a scenario: named changes, kept in its file."""
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -15,17 +16,37 @@ ALL = "all"
 """Stands for the scenario as it is and each of its variants, where they are chosen."""
 
 
+def _told_in_full(values: dict[str, Any]) -> dict[str, Any]:
+    """Values that can be saved with the scenario; what else is wrong shows where they are put in."""
+    for path, value in _flat(values):
+        if not all(map(math.isfinite, _numbers(value))):
+            raise fault(f"{path} has a number that is not finite", "write a finite number")
+    return values
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """Numbers with decimals anywhere in a value."""
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, dict | list | tuple):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from _numbers(each)
+
+
+Values = Annotated[dict[str, Any], AfterValidator(_told_in_full)]
+
+
 class Variant(Part):
     """Changes of the scenario, made in this order."""
 
     description: str = Field(default="", description="What it is about.")
-    changes: dict[str, Any] = Field(
+    changes: Values = Field(
         default={},
         alias="set",
         description="Values by key path. Keys without dots may be nested; a quoted path with a table "
         "replaces that as a whole.",
     )
-    additions: dict[str, Any] = Field(
+    additions: Values = Field(
         default={},
         alias="add",
         description="Items by the key path of the list behind which they come.",
