@@ -5,6 +5,7 @@ anything; n runs from 1 until the child lives to its end.  Then another process 
 """
 
 import os
+import shutil
 import signal
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -127,6 +128,26 @@ def test_several_files_are_all_old_or_all_new(tmp_path):
         save_files(tmp_path, {name: text.encode() for name, text in new.items()}, force=True)
 
     assert at_every_call(prepare, work, look) > 10
+
+
+def test_a_folder_that_was_not_there_is_made_with_all_files_or_not_at_all(tmp_path):
+    """Whoever comes next leaves nothing behind, where there was no folder to work in, either."""
+    folder, files = tmp_path / "deep" / "tables", {"a.csv": "new", "b.csv": "new"}
+
+    def prepare() -> None:
+        shutil.rmtree(tmp_path / "deep", ignore_errors=True)
+
+    def work() -> None:
+        save_files(folder, {name: text.encode() for name, text in files.items()}, force=False)
+
+    def look(_: bool) -> None:
+        assert not folder.exists() or content_of(folder) == files
+        shutil.rmtree(tmp_path / "deep", ignore_errors=True)
+        make_old(tmp_path)
+        check_files(folder, files, force=False)
+        assert list(tmp_path.iterdir()) == []
+
+    assert at_every_call(prepare, work, look) > 5
 
 
 def test_a_file_is_the_old_or_the_new_one(tmp_path):

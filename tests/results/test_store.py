@@ -83,6 +83,8 @@ if sys.argv[1] == "writing":
     store.json.dumps = kill
 elif sys.argv[1] == "moving":
     workplace.put_in_place = kill
+elif sys.argv[1] == "carrying over":
+    store.carry_over = kill
 else:
     workplace.exchange = lambda *_: False
     Path.rename = kill_at_second()
@@ -116,6 +118,28 @@ def test_a_process_killed_between_the_old_result_and_the_new_one_loses_neither(o
     assert load_result(tmp_path / "result").scenario.name == "old"
     assert (tmp_path / "result" / "mine.txt").read_text() == "mine"
     assert names_in(tmp_path) == ["new", "result"]
+
+
+@pytest.mark.parametrize("comes_next", [load_result, lambda folder: refused_in(folder)])
+def test_what_a_user_has_put_into_a_result_comes_back_whoever_comes_next(
+    old, new, tmp_path, comes_next
+):
+    """Killed after the new result took the place of the old one, before the user's file followed."""
+    old.save(tmp_path / "result")
+    new.save(tmp_path / "new")
+    (tmp_path / "result" / "mine.txt").write_text("mine")
+    save_and_be_killed("carrying over", tmp_path)
+    assert not (tmp_path / "result" / "mine.txt").exists()
+    comes_next(tmp_path / "result")
+    assert (tmp_path / "result" / "mine.txt").read_text() == "mine"
+    assert load_result(tmp_path / "result").scenario.name == "new"
+    assert names_in(tmp_path) == ["new", "result"]
+
+
+def refused_in(folder) -> None:
+    """A run that may not replace what is there."""
+    with pytest.raises(ResultError, match="exists already"):
+        store.check_target(load_scenario(EXAMPLES / "thesis_3_3.toml"), folder, force=False)
 
 
 def test_a_flipped_bit_is_told(old, tmp_path):

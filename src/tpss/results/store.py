@@ -52,6 +52,7 @@ def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
         It exists and may not be replaced, it cannot be made, or the disk is full.
     """
     with explained(folder or PARENT):
+        _put_right_first(folder)
         _refuse(folder, force)
         workplace.try_out(whole.real(folder or next_folder(scenario.name)))
 
@@ -65,6 +66,7 @@ def save(
 ) -> Path:
     """Write a result folder.  See `Result.save`."""
     with explained(folder or PARENT):
+        _put_right_first(folder)
         _refuse(folder, force)
         target = whole.real(folder or next_folder(scenario.name))
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -89,6 +91,12 @@ def save(
 def _put_right(target: Path) -> workplace.PutRight:
     """What is done where a process was killed while it put a result into its place."""
     return lambda work: workplace.restore(work, target, carry_over)
+
+
+def _put_right_first(folder: Path | None) -> None:
+    """Put right what processes that were killed have left of a named folder, before it is looked at."""
+    if folder is not None:
+        workplace.clear_left(whole.real(folder), _put_right(whole.real(folder)))
 
 
 def _refuse(folder: Path | None, force: bool) -> None:
@@ -125,8 +133,7 @@ def next_folder(name: str, parent: Path = PARENT) -> Path:
 
 def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     """Read a result folder.  See `load_result`."""
-    if not folder.exists():
-        workplace.clear_left(whole.real(folder), _put_right(whole.real(folder)))
+    _put_right_first(folder)
     missing = [name for name in (DATASET, SUMMARY, SCENARIO) if not (folder / name).is_file()]
     if missing:
         raise ResultError(
