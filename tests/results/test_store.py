@@ -156,6 +156,31 @@ def test_a_flipped_bit_is_told(old, tmp_path):
     assert load_result(folder).summary.keys() == old.summary.keys()
 
 
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("summary.json", '"passed": true', '"passed": false'),
+        ("summary.json", '"trip_time_min"', '"trip_time_mim"'),
+        ("scenario.toml", "mass_t = 14", "mass_t = 15"),
+    ],
+)
+def test_other_words_in_a_result_are_told(old, tmp_path, name, before, after):
+    folder = old.save(tmp_path / "result")
+    written = (folder / name).read_text("utf-8")
+    assert before in written
+    (folder / name).write_text(written.replace(before, after, 1), "utf-8")
+    with pytest.raises(ResultError, match=f"{name} is not as it was written"):
+        load_result(folder)
+
+
+def test_a_result_may_pass_through_a_system_that_ends_lines_otherwise(old, tmp_path):
+    folder = old.save(tmp_path / "result")
+    for name in ("summary.json", "scenario.toml"):
+        text = (folder / name).read_bytes().replace(b"\n", b"\r\n")
+        (folder / name).write_bytes(text)
+    assert load_result(folder).summary.keys() == old.summary.keys()
+
+
 def test_datasets_are_compressed_and_nothing_of_them_is_lost(old, tmp_path):
     several = simulate(load_scenario(EXAMPLES / "thesis_3_3.toml"))
     folder = several.save(tmp_path / "result")

@@ -275,6 +275,32 @@ def test_a_damaged_file_is_told_with_the_remedy(tmp_path, scheduler):
         tpss.load_table(folder)
 
 
+def test_a_flipped_bit_is_told_wherever_it_lies(tmp_path):
+    folder = tmp_path / "out"
+    tpss.run_study(study(tmp_path), folder)
+    part = sorted(folder.glob("cases/*.parquet"))[0]
+    written = bytearray(part.read_bytes())
+    for place in range(0, len(written), len(written) // 100):
+        written[place] ^= 4
+        part.write_bytes(written)
+        with pytest.raises(tpss.StudyError, match="not as it was written"):
+            tpss.load_table(folder)
+        written[place] ^= 4
+
+
+def test_files_whose_columns_differ_are_told(tmp_path):
+    """Files without a checksum in their names, as written before."""
+    folder = tmp_path / "out"
+    tpss.run_study(study(tmp_path), folder)
+    part = sorted(folder.glob("cases/*.parquet"))[0]
+    table = pq.read_table(part)
+    part.unlink()
+    for k, columns in enumerate((table.column_names, table.column_names[:-1])):
+        pq.write_table(table.select(columns), part.with_name(f"cases-{k}-{k + 1}.parquet"))
+    with pytest.raises(tpss.StudyError, match=r"cases-1-2\.parquet is damaged \(its columns"):
+        tpss.load_table(folder)
+
+
 def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
     said = refused(study(tmp_path), tmp_path / "out", "tcp://127.0.0.1:9")

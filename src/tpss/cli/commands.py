@@ -10,7 +10,11 @@ from tpss.errors import shortened
 NO_VALUE = " "
 """In the place of a value, of options that take none: typer would show a `bool` there."""
 
-_KINDS = {"int_parsing": "a whole number", "int_from_float": "a whole number", "float_parsing": "a number"}
+_KINDS = {
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "float_parsing": "a number",
+}
 
 
 class Commands(TyperGroup):

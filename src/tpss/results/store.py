@@ -31,7 +31,7 @@ PACKED = {"zlib": True, "complevel": 1, "shuffle": True}
 """How numbers are compressed: more than this level takes longer and saves little."""
 
 CHECKSUMS = "sha256"
-"""Key of a saved summary: checksums of the other files, by their names."""
+"""Key of a saved summary: checksums of all files, its own too, by their names."""
 
 ONE_AT_A_TIME = threading.Lock()
 """The netCDF library is not safe in several threads at once."""
@@ -77,15 +77,25 @@ def save(
             # The simulation has needed more memory than this.
             content = _as_netcdf(dataset)
             whole.write_new(new / DATASET, content)
-            whole.write_new(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
-            checked = {**summary, CHECKSUMS: {DATASET: hashlib.sha256(content).hexdigest()}}
-            text = json.dumps(checked, indent=2, ensure_ascii=False)
-            whole.write_new(new / SUMMARY, f"{text}\n".encode())
+            run = tomli_w.dumps(scenario.as_document()).encode()
+            whole.write_new(new / SCENARIO, run)
+            whole.write_new(new / SUMMARY, _with_checksums(summary, content, run))
             if folder is None:
                 return _move_to_next(new, scenario.name)
             _refuse(folder, force)
             workplace.put_in_place(work, target, carry_over)
             return folder
+
+
+def _with_checksums(summary: dict[str, Any], dataset: memoryview, scenario: bytes) -> bytes:
+    """Content of a summary's file, with the checksums of all files."""
+    checksums = {
+        DATASET: hashlib.sha256(dataset).hexdigest(),
+        SCENARIO: _of_text(scenario),
+        SUMMARY: _of_document(json.loads(json.dumps(summary))),  # as it will be read
+    }
+    text = json.dumps({**summary, CHECKSUMS: checksums}, indent=2, ensure_ascii=False)
+    return f"{text}\n".encode()
 
 
 def _put_right(target: Path) -> workplace.PutRight:
@@ -144,7 +154,7 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
         summary = read_json_file(folder / SUMMARY)
         _demand_this_format(folder, summary)
         # First: on some damaged files HDF5 ends the process.
-        _demand_what_was_written(folder / DATASET, summary.pop(CHECKSUMS, {}))
+        _demand_what_was_written(folder, summary)
         dataset = _read_netcdf(folder / DATASET)
         with using(None):  # it holds what it took from any library
             scenario = load_scenario(folder / SCENARIO)
@@ -224,12 +234,32 @@ def _demand_this_format(folder: Path, summary: Any) -> None:
         )
 
 
-def _demand_what_was_written(file: Path, checksums: dict[str, str]) -> None:
-    """Raise a `ValueError` if a file is not the one of which a checksum is known."""
-    with file.open("rb") as opened:
+def _demand_what_was_written(folder: Path, summary: dict[str, Any]) -> None:
+    """Take the checksums out of a summary, and raise a `ValueError` if a file has another one.
+
+    Results that were saved before know some of them, or none.
+    """
+    written = summary.pop(CHECKSUMS, {})
+    with (folder / DATASET).open("rb") as opened:
         found = hashlib.file_digest(opened, "sha256").hexdigest()
-    if checksums.get(file.name, found) != found:
-        raise ValueError(f"{file.name} is not as it was written: its checksum is another")
+    there = {
+        DATASET: found,
+        SCENARIO: _of_text((folder / SCENARIO).read_bytes()),
+        SUMMARY: _of_document(summary),
+    }
+    for name, checksum in there.items():
+        if written.get(name, checksum) != checksum:
+            raise ValueError(f"{name} is not as it was written: its checksum is another")
+
+
+def _of_text(content: bytes) -> str:
+    """Checksum of a text, whatever ends its lines."""
+    return hashlib.sha256(content.replace(b"\r\n", b"\n")).hexdigest()
+
+
+def _of_document(document: dict[str, Any]) -> str:
+    """Checksum of what a document says, however it is written."""
+    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
 def _demand_a_result(dataset: xr.Dataset) -> None:
