@@ -13,12 +13,18 @@ from pathlib import Path
 
 import pytest
 
+from tpss.files import whole
 from tpss.files.several import check_files, save_files
 from tpss.files.whole import ABANDONED_S, write_file
 from tpss.files.workplace import NEW, clear_left, put_in_place, restore, workplace
 
-CHANGES = ("open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "shutil.rmtree")
-"""Events of the interpreter that come before the file system is changed."""
+WRITE = "write"
+"""What comes after a file was made and before anything is in it; no event of the interpreter."""
+
+CHANGES = (
+    "open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "shutil.rmtree", WRITE,
+)  # fmt: skip
+"""Events that come before the file system is changed."""
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="a process is not copied there")
 
@@ -37,6 +43,8 @@ def killed_at(call: int, work) -> bool:
                     os.kill(os.getpid(), signal.SIGKILL)
 
         sys.addaudithook(count)
+        write = whole._write_through
+        whole._write_through = lambda *file: (count(WRITE, None), write(*file))
         try:
             work()
         finally:

@@ -1,8 +1,10 @@
-"""Files of many, whose names end in a checksum of what is in them: damage is told when they are read."""
+"""Checksums by which damage is told when a file is read: in its name, or of what a document says."""
 
 import hashlib
+import json
 import re
 from pathlib import Path
+from typing import Any
 
 from tpss.files.read import MEGABYTE, read_bytes
 
@@ -37,3 +39,9 @@ def read_checked(file: Path) -> bytes:
 
 def _checksum(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:_DIGITS]
+
+
+def document_checksum(document: dict[str, Any]) -> str:
+    """Checksum of what a document of JSON says, however it is written and in whatever order."""
+    as_read = json.loads(json.dumps(document))
+    return hashlib.sha256(json.dumps(as_read, sort_keys=True).encode()).hexdigest()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tpss.errors import ResultError
 from tpss.files.refusals import ANOTHER, explained, refuse_to_replace
-from tpss.files.whole import real, settle, write_new
+from tpss.files.whole import real, settle, write_file, write_new
 from tpss.files.workplace import NEW, OLD, clear_left, workplace
 
 JOURNAL = "journal.json"
@@ -22,7 +22,7 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
     ResultError
         The folder is not one, or files exist and may not be replaced.
     """
-    clear_left(_named(real(folder)), take_back)
+    _clear_left(real(folder))
     if os.path.lexists(folder) and not folder.is_dir():
         raise ResultError(f"{folder} is not a folder; {ANOTHER}")
     there = [folder / name for name in names if os.path.lexists(folder / name)]
@@ -42,6 +42,7 @@ def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list
         As `check_files`, or the folder cannot be written.
     """
     target = real(folder)
+    _clear_left(target)
     with explained(folder), workplace(_named(target), take_back) as work:
         new = work / NEW
         new.mkdir()
@@ -61,12 +62,18 @@ def _named(target: Path) -> Path:
     return target / "export"
 
 
+def _clear_left(target: Path) -> None:
+    """Put right what killed processes left in a folder, or above it while it was not there."""
+    for folder in (target, target.parent):
+        clear_left(_named(folder), take_back)
+
+
 def _move_files(work: Path, target: Path) -> None:
     """Put written files into a folder; if one cannot be moved, everything is restored."""
     (work / OLD).mkdir()
     names = sorted(file.name for file in (work / NEW).iterdir())
     there = [name for name in names if os.path.lexists(target / name)]
-    write_new(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
+    write_file(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
     settle(work)
     try:
         for name in names:

@@ -14,6 +14,7 @@ import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
 from tpss.files import whole, workplace
+from tpss.files.checked import document_checksum
 from tpss.files.json_text import read_json_file
 from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import explained, refuse_to_replace
@@ -92,7 +93,7 @@ def _with_checksums(summary: dict[str, Any], dataset: memoryview, scenario: byte
     checksums = {
         DATASET: hashlib.sha256(dataset).hexdigest(),
         SCENARIO: _of_text(scenario),
-        SUMMARY: _of_document(json.loads(json.dumps(summary))),  # as it will be read
+        SUMMARY: document_checksum(summary),
     }
     text = json.dumps({**summary, CHECKSUMS: checksums}, indent=2, ensure_ascii=False)
     return f"{text}\n".encode()
@@ -245,7 +246,7 @@ def _demand_what_was_written(folder: Path, summary: dict[str, Any]) -> None:
     there = {
         DATASET: found,
         SCENARIO: _of_text((folder / SCENARIO).read_bytes()),
-        SUMMARY: _of_document(summary),
+        SUMMARY: document_checksum(summary),
     }
     for name, checksum in there.items():
         if written.get(name, checksum) != checksum:
@@ -255,11 +256,6 @@ def _demand_what_was_written(folder: Path, summary: dict[str, Any]) -> None:
 def _of_text(content: bytes) -> str:
     """Checksum of a text, whatever ends its lines."""
     return hashlib.sha256(content.replace(b"\r\n", b"\n")).hexdigest()
-
-
-def _of_document(document: dict[str, Any]) -> str:
-    """Checksum of what a document says, however it is written."""
-    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
 def _demand_a_result(dataset: xr.Dataset) -> None:
