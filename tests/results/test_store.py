@@ -1,6 +1,7 @@
 """Result folders are written whole or not at all, whatever befalls the program."""
 
 import gzip
+import json
 import os
 import shutil
 import signal
@@ -170,6 +171,16 @@ def test_other_words_in_a_result_are_told(old, tmp_path, name, before, after):
     assert before in written
     (folder / name).write_text(written.replace(before, after, 1), "utf-8")
     with pytest.raises(ResultError, match=f"{name} is not as it was written"):
+        load_result(folder)
+
+
+def test_a_summary_without_a_checksum_that_lacks_something_is_told(old, tmp_path):
+    folder = old.save(tmp_path / "result")
+    summary = json.loads((folder / "summary.json").read_text("utf-8"))
+    for key in ("sha256", "trip_time_min", "losses_mwh"):
+        del summary[key]
+    (folder / "summary.json").write_text(json.dumps(summary), "utf-8")
+    with pytest.raises(ResultError, match=r"summary\.json has no losses_mwh, trip_time_min"):
         load_result(folder)
 
 

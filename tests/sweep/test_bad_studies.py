@@ -30,6 +30,10 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
             {**SOBOL, "vary": {"traffic.0.headway_min": {"low": 30.0, "high": 5.0}}},
             ["vary.traffic.0.headway_min", "an empty range, 30 to 5", "set low below high"],
         ),
+        (
+            {"gradients": {"mean_permille": 0.0, "standard_deviation_permille": 10**400}},
+            ["gradients.standard_deviation_permille", "out of range", "numbers from 0 to 100"],
+        ),
         ({"vary": {"traffic.0.headway_min": []}}, ["vary.traffic.0.headway_min", "an empty list"]),
         (
             {"vary": {"traffic.0.headway_min": {"low": 5.0, "high": 30.0}}},

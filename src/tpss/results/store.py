@@ -156,6 +156,7 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
         _demand_this_format(folder, summary)
         # First: on some damaged files HDF5 ends the process.
         _demand_what_was_written(folder, summary)
+        _demand_whole(summary)
         dataset = _read_netcdf(folder / DATASET)
         with using(None):  # it holds what it took from any library
             scenario = load_scenario(folder / SCENARIO)
@@ -233,6 +234,19 @@ def _demand_this_format(folder: Path, summary: Any) -> None:
             f"{written or 'older than any number'}, this version reads {FORMAT}; run the scenario "
             f"again (tpss run {folder / SCENARIO}), or read it with that version"
         )
+
+
+ALWAYS = {
+    "name", "status", "audit", "limited", "provenance", "time_step_min", "duration_min", "studied_train",
+    "trip_time_min", "total_energy_mwh", "station_energy_mwh", "losses_mwh", "lowest_voltage",
+}  # fmt: skip
+"""Keys of every summary of this format."""
+
+
+def _demand_whole(summary: dict[str, Any]) -> None:
+    """Raise a `ValueError` if a summary lacks what all have, as one without a checksum may."""
+    if lacking := ALWAYS - set(summary):
+        raise ValueError(f"{SUMMARY} has no {', '.join(sorted(lacking))}")
 
 
 def _demand_what_was_written(folder: Path, summary: dict[str, Any]) -> None:
