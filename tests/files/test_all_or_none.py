@@ -115,22 +115,23 @@ def test_a_folder_is_the_old_or_the_new_one(tmp_path, monkeypatch, can_exchange)
 
 
 def test_several_files_are_all_old_or_all_new(tmp_path):
-    old, new = (dict.fromkeys(("b.csv", "c.csv"), each) for each in ("old", "new"))
-    new |= {"a.csv": "new", "d.csv": "new"}
+    old, new = (dict.fromkeys(("b.csv", "in/c.csv"), each) for each in ("old", "new"))
+    new |= {"a.csv": "new", "in/d.csv": "new"}
 
     def prepare() -> None:
-        for file in tmp_path.iterdir():
-            file.unlink()
+        shutil.rmtree(tmp_path)
+        (tmp_path / "in").mkdir(parents=True)
         for name, text in {**old, "mine.txt": "mine"}.items():
             (tmp_path / name).write_text(text)
 
     def look(_: bool) -> None:
         make_old(tmp_path)
         check_files(tmp_path, [], force=True)
-        found = content_of(tmp_path)
+        inner = {f"in/{name}": text for name, text in content_of(tmp_path / "in").items()}
+        found = content_of(tmp_path) | inner
         assert found.pop("mine.txt") == "mine"
         assert found in (old, new)
-        assert not [path for path in tmp_path.iterdir() if path.is_dir()]
+        assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["in"]
 
     def work() -> None:
         save_files(tmp_path, {name: text.encode() for name, text in new.items()}, force=True)

@@ -36,6 +36,8 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
 def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list[Path]:
     """Write files into a folder, all of them or none; the folder is made if it is not there.
 
+    Names may be those of files in folders within it, parted by slashes.
+
     Raises
     ------
     ResultError
@@ -47,6 +49,7 @@ def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list
         new = work / NEW
         new.mkdir()
         for name, content in contents.items():
+            (new / name).parent.mkdir(parents=True, exist_ok=True)
             write_new(new / name, content)
         check_files(folder, contents, force)
         if target.exists():
@@ -70,16 +73,18 @@ def _clear_left(target: Path) -> None:
 
 def _move_files(work: Path, target: Path) -> None:
     """Put written files into a folder; if one cannot be moved, everything is restored."""
-    (work / OLD).mkdir()
-    names = sorted(file.name for file in (work / NEW).iterdir())
+    new, old = work / NEW, work / OLD
+    names = sorted(file.relative_to(new).as_posix() for file in new.rglob("*") if file.is_file())
     there = [name for name in names if os.path.lexists(target / name)]
     write_file(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
     settle(work)
     try:
         for name in names:
             if name in there:
-                (target / name).rename(work / OLD / name)
-            (work / NEW / name).rename(target / name)
+                (old / name).parent.mkdir(parents=True, exist_ok=True)
+                (target / name).rename(old / name)
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            (new / name).rename(target / name)
     except BaseException:
         take_back(work)
         raise
