@@ -16,12 +16,12 @@ ALL = "all"
 """Stands for the scenario as it is and each of its variants, where they are chosen."""
 
 
-def _told_in_full(values: dict[str, Any]) -> dict[str, Any]:
-    """Values that can be saved with the scenario; what else is wrong shows where they are put in."""
-    for path, value in _flat(values):
-        if not all(map(math.isfinite, _numbers(value))):
+def _all_finite(value: Any) -> Any:
+    """A value without numbers that are not finite, which no file of a result could hold."""
+    for path, inside in _flat(value) if isinstance(value, dict) else [("it", value)]:
+        if not all(map(math.isfinite, _numbers(inside))):
             raise fault(f"{path} has a number that is not finite", "write a finite number")
-    return values
+    return value
 
 
 def _numbers(value: Any) -> Iterator[float]:
@@ -33,7 +33,11 @@ def _numbers(value: Any) -> Iterator[float]:
             yield from _numbers(each)
 
 
-Values = Annotated[dict[str, Any], AfterValidator(_told_in_full)]
+Value = Annotated[Any, AfterValidator(_all_finite)]
+"""Any value; what else is wrong with it shows where it is put in."""
+
+Values = Annotated[dict[str, Any], AfterValidator(_all_finite)]
+"""Values by key path."""
 
 
 class Variant(Part):
