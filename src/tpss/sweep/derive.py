@@ -70,7 +70,7 @@ def draw_gradients(
     """
     drawn = design.study.file.gradients
     assert drawn is not None, "they are asked for"
-    line = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
+    line: Any = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
     if not isinstance(line, dict):
         return  # it is refused where the scenario is made, and so is what follows
     length_km, begin_km = line.get("length_km"), line.get("begins_at_km", 0.0)
