@@ -70,10 +70,11 @@ def draw_gradients(
     """
     drawn = design.study.file.gradients
     assert drawn is not None, "they are asked for"
-    line: Any = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
+    line = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
     if not isinstance(line, dict):
         return  # it is refused where the scenario is made, and so is what follows
-    length_km, begin_km = line.get("length_km"), line.get("begins_at_km", 0.0)
+    length_km: Any = line.get("length_km")
+    begin_km: Any = line.get("begins_at_km", 0.0)
     if not all(isinstance(km, int | float) for km in (length_km, begin_km)):
         return
     if not 0.0 < length_km <= MOST_PIECES * drawn.piece_km:
