@@ -9,6 +9,9 @@ from tpss.results.contents import REPORT
 
 COMPARISON = "comparison.html"
 
+COVER = ("title", "project", "author", "remarks")
+"""What a first page may say."""
+
 
 def report_results(
     folders: Sequence[Path],
@@ -30,7 +33,7 @@ def report_results(
     corridor : sequence of str
         Stations over which plots along a line are drawn, if they are given.
     cover : mapping of str to str, optional
-        What the first page of the report of a single result says, as fields of `tpss.report.cover.Cover`.
+        What the first page of a single result's report says: title, project, author, remarks.
 
     Raises
     ------
@@ -50,6 +53,7 @@ def report_results(
     check_target(out or own, force)
     named = dict(zip(given or labels(folders, results), results, strict=True))
     shown = results[0] if len(results) == 1 else named
-    page = Cover(**cover) if cover else None
+    title, project, author, remarks = ((cover or {}).get(name, "") for name in COVER)
+    page = Cover(title, project, author, remarks) if cover else None
     file = write_report(shown, out or own, force=force, corridor=corridor, cover=page)
     print(f"Wrote {file}")
