@@ -90,6 +90,7 @@ def spoilt(file, *path, value):
         (("figures", "w1", 0), [[1.0]]),
         (("figures", "b2", 0, 0), float("nan")),
         (("figures", "b2", 0, 0), "__import__('os')"),
+        (("figures", "w1", 0, 0, 0), 1e308),
         (("outputs", 0, "scale"), "eval"),
         (("outputs", 0, "low"), None),
         (("domain", "pairs"), []),
@@ -107,6 +108,15 @@ def test_a_damaged_file_says_where(path, value, model_file):
     with pytest.raises(tpss.ScenarioError, match="the file is damaged") as error:
         tpss.load_approximator(spoilt(model_file, *path, value=value))
     assert str(model_file) in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [(("figures", "b2", 0, 0), 0.25), (("outputs", 0, "factor"), 9.0), (("data", "seed"), 99)],
+)
+def test_other_numbers_than_were_written_are_told(path, value, model_file):
+    with pytest.raises(tpss.ApproximatorError, match="its checksum is another; train it again"):
+        tpss.load_approximator(spoilt(model_file, *path, value=value))
 
 
 def test_a_file_cut_off_anywhere_is_refused(model_file):

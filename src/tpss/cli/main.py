@@ -33,8 +33,10 @@ from tpss.cli.arguments import (
     flag,
     option,
 )
+from tpss.cli.commands import Commands
 
 app = typer.Typer(
+    cls=Commands,
     name="tpss",
     help="TPSS, the Train Power System Simulator: trains and their power supply, simulated together.",
     no_args_is_help=True,

@@ -52,15 +52,19 @@ def workplace(target: Path, put_right: PutRight = nothing_to_put_right) -> Itera
         _remove(work)
 
 
+def _above(target: Path) -> Path:
+    """The nearest folder above that exists, in which workplaces of a target are made."""
+    return next(folder for folder in target.parents if os.path.lexists(folder))
+
+
 def _locked(target: Path) -> tuple[Path, FileLock]:
     """A new hidden folder, and its lock, which is held.
 
     Between the two, another process may take the folder for one that was left behind, and remove it;
     then the next one is made.
     """
-    parent = next(folder for folder in target.parents if os.path.lexists(folder))
     while True:
-        work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=parent))
+        work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=_above(target)))
         lock = FileLock(work / LOCK)
         try:
             lock.acquire()
@@ -93,9 +97,7 @@ def _remove(work: Path) -> None:
 
 def clear_left(target: Path, put_right: PutRight = nothing_to_put_right) -> None:
     """Put right and remove what processes that were killed have left of their work on a target."""
-    if not target.parent.is_dir():
-        return
-    for left in target.parent.glob(f".{literal(target.name)}-*"):
+    for left in _above(target).glob(f".{literal(target.name)}-*"):
         with suppress(Timeout, OSError):  # somebody works there, or clears it too
             if (left / LOCK).exists():
                 with FileLock(left / LOCK, timeout=0):
