@@ -131,3 +131,8 @@ def test_an_existing_file_is_kept_unless_it_may_be_replaced(model, model_file):
     with pytest.raises(tpss.ApproximatorError, match="exists"):
         model.save(model_file)
     model.save(model_file, force=True)
+
+
+def test_a_name_that_no_file_can_have_is_told(model):
+    with pytest.raises(tpss.ApproximatorError, match="cannot be written: File name too long"):
+        model.save("x" * 300)

@@ -244,11 +244,11 @@ def check_target(path: Path, force: bool) -> None:
     ------
     ApproximatorError
     """
-    if path.is_dir():
-        raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
-    if path.exists() and not force:
-        raise ApproximatorError(f"{path} exists; {ANOTHER}, or --force to replace it")
     with _unwritable(path):
+        if path.is_dir():
+            raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
+        if path.exists() and not force:
+            raise ApproximatorError(f"{path} exists; {ANOTHER}, or --force to replace it")
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from tpss.cli.labels import demand_fitting, labels
+from tpss.cli.terminal import tell
 from tpss.extras import demand
 from tpss.results.contents import REPORT
 
@@ -56,4 +57,4 @@ def report_results(
     title, project, author, remarks = ((cover or {}).get(name, "") for name in COVER)
     page = Cover(title, project, author, remarks) if cover else None
     file = write_report(shown, out or own, force=force, corridor=corridor, cover=page)
-    print(f"Wrote {file}")
+    tell(f"Wrote {file}")
