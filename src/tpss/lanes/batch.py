@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from tpss.lanes import functions  # noqa: F401  which gives what kernels call
 from tpss.lanes.records import LaneArray, join, new_lanes, part, words_of
 from tpss.lanes.state import join_model, join_state, word_of
 from tpss.lanes.step import End, Kept, Rows, run_together

@@ -42,6 +42,11 @@ def lanes_folder() -> Path:
     return folder
 
 
+def are_compiled() -> bool:
+    """Whether compiled kernels of lanes exist, of exactly this source."""
+    return any(lanes_folder().rglob("*.run_together-*.nbi"))
+
+
 def compiled(fused: bool) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function of lanes that is written by hand."""
     return lambda function: compiled_into(lanes_folder(), function, fused)

@@ -262,13 +262,13 @@ class Converter(Expressions):
         ]
         if fast := self._way_out(statement, condition):
             made += fast
+        made += self._introduce(statement.body + statement.orelse)
         for mask, body in ((yes, statement.body), (no, statement.orelse)):
             if not body:
                 continue
             if mask == no:
                 rest = call("negated", name(condition))
                 made.append(set_to(no, call("both", self.mask(), rest)))
-            made += self._introduce(body)
             before = set(self.known)
             made += self.under(mask, body)
             self.known = before

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from enum import EnumMeta
 from typing import Any
 
-from tpss.lanes.known import DECIDED, DECIDED_CALLS, SAME_ARRAYS, SAME_FIELDS
+from tpss.lanes.known import DECIDED, SAME_ARRAYS, SAME_FIELDS
 
 
 def name(of: str) -> ast.Name:
@@ -179,8 +179,8 @@ class Expressions(ast.NodeTransformer):
             for decided, value in DECIDED.items():
                 if text == decided or text.endswith(f".{decided}"):
                     return ast.Constant(value)
-        if isinstance(test, ast.Call) and (function := ast.unparse(test.func)) in DECIDED_CALLS:
-            return ast.Constant(DECIDED_CALLS[function])
+        if isinstance(test, ast.Call) and (function := ast.unparse(test.func)) in DECIDED:
+            return ast.Constant(DECIDED[function])
         if isinstance(test, ast.Call) and hasattr(found := self._called(test.func), "without"):
             return self._fold_without(found.without, test)
         if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):

@@ -1,32 +1,181 @@
-"""What is decided in all cases that lanes cover."""
-SAME_PARAMETERS = {"derivatives", "start", "with_slopes", "step", "step_s", "s", "n", "i", "warm", "scale", "number"}
-SAME_FIELDS = {"size", "shape", "kind", "reactive_model", "voltage_model", "current_model", "profile",
-  "efficiency.points","efficiency.first","curve.points","curve.first","adhesion.points","power_factor.points", "train_type","route","leg", "start_node","end_node","block_aa","block_ab","block_ba","block_bb",
-  "node","upper","lower","pivot.first","pivot.end","update", "update", "first_section","end_section","line","controlled","installed",
-  "options.step_s","options.mean_power","options.mean_gradient","options.adhesion_in_km_h","options.rail","options.driver","options.braking","options.motion","options.slope_change",
-  "control.fixed_voltage_v","control.studied_train","network.tolerance", "place.train"}
-SAME_ARRAYS = {"shape","source_of_node","places","row_start"}
+"""What lanes cover: the one place that says it.
+
+A rule tells what is so of every case that lanes cover, and which conditions of the kernels that decides.
+The conversion leaves out what hangs on these, so a case for which a rule does not hold runs alone.
+Numbers that are the same in all cases of a batch stand here too: by them kernels may branch.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tpss.driving.data import Braking, MotionModel
+from tpss.powerflow.following import FOLLOWS
+from tpss.powerflow.network import UNFED, Network
+from tpss.run.start import Start
+from tpss.sources.kinds import SourceKind
+from tpss.step.separation import Separation
+from tpss.vehicle.effort.kinds import EffortKind
+
+
+def _is_single(network: Network) -> bool:
+    """Whether a network has no part that most lack; see `kernel.where_any`."""
+    parts = (network.groups, network.links, network.bundles, network.shared)
+    return all(part == () for part in parts)
+
+
+class Rule(NamedTuple):
+    """Something that is so of every case that lanes cover."""
+
+    words: str
+    holds: Callable[[Start], bool]
+    decides: Mapping[str, bool]
+    """Conditions as they stand in kernels, or functions of one, and what they are then."""
+
+
+def _types(start: Start) -> Any:
+    return np.asarray(start.model.types)
+
+
+RULES = (
+    Rule(
+        "trains move in steps",
+        lambda start: start.model.options.motion == MotionModel.STEPPED,
+        {
+            "options.motion == MotionModel.CONTINUOUS": False,
+            "decision.course == Course.PASSAGE": False,
+            "decision.course != Course.PASSAGE": True,
+        },
+    ),
+    Rule(
+        "trains brake in whole steps",
+        lambda start: start.model.options.braking == Braking.WHOLE_STEPS,
+        {"options.braking == Braking.WITHIN_STEP": False, "brakes_within_step": False},
+    ),
+    Rule(
+        "all trains have one type and one route, along one line",
+        lambda start: (
+            len(start.model.types) == 1
+            and start.model.legs.shape == (1, 1)
+            and len(start.model.stops) == 1
+        ),
+        {},
+    ),
+    Rule(
+        "trains do not look out for each other",
+        lambda start: start.model.signalling.separation == Separation.NONE,
+        {"signalling.separation != Separation.NONE": False},
+    ),
+    Rule(
+        "trains always have power",
+        lambda start: start.model.neutral.from_m.shape[1] == 1,
+        {"without_power_s.shape[0] > 0": False},
+    ),
+    Rule(
+        "a network gives the effort of motors, and nothing limits the line current",
+        lambda start: bool(
+            (_types(start)["effort"]["kind"] == EffortKind.NETWORK).all()
+            and np.isinf(_types(start)["line_current"]["highest_current_a"]).all()
+        ),
+        {
+            "effort.kind == EffortKind.NETWORK": True,
+            "effort.kind == EffortKind.TABLE": False,
+            "effort.kind == EffortKind.LIMITS": False,
+            "line_current.highest_current_a < math.inf": False,
+        },
+    ),
+    Rule(
+        "no electric brakes, no stores, no efficiency that follows the load",
+        lambda start: bool(
+            (_types(start)["regeneration"]["highest_force_n"] <= 0.0).all()
+            and (_types(start)["over_load"]["count"] == 0).all()
+            and not start.model.control.has_stores
+            and len(start.model.network.stores) == 0
+        ),
+        {
+            "asks_more": False,
+            "has_store": False,
+            "control.has_stores": False,
+            "stores.size > 0": False,
+            "over_load.count > 0": False,
+            "works_beyond_loads": False,
+            "regeneration.shape[0] > 0": False,
+        },
+    ),
+    Rule(
+        "no law of somebody's own, no driver who spares motors",
+        lambda start: bool(
+            (_types(start)["own_resistance"]["address"] == 0).all()
+            and (_types(start)["driver"]["address"] == 0).all()
+            and not start.model.control.spares_motors
+        ),
+        {"own_resistance.address != 0": False, "driver.address != 0": False},
+    ),
+    Rule(
+        "every station has converters of one law, and feeds at all times",
+        lambda start: bool(
+            (np.asarray(start.model.network.sources)["kind"] == SourceKind.CONVERTER).all()
+            and not start.relays
+            and not start.switchings
+        ),
+        {
+            "source.kind == SourceKind.CONVERTER": True,
+            "source.kind == SourceKind.GRID": False,
+            "source.kind == SourceKind.MIXED": False,
+            "source.kind == SourceKind.BOUNDED": False,
+            "source.kind == SourceKind.RECTIFIER": False,
+            "source.kind == SourceKind.OWN": False,
+        },
+    ),
+    Rule(
+        "conductors are single, and every node is fed and stands for itself",
+        lambda start: bool(
+            _is_single(start.model.network)
+            and (start.model.network.source_of_node > max(UNFED, FOLLOWS)).all()
+        ),
+        {
+            "s == UNFED": False,
+            "source_of_node[at(n)] == UNFED": False,
+            "s <= FOLLOWS": False,
+            "is_unfed": False,
+            "clock[0].unfed > 0": False,
+        },
+    ),
+    Rule(
+        "voltages come of a load flow",
+        lambda start: start.model.control.fixed_voltage_v <= 0.0,
+        {"fixed_voltage_v <= 0.0": True, "fixed_v > 0.0": False},
+    ),
+)  # fmt: skip
+"""What is so of every case that lanes cover."""
+
 DECIDED = {
- "options.motion == MotionModel.CONTINUOUS": False,
- "decision.course == Course.PASSAGE": False,
- "decision.course != Course.PASSAGE": True,
- "stores.size > 0": False,
- "control.has_stores": False,
- "effort.kind == EffortKind.NETWORK": True,
- "effort.kind == EffortKind.TABLE": False,
- "effort.kind == EffortKind.LIMITS": False,
- "line_current.highest_current_a < math.inf": False,
- "s == UNFED": False, "source_of_node[at(n)] == UNFED": False,
- "studied >= 0": False, "clock[0].unfed > 0": False, "fixed_voltage_v <= 0.0": True, "fixed_v > 0.0": False,
- "shape[0] > 0": False, "driver.address != 0": False, "own_resistance.address != 0": False, "over_load.count > 0": False,
- "address != 0": False, "options.braking == Braking.WITHIN_STEP": False,
- "signalling.separation != Separation.NONE": False,
- "s <= FOLLOWS": False,
- "source.kind == SourceKind.GRID": False,
- "source.kind == SourceKind.MIXED": False,
- "source.kind == SourceKind.BOUNDED": False,
- "source.kind == SourceKind.RECTIFIER": False,
- "source.kind == SourceKind.OWN": False,
- "source.kind == SourceKind.CONVERTER": True,
+    "studied >= 0": False,  # the studied train is looked after by `lanes.step`
+    **{condition: value for rule in RULES for condition, value in rule.decides.items()},
 }
-DECIDED_CALLS = {"asks_more": False, "is_unfed": False, "brakes_within_step": False, "has_store": False, "works_beyond_loads": False}
+"""Conditions of kernels that are decided, and what they are."""
+
+SAME_PARAMETERS = frozenset({
+    "derivatives", "start", "with_slopes", "warm", "step", "step_s", "time_s", "scale", "number", "s", "n",
+    "i",
+})  # fmt: skip
+"""Parameters of kernels that are the same in all cases of a batch."""
+
+SAME_FIELDS = frozenset({
+    "size", "shape", "kind", "reactive_model", "voltage_model", "current_model", "profile", "train_type",
+    "route", "leg", "place.train", "efficiency.points", "efficiency.first", "adhesion.points",
+    "power_factor.points", "curve.points", "curve.first", "start_node", "end_node", "block_aa", "block_ab",
+    "block_ba", "block_bb", "node", "upper", "lower", "pivot.first", "pivot.end", "update", "controlled",
+    "installed", "line", "tolerance", "options.step_s", "options.mean_power", "options.mean_gradient",
+    "options.adhesion_in_km_h", "options.rail", "options.driver", "control.studied_train",
+})  # fmt: skip
+"""Fields of which the same holds, by the last part of what they are fields of where that matters."""
+
+SAME_ARRAYS = frozenset({"shape", "source_of_node", "places", "row_start"})
+"""Arrays of which the same holds."""
+
+
+def not_covered(start: Start) -> list[str]:
+    """What is so of all cases that lanes cover, but not of this one; none: it is covered."""
+    return [rule.words for rule in RULES if not rule.holds(start)]

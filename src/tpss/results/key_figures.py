@@ -130,6 +130,8 @@ class KeyFigures:
     limited : dict of str to int
         What was limited or left its range, counted in train-steps.
     audit : Audit
+    way : str
+        How the run was made: ``alone``, or in ``lanes`` with others, see `tpss.lanes`.
     """
 
     name: str
@@ -157,6 +159,7 @@ class KeyFigures:
     most_passes: int
     limited: dict[str, int]
     audit: Audit
+    way: str = "alone"
 
     @cached_property
     def total_energy_mwh(self) -> float:
@@ -241,6 +244,11 @@ def run_for_figures(
         The recording would not fit into memory.
     """
     run, status = run_to_end(start, clock, memory, report, interrupted)
+    return figures_of(run, status, start, frame)
+
+
+def figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
+    """All key figures of a run that has ended with a status."""
     figures = key_figures_of(run, status, start, frame)
     if frame.rated is not None and run.step:
         figures = replace(figures, thermal=thermal_figures(run, frame.rated))
