@@ -5,7 +5,6 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from dataclasses import replace
 from functools import partial
 from itertools import islice
 from typing import Any, TypeVar
@@ -18,9 +17,8 @@ from tpss.lanes.compile import are_compiled
 from tpss.lanes.known import not_covered
 from tpss.lanes.structure import structure_of
 from tpss.lanes.types import LANES
-from tpss.results.key_figures import KeyFigures, figures_of, run_for_figures
+from tpss.results.key_figures import KeyFigures, run_for_figures
 from tpss.scenario.scenario import Scenario
-from tpss.step.advance import advance
 from tpss.step.state import Floats
 
 _Item = TypeVar("_Item")
@@ -175,22 +173,15 @@ def _steps(built: Future[Prepared]) -> int:
 
 def _structure(case: Prepared) -> Any:
     """What cases that run together have in common; None: lanes do not cover this one."""
-    if case.clock is not advance or not_covered(case.start):
-        return None
-    return structure_of(case.start)
+    return None if not_covered(case) else structure_of(case)
 
 
 def _figures_together(cases: Sequence[Prepared]) -> list[KeyFigures]:
-    """Key figures of cases of one structure."""
-    from tpss.lanes.batch import run_batch  # takes seconds to convert the kernels
+    """Key figures of cases of one structure, of those that leave the others too."""
+    from tpss.lanes.batch import figures_together  # which takes seconds to convert the kernels
 
-    ended = run_batch([case.start for case in cases], cases[0].clock, _scratch().allocate)
-    return [
-        replace(
-            figures_of(run, status, case.start, case.frame), way="lanes" if in_lanes else "alone"
-        )
-        for case, (run, status, in_lanes) in zip(cases, ended, strict=True)
-    ]
+    found = figures_together(cases)
+    return [key_figures(case) if each is None else each for case, each in zip(cases, found, strict=True)]
 
 
 def key_figures(scenario: Scenario | Prepared) -> KeyFigures:

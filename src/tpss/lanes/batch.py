@@ -1,145 +1,188 @@
-"""Runs of like cases, eight at a time; each ends as it would have ended alone."""
+"""Runs of like cases, eight at a time: their key figures, without a recording."""
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tpss.lanes import functions  # noqa: F401  which gives what kernels call
+from tpss.api import Prepared
+from tpss.audit.aggregate import Figures, TrainFigures, conclude_audit, gather, new_figures
+from tpss.kernel import plain
+from tpss.lanes.places import Rows
 from tpss.lanes.records import LaneArray, join, new_lanes, part, words_of
-from tpss.lanes.state import join_model, join_state, word_of
-from tpss.lanes.step import End, Kept, Rows, run_together
+from tpss.lanes.state import join_model, join_state
+from tpss.lanes.step import End, Together, run_together
 from tpss.lanes.types import LANES
 from tpss.record import Records
-from tpss.run.protection import run_to_end
-from tpss.run.run import STATUS_NAME, Clock, Run, run_of
-from tpss.run.start import Start
+from tpss.results.key_figures import KeyFigures, key_figures_of
+from tpss.results.standards.useful_voltage import window_steps
+from tpss.run.run import STATUS_NAME, Run
 from tpss.step.recorded import NodeRow, StationRow, TrainRow
-from tpss.step.recording import Memory, Recording
-from tpss.step.state import State, Status
-from tpss.vehicle.train import Train
+from tpss.step.recording import Recording
+from tpss.step.state import Status
 
 FIRST = 1
 """Steps that each case makes alone: the load flow of the first one knows of none before it."""
 
 
-def run_batch(
-    starts: Sequence[Start], clock: Clock, memory: Memory = np.empty
-) -> list[tuple[Run, str, bool]]:
-    """Run cases together; each one's run, its status, and whether it was made in lanes.
+OPEN = 1 << 40
+"""More steps than any run has."""
+
+
+class Begun(NamedTuple):
+    """A case that has made its first step."""
+
+    case: Prepared
+    run: Run
+    figures: Figures
+    window: tuple[int, int]
+    """Bounds of the peak window, in steps, as if it were covered."""
+
+
+def figures_together(cases: Sequence[Prepared]) -> list[KeyFigures | None]:
+    """Key figures of cases that run together; None of one that has to run alone.
 
     Parameters
     ----------
-    starts : sequence of Start
+    cases : sequence of Prepared
         As many as there are lanes at most, of one structure that lanes cover.
-    clock : callable
-        Runs the steps of those that have to run alone.
-    memory : callable, optional
-        Allocates the recordings.
     """
-    runs = [run_of(start, clock, memory) for start in starts]
-    for run in runs:
-        run.advance_to(FIRST)
-    if any(run.status != Status.RUNNING or run.step != FIRST for run in runs):
-        together = [False] * len(runs)
-    else:
-        together = _advance(runs, starts)
-    ended = []
-    for run, start, done in zip(runs, starts, together, strict=True):
-        if done:
-            ended.append((run, STATUS_NAME[Status.FINISHED], True))
-        else:
-            ended.append((*run_to_end(start, clock, memory), False))
-    return ended
+    begun = [_begin(case) for case in cases]
+    going = [each for each in begun if each.run.status == Status.RUNNING and each.run.step == FIRST]
+    if not going:
+        return [None] * len(cases)
+    lanes = [going[min(lane, len(going) - 1)] for lane in range(LANES)]
+    together = _join(lanes)
+    run_together(FIRST, min(each.case.start.capacity for each in lanes), together)
+    found: dict[int, KeyFigures | None] = {}
+    for lane, each in enumerate(going):
+        found[id(each)] = _end(lane, each, together)
+    return [found.get(id(each)) for each in begun]
 
 
-def _advance(runs: list[Run], starts: Sequence[Start]) -> list[bool]:
-    """Advance runs to their ends; whether each has come to it."""
-    lanes = [runs[min(lane, len(runs) - 1)] for lane in range(LANES)]
-    last = min(run.capacity for run in runs)
-    model = join_model([run.model for run in lanes])
-    state, numbers = join_state([run.state for run in lanes])
-    recording, rows = _one_row(lanes, state, numbers, last)
-    studied = [run.model.control.studied_train for run in lanes]
-    ends = join([End.array([(FIRST, Status.RUNNING, each)]) for each in studied])
-    position, speed = (word_of(Train.dtype, "motion", each) for each in ("position_m", "speed_m_s"))
-    run_together(
-        FIRST, last, position, speed, model, state, recording, numbers, rows, _kept(lanes), ends
-    )
-    return [
-        _end(lane, run, start.steps == last, state, numbers, recording, ends)
-        for lane, (run, start) in enumerate(zip(runs, starts, strict=True))
+def _begin(case: Prepared) -> Begun:
+    """Let a case make its first step, and gather its figures."""
+    start, frame = case.start, case.frame
+    run = Run(start.model, start.trains, FIRST, case.clock, start.records, turns=start.turns)
+    run.advance_to(FIRST)
+    figures = new_figures(run.model, len(run.trains), frame.zones)
+    h = run.model.options.step_s
+    peak = window_steps(OPEN, h, frame.peak_from_min, frame.peak_to_min)
+    window = (0, 0) if peak is None else (peak.start, peak.stop)
+    gather(
+        0, FIRST, FIRST + 1, h, *window, frame.at_line_level, run.state.trains, run.model,
+        run.recording, figures,
+    )  # fmt: skip
+    figures.run[0].passes = figures.run[0].most_passes = run.recording.passes[0]
+    return Begun(case, run, figures, window)
+
+
+def _join(lanes: list[Begun]) -> Together:
+    runs = [each.run for each in lanes]
+    model = join_model([run.model for run in runs])
+    state, numbers = join_state([run.state for run in runs])
+    figures, rows = _join_figures(lanes, numbers)
+    recording, interval = _recordings(runs, numbers)
+    ends = [
+        End.array([(FIRST, Status.RUNNING, each.run.model.control.studied_train, *each.window)])
+        for each in lanes
     ]
+    trains: Any = state.trains
+    at_line_level = lanes[0].case.frame.at_line_level
+    return Together(
+        model, state, numbers, recording, interval, figures, at_line_level, join(ends),
+        Rows(trains.words, numbers.words, rows.words),
+    )  # fmt: skip
 
 
-def _one_row(
-    lanes: list[Run], state: State, numbers: LaneArray, last: int
-) -> tuple[Recording, Rows]:
-    """A recording of lanes, whose rows are all one that each step overwrites; and that as words."""
-    kept = lanes[0].recording
-    trains = numbers.shape[0]
-    made = {
-        "trains": new_lanes(TrainRow.dtype, (trains,)),
-        "train_state": new_lanes(np.int64, (trains,)),
-        "nodes": new_lanes(NodeRow.dtype, kept.nodes.shape[1:]),
-        "stations": new_lanes(StationRow.dtype, kept.stations.shape[1:]),
-        "branch_current": new_lanes(np.float64, kept.branch_current.shape[1:]),
+def _join_figures(lanes: list[Begun], numbers: LaneArray) -> tuple[Figures, LaneArray]:
+    """Figures in lanes, and those of the trains, in the order of these."""
+    count = numbers.shape[0]
+    trains = new_lanes(TrainFigures.dtype, (count,))
+    for lane, each in enumerate(lanes):
+        order = numbers.words[:, 0, lane]
+        known = order >= 0
+        trains.words[known, :, lane] = words_of(each.figures.trains)[order[known]]
+    whole: Any = {
+        name: join([getattr(each.figures, name) for each in lanes], same)
+        for name, same in (("run", ()), ("stations", ()), ("zones", ("line",)))
     }
-    single = {
+    first = lanes[0].figures.audit
+    scratch: Any = {
+        "balances": join([each.figures.audit.balances for each in lanes]),
+        "leaving_a": new_lanes(np.complex128, first.leaving_a.shape),
+        "node_v": new_lanes(np.complex128, first.node_v.shape),
+        "order": join([np.arange(count)] * LANES),
+        "section": new_lanes(np.int64, (count,)),
+        "place_m": new_lanes(np.float64, (count,)),
+    }
+    figures: Any = Figures(**whole, trains=trains, audit=first._replace(**scratch))
+    return figures, trains
+
+
+def _recordings(runs: list[Run], numbers: LaneArray) -> tuple[Recording, Recording]:
+    """A recording of the interval and of the instant behind it; and one that writes to the first."""
+    kept, trains = runs[0].recording, numbers.shape[0]
+    interval: Any = {
+        "trains": new_lanes(TrainRow.dtype, (2, trains)),
+        "train_state": new_lanes(np.int64, (2, trains)),
+        "nodes": new_lanes(NodeRow.dtype, (1, kept.nodes.shape[1])),
+        "stations": new_lanes(StationRow.dtype, (1, kept.stations.shape[1])),
+        "branch_current": new_lanes(np.float64, (1, kept.branch_current.shape[1])),
         "network_losses": new_lanes(np.float64, (1,)),
         "passes": new_lanes(np.int64, (1,)),
+        "counters": join([run.recording.counters for run in runs]),
     }
-    whole: Any = {
-        name: np.broadcast_to(row, (last + 1, *row.shape), subok=True) for name, row in made.items()
-    } | {name: np.broadcast_to(row, (last + 1,), subok=True) for name, row in single.items()}
-    counters: Any = join([run.recording.counters for run in lanes])
-    recording = kept._replace(**whole, counters=counters)
-    words = {name: row.words for name, row in (made | single).items()}
-    motion: Any = state.trains
-    return recording, Rows(**words, motion=motion.words, numbers=numbers.words)
-
-
-def _kept(lanes: list[Run]) -> Kept:
-    """The cases' recordings as words."""
-
-    def of(name: str) -> tuple[Any, ...]:
-        return tuple(
-            words_of(getattr(run.recording, name)) for run in lanes
-        )
-
-    def plain(name: str) -> tuple[Any, ...]:
-        return tuple(getattr(run.recording, name).view(np.int64) for run in lanes)
-
-    return Kept(
-        trains=of("trains"),
-        train_state=tuple(run.recording.train_state for run in lanes),
-        nodes=of("nodes"),
-        stations=of("stations"),
-        branch_current=plain("branch_current"),
-        network_losses=plain("network_losses"),
-        passes=plain("passes"),
+    written: Any = {
+        name: np.broadcast_to(array[:1], (OPEN, *array.shape[1:]), subok=True)
+        for name, array in interval.items()
+        if name != "counters"
+    }
+    return (
+        kept._replace(**written, counters=interval["counters"]),
+        kept._replace(**interval),
     )
 
 
-def _end(
-    lane: int, run: Run, is_last: bool, state: State, numbers: LaneArray, recording: Recording,
-    ends: LaneArray,
-) -> bool:  # fmt: skip
-    """Give a run its end in lanes; whether it has come to that there."""
+def _end(lane: int, begun: Begun, together: Together) -> KeyFigures | None:
+    """Key figures of a case, if it has come to its end in lanes."""
+    case, run, figures = begun.case, begun.run, begun.figures
     end: Records[End] = End.blank(1)
-    part(ends, lane, end)
+    part(together.ends, lane, end)
     status = Status(end[0].status)
-    if status == Status.RUNNING and is_last:
+    if status == Status.RUNNING and end[0].step == case.start.steps:
         status = Status.FINISHED
     if status != Status.FINISHED:
-        return False
+        return None
     run.step, run.status = int(end[0].step), status
-    trains: Any = state.trains
-    of_lane = numbers.words[:, 0, lane]
-    known = of_lane >= 0
-    words_of(run.state.trains)[of_lane[known]] = trains.words[known][:, :, lane]
-    clock: Any = state.clock
-    part(clock, lane, run.state.clock)
-    counters: Any = recording.counters
-    part(counters, lane, run.recording.counters.reshape(-1, 1)[:, 0])
-    return True
+    order = together.numbers.words[:, 0, lane]
+    known = order >= 0
+    for whole, own in ((together.state.trains, run.state.trains),
+                       (together.figures.trains, figures.trains)):  # fmt: skip
+        words_of(own)[order[known]] = whole.words[known][:, :, lane]
+    for whole, own in (
+        (together.state.clock, run.state.clock),
+        (together.interval.counters, run.recording.counters),
+        (together.figures.run, figures.run),
+        (together.figures.stations, figures.stations),
+        (together.figures.zones, figures.zones),
+        (together.figures.audit.balances, figures.audit.balances),
+    ):
+        part(whole, lane, own)
+    _conclude(begun)
+    found = key_figures_of(run, STATUS_NAME[status], case.start, case.frame, figures)
+    return replace(found, way="lanes")
+
+
+def _conclude(begun: Begun) -> None:
+    """What the figures of a whole run need besides those of its steps."""
+    run, frame, figures = begun.run, begun.case.frame, begun.figures
+    h = run.model.options.step_s
+    for name in ("energy_j", "reactive_j"):
+        figures.stations[name] *= h
+    if window_steps(run.step, h, frame.peak_from_min, frame.peak_to_min) is None:
+        for name in ("useful_steps", "pulling_steps", "pulling_voltage_v"):
+            figures.trains[name] = 0
+        figures.zones["steps"], figures.zones["voltage_v"] = 0, 0.0
+    plain(conclude_audit)(run.step, run.model, figures.audit)

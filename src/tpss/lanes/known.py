@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tpss.api import Prepared
 from tpss.driving.data import Braking, MotionModel
 from tpss.powerflow.following import FOLLOWS
 from tpss.powerflow.network import UNFED, Network
-from tpss.run.start import Start
 from tpss.sources.kinds import SourceKind
+from tpss.step.advance import advance
 from tpss.step.separation import Separation
 from tpss.vehicle.effort.kinds import EffortKind
 
@@ -29,19 +30,19 @@ class Rule(NamedTuple):
     """Something that is so of every case that lanes cover."""
 
     words: str
-    holds: Callable[[Start], bool]
+    holds: Callable[[Prepared], bool]
     decides: Mapping[str, bool]
     """Conditions as they stand in kernels, or functions of one, and what they are then."""
 
 
-def _types(start: Start) -> Any:
-    return np.asarray(start.model.types)
+def _types(case: Prepared) -> Any:
+    return np.asarray(case.start.model.types)
 
 
 RULES = (
     Rule(
         "trains move in steps",
-        lambda start: start.model.options.motion == MotionModel.STEPPED,
+        lambda case: case.start.model.options.motion == MotionModel.STEPPED,
         {
             "options.motion == MotionModel.CONTINUOUS": False,
             "decision.course == Course.PASSAGE": False,
@@ -50,33 +51,33 @@ RULES = (
     ),
     Rule(
         "trains brake in whole steps",
-        lambda start: start.model.options.braking == Braking.WHOLE_STEPS,
+        lambda case: case.start.model.options.braking == Braking.WHOLE_STEPS,
         {"options.braking == Braking.WITHIN_STEP": False, "brakes_within_step": False},
     ),
     Rule(
         "all trains have one type and one route, along one line",
-        lambda start: (
-            len(start.model.types) == 1
-            and start.model.legs.shape == (1, 1)
-            and len(start.model.stops) == 1
+        lambda case: (
+            len(case.start.model.types) == 1
+            and case.start.model.legs.shape == (1, 1)
+            and len(case.start.model.stops) == 1
         ),
         {},
     ),
     Rule(
         "trains do not look out for each other",
-        lambda start: start.model.signalling.separation == Separation.NONE,
+        lambda case: case.start.model.signalling.separation == Separation.NONE,
         {"signalling.separation != Separation.NONE": False},
     ),
     Rule(
         "trains always have power",
-        lambda start: start.model.neutral.from_m.shape[1] == 1,
-        {"without_power_s.shape[0] > 0": False},
+        lambda case: case.start.model.neutral.from_m.shape[1] == 1,
+        {"without_power_s.shape[0] > 0": False, "off_s.shape[0] > 0": False},
     ),
     Rule(
         "a network gives the effort of motors, and nothing limits the line current",
-        lambda start: bool(
-            (_types(start)["effort"]["kind"] == EffortKind.NETWORK).all()
-            and np.isinf(_types(start)["line_current"]["highest_current_a"]).all()
+        lambda case: bool(
+            (_types(case)["effort"]["kind"] == EffortKind.NETWORK).all()
+            and np.isinf(_types(case)["line_current"]["highest_current_a"]).all()
         ),
         {
             "effort.kind == EffortKind.NETWORK": True,
@@ -87,11 +88,11 @@ RULES = (
     ),
     Rule(
         "no electric brakes, no stores, no efficiency that follows the load",
-        lambda start: bool(
-            (_types(start)["regeneration"]["highest_force_n"] <= 0.0).all()
-            and (_types(start)["over_load"]["count"] == 0).all()
-            and not start.model.control.has_stores
-            and len(start.model.network.stores) == 0
+        lambda case: bool(
+            (_types(case)["regeneration"]["highest_force_n"] <= 0.0).all()
+            and (_types(case)["over_load"]["count"] == 0).all()
+            and not case.start.model.control.has_stores
+            and len(case.start.model.network.stores) == 0
         ),
         {
             "asks_more": False,
@@ -101,23 +102,24 @@ RULES = (
             "over_load.count > 0": False,
             "works_beyond_loads": False,
             "regeneration.shape[0] > 0": False,
+            "on_board.shape[0] > 0": False,
         },
     ),
     Rule(
         "no law of somebody's own, no driver who spares motors",
-        lambda start: bool(
-            (_types(start)["own_resistance"]["address"] == 0).all()
-            and (_types(start)["driver"]["address"] == 0).all()
-            and not start.model.control.spares_motors
+        lambda case: bool(
+            (_types(case)["own_resistance"]["address"] == 0).all()
+            and (_types(case)["driver"]["address"] == 0).all()
+            and not case.start.model.control.spares_motors
         ),
         {"own_resistance.address != 0": False, "driver.address != 0": False},
     ),
     Rule(
         "every station has converters of one law, and feeds at all times",
-        lambda start: bool(
-            (np.asarray(start.model.network.sources)["kind"] == SourceKind.CONVERTER).all()
-            and not start.relays
-            and not start.switchings
+        lambda case: bool(
+            (np.asarray(case.start.model.network.sources)["kind"] == SourceKind.CONVERTER).all()
+            and not case.start.relays
+            and not case.start.switchings
         ),
         {
             "source.kind == SourceKind.CONVERTER": True,
@@ -130,9 +132,9 @@ RULES = (
     ),
     Rule(
         "conductors are single, and every node is fed and stands for itself",
-        lambda start: bool(
-            _is_single(start.model.network)
-            and (start.model.network.source_of_node > max(UNFED, FOLLOWS)).all()
+        lambda case: bool(
+            _is_single(case.start.model.network)
+            and (case.start.model.network.source_of_node > max(UNFED, FOLLOWS)).all()
         ),
         {
             "s == UNFED": False,
@@ -143,8 +145,18 @@ RULES = (
         },
     ),
     Rule(
-        "voltages come of a load flow",
-        lambda start: start.model.control.fixed_voltage_v <= 0.0,
+        "all key figures follow from the figures of steps",
+        lambda case: (
+            case.frame.rated is None
+            and case.frame.apart is None
+            and not case.frame.feeds_back
+            and not any(side.is_described or side.no_load_w for side in case.frame.sides)
+        ),
+        {},
+    ),
+    Rule(
+        "the load flow is the usual one",
+        lambda case: case.clock is advance and case.start.model.control.fixed_voltage_v <= 0.0,
         {"fixed_voltage_v <= 0.0": True, "fixed_v > 0.0": False},
     ),
 )  # fmt: skip
@@ -176,6 +188,6 @@ SAME_ARRAYS = frozenset({"shape", "source_of_node", "places", "row_start"})
 """Arrays of which the same holds."""
 
 
-def not_covered(start: Start) -> list[str]:
+def not_covered(case: Prepared) -> list[str]:
     """What is so of all cases that lanes cover, but not of this one; none: it is covered."""
-    return [rule.words for rule in RULES if not rule.holds(start)]
+    return [rule.words for rule in RULES if not rule.holds(case)]

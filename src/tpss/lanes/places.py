@@ -5,9 +5,10 @@ of that case change places, which happens seldom.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
-from tpss.lanes.compile import compiled, lane_version
+from tpss.audit.network import sort_trains
+from tpss.lanes.compile import by_hand, compiled, lane_version
 from tpss.lanes.masks import (
     anyone,
     as_lane_int,
@@ -24,6 +25,14 @@ from tpss.lanes.masks import (
 from tpss.lanes.types import LANES
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.vehicle.train import is_on_line
+
+class Rows(NamedTuple):
+    """What lies in the order of the trains, as words, lanes last."""
+
+    trains: Any
+    numbers: Any
+    figures: Any
+
 
 _is_on_line = lane_version(is_on_line)[0]
 
@@ -49,24 +58,22 @@ def count_in_order(trains: Any, legs: Any, standing: Any) -> tuple[Any, Any]:
 
 
 @compiled(fused=False)
-def swap(lane: int, a: int, b: int, words: Any, numbers: Any) -> None:
+def swap(lane: int, a: int, b: int, words: Any) -> None:
     """Let two rows of a case change places."""
     for w in range(words.shape[1]):
         words[a, w, lane], words[b, w, lane] = words[b, w, lane], words[a, w, lane]
-    numbers[a, 0, lane], numbers[b, 0, lane] = numbers[b, 0, lane], numbers[a, 0, lane]
 
 
 @compiled(fused=False)
-def put_in_order(lane: int, trains: Any, standing: Any, words: Any, numbers: Any) -> None:
+def put_in_order(lane: int, trains: Any, standing: Any, rows: Any) -> None:
     """Bring the trains on the line of one case to the front, in the order of their places."""
-    count = 0
+    count, numbers = 0, rows.numbers
     for k in range(trains.size):
         if lane_of(select(_is_on_line(trains[lane_at(k)].motion.phase), 1, 0), lane) == 0:
             continue
         here = k
         if k > count:
-            swap(lane, count, k, words, numbers)
-            exchange(lane, count, k, standing)
+            exchange(lane, count, k, standing, rows)
             here = count
         count += 1
         place_m = lane_of(standing[lane_at(here)].place_m, lane)
@@ -75,14 +82,16 @@ def put_in_order(lane: int, trains: Any, standing: Any, words: Any, numbers: Any
             behind = place_m == other_m and numbers[here, 0, lane] > numbers[here - 1, 0, lane]
             if place_m > other_m or behind:
                 break
-            swap(lane, here, here - 1, words, numbers)
-            exchange(lane, here, here - 1, standing)
+            exchange(lane, here, here - 1, standing, rows)
             here -= 1
 
 
 @compiled(fused=False)
-def exchange(lane: int, a: int, b: int, standing: Any) -> None:
-    """The same of two places."""
+def exchange(lane: int, a: int, b: int, standing: Any, rows: Any) -> None:
+    """Let two trains of a case change places, with all that is known of them."""
+    swap(lane, a, b, rows.trains)
+    swap(lane, a, b, rows.figures)
+    swap(lane, a, b, rows.numbers)
     here_m, there_m = standing[lane_at(a)].place_m, standing[lane_at(b)].place_m
     this = one_lane(lane)
     standing[lane_at(a)].place_m = select(this, lane_of(there_m, lane), here_m)
@@ -120,13 +129,38 @@ def measure(count: Any, network: Any, flow: Any) -> Any:
 
 
 @compiled(fused=False)
-def place_trains(model: Any, state: Any, words: Any, numbers: Any) -> Any:
+def place_trains(model: Any, state: Any, rows: Rows) -> Any:
     """`step.advance.place_trains`: the number of trains on the line."""
     flow = state.flow
     count, wrong = count_in_order(state.trains, model.legs, flow.standing)
     if anyone(wrong):
         for lane in range(LANES):
             if lane_of(select(wrong, 1, 0), lane) == 1:
-                put_in_order(lane, state.trains, flow.standing, words, numbers)
-    state.clock[0].short_pieces = measure(count, model.network, flow)
+                put_in_order(lane, state.trains, flow.standing, rows)
+    state.clock[lane_at(0)].short_pieces = measure(count, model.network, flow)
     return count
+
+
+@compiled(fused=False)
+def find_places(
+    step: int, _: Any, model: Any, recording: Any, scratch: Any
+) -> Any:
+    """`audit.network.sort_trains` of trains that are in their order: where they stand, and how many."""
+    count, last = as_lane_int(0), model.network.sections.size - 1
+    leg = model.legs[lane_at(0), lane_at(0)]
+    for k in range(scratch.order.size):
+        on_line = recording.train_state[lane_at(step), lane_at(k)] >= 0
+        if not anyone(on_line):
+            break
+        position_m = recording.trains[lane_at(step), lane_at(k)].route_position
+        place_m, section = leg.sign * position_m + leg.offset_m, as_lane_int(0)
+        for s in range(last):
+            beyond = place_m >= model.network.sections[lane_at(s)].end_m
+            section = section + select(beyond, 1, 0)
+        scratch.place_m[lane_at(k)] = place_m
+        scratch.section[lane_at(k)] = section
+        count = count + select(on_line, 1, 0)
+    return count
+
+
+by_hand[sort_trains] = find_places, False

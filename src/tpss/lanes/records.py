@@ -220,9 +220,16 @@ def _as(kind: Any, builder: Any, value: Any) -> Any:
     return builder.bitcast(value, WHOLES) if kind == LaneInt else value
 
 
-def _take(context: Any, builder: Any, typed: Any, data: Any, index: Any) -> Any:
-    """What of an array lies at an index of each lane."""
-    base = builder.bitcast(data, ir.IntType(8).as_pointer())
+def _take(context: Any, builder: Any, typed: Any, array: Any, index: Any) -> Any:
+    """What of an array lies at an index of each lane.
+
+    A lane that is left out may have any index: its is brought into the array.
+    """
+    naught, one = (ir.Constant(WHOLES, [n] * LANES) for n in (0, 1))
+    last = builder.sub(spread(builder, array.nitems, WHOLES), one)
+    index = builder.select(builder.icmp_signed(">", index, last), last, index)
+    index = builder.select(builder.icmp_signed("<", index, naught), naught, index)
+    base = builder.bitcast(array.data, ir.IntType(8).as_pointer())
     if not isinstance(typed, VaryingRecord):
         return _as(typed, builder, _gather(builder, base, index, LANES * WORD, 0))
     found = cgutils.create_struct_proxy(typed)(context, builder)
@@ -233,7 +240,7 @@ def _take(context: Any, builder: Any, typed: Any, data: Any, index: Any) -> Any:
 @lower_builtin(operator.getitem, types.Array, LaneIntType)
 def _get_varying(context: Any, builder: Any, typed: Any, values: Any) -> Any:
     array = make_array(typed.args[0])(context, builder, values[0])
-    return _take(context, builder, typed.return_type, array.data, values[1])
+    return _take(context, builder, typed.return_type, array, values[1])
 
 
 @lower_builtin(operator.getitem, types.Array, types.UniTuple)
@@ -244,7 +251,7 @@ def _get_varying_of_two(context: Any, builder: Any, typed: Any, values: Any) -> 
     row, column = cgutils.unpack_tuple(builder, values[1], 2)
     columns = spread(builder, cgutils.unpack_tuple(builder, array.shape, 2)[1], WHOLES)
     index = builder.add(builder.mul(row, columns), column)
-    return _take(context, builder, typed.return_type, array.data, index)
+    return _take(context, builder, typed.return_type, array, index)
 
 
 @infer_getattr

@@ -5,15 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from tpss.run.start import Start
+from tpss.api import Prepared
 
 
-def structure_of(start: Start) -> tuple[Any, ...]:
+
+def structure_of(case: Prepared) -> tuple[Any, ...]:
     """What has to be the same in all cases of a batch, to be compared.
 
     These are all whole numbers of a model (places, kinds, numbers of points), the shapes of its arrays,
     the choices of the simulation, and the number of steps if it is given.
     """
+    start, frame = case.start, case.frame
     model = start.model
     network = model.network
     records = (
@@ -22,6 +24,8 @@ def structure_of(start: Start) -> tuple[Any, ...]:
     plain = (*network.pattern, network.source_of_node)
     return (
         start.steps,
+        tuple(line for line, _, _ in frame.zones),
+        frame.at_line_level.tobytes(),
         model.options,
         model.control._replace(studied_train=0),
         network.system,

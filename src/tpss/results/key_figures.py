@@ -244,11 +244,6 @@ def run_for_figures(
         The recording would not fit into memory.
     """
     run, status = run_to_end(start, clock, memory, report, interrupted)
-    return figures_of(run, status, start, frame)
-
-
-def figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
-    """All key figures of a run that has ended with a status."""
     figures = key_figures_of(run, status, start, frame)
     if frame.rated is not None and run.step:
         figures = replace(figures, thermal=thermal_figures(run, frame.rated))
@@ -260,12 +255,24 @@ def figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
     return figures
 
 
-def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
+def key_figures_of(
+    run: Run, status: str, start: Start, frame: Frame, gathered: Figures | None = None
+) -> KeyFigures:
     """Key figures of a run that has ended with a status, but for those that take their time.
 
     These are `thermal` and `grid_and_rails`.
+
+    Parameters
+    ----------
+    run : Run
+    status : str
+        How it ended.
+    start : Start
+    frame : Frame
+    gathered : Figures, optional
+        Figures of its steps, where they were gathered as it ran; by default they are from its recording.
     """
-    figures = _gather(run, frame)
+    figures = _gather(run, frame) if gathered is None else gathered
     whole = _of_whole_run(figures)
     studied = start.studied if start.studied < run.departed else -1
     trip_min, speed_kmh = _studied_trip(run, studied, figures)
