@@ -11,7 +11,7 @@ from tpss.audit.aggregate import Figures, TrainFigures, conclude_audit, gather, 
 from tpss.kernel import plain
 from tpss.lanes.places import Rows
 from tpss.lanes.records import LaneArray, join, new_lanes, part, words_of
-from tpss.lanes.state import join_model, join_state
+from tpss.lanes.state import join_model, join_state, part_trains
 from tpss.lanes.step import End, Together, run_together
 from tpss.lanes.types import LANES
 from tpss.record import Records
@@ -156,11 +156,10 @@ def _end(lane: int, begun: Begun, together: Together) -> KeyFigures | None:
     if status != Status.FINISHED:
         return None
     run.step, run.status = int(end[0].step), status
+    part_trains(together.state.trains, together.numbers, lane, run.state.trains)
     order = together.numbers.words[:, 0, lane]
     known = order >= 0
-    for whole, own in ((together.state.trains, run.state.trains),
-                       (together.figures.trains, figures.trains)):  # fmt: skip
-        words_of(own)[order[known]] = whole.words[known][:, :, lane]
+    words_of(figures.trains)[order[known]] = together.figures.trains.words[:, :, lane][known]
     for whole, own in (
         (together.state.clock, run.state.clock),
         (together.interval.counters, run.recording.counters),

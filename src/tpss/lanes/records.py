@@ -152,8 +152,12 @@ def join(arrays: Iterable[Any], same: Iterable[str] = (), fill: float | None = N
         What stands in places that a smaller one lacks; by default zero.
     """
     given = list(arrays)
-    shape = tuple(max(sizes) for sizes in zip(*(each.shape for each in given), strict=True))
+    shapes = {each.shape for each in given}
+    shape = tuple(max(sizes) for sizes in zip(*shapes, strict=True))
     joined = new_lanes(given[0].dtype, shape, same)
+    if len(shapes) == 1:
+        np.stack([words_of(each) for each in given], axis=-1, out=joined.words)
+        return joined
     if fill is not None:
         joined.words.view(np.float64)[...] = fill
     for lane, each in enumerate(given):
@@ -163,9 +167,7 @@ def join(arrays: Iterable[Any], same: Iterable[str] = (), fill: float | None = N
 
 def part(array: LaneArray, lane: int, target: Any) -> None:
     """Write what an array of lanes has of one case into an array of its own."""
-    plain = target.view(np.ndarray)
-    words = plain.view(np.int64).reshape(*plain.shape, plain.dtype.itemsize // WORD)
-    words[...] = array.words[(*(slice(n) for n in plain.shape), slice(None), lane)]
+    words_of(target)[...] = array.words[(*(slice(n) for n in target.shape), slice(None), lane)]
 
 
 class VaryingRecord(types.Type):  # type: ignore[misc]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tpss.driving.data import Profiles
-from tpss.lanes.records import LaneArray, join, new_lanes
+from tpss.lanes.records import LaneArray, join, new_lanes, words_of
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.powerflow.network import Flow, Network
 from tpss.step.model import Model
@@ -23,6 +23,22 @@ SAME = frozenset({"*"})
 
 OF_TRAIN = frozenset({"train_type", "route", "leg"})
 OF_STANDING = frozenset({"train"})
+
+
+def word_of(dtype: Any, *path: str) -> int:
+    """Word of a field of a record, of one within it."""
+    offset = 0
+    for name in path:
+        dtype, inner = dtype.fields[name][:2]
+        offset += inner
+    return offset // 8
+
+
+OF_STEPPED = (
+    slice(0, word_of(Train.dtype, "passage")),
+    slice(word_of(Train.dtype, "allowed_current_a"), None),
+)
+"""Words of a train, but for its passage, which one that moves in steps has not."""
 
 
 def join_model(models: Sequence[Model]) -> Model:
@@ -57,19 +73,27 @@ def join_state(states: Sequence[State]) -> tuple[State, LaneArray]:
     orders = [np.asarray(each.flow.standing["train"]) for each in states]
     rows = max(order.size for order in orders)
     numbers = join([np.append(each, np.full(rows - each.size, -1)) for each in orders])
-    trains = join(
-        [each.trains[order] for each, order in zip(states, orders, strict=True)], OF_TRAIN
-    )
-    nobody = numbers.words[:, 0] < 0
-    phase = word_of(Train.dtype, "motion", "phase")
-    trains.words[:, phase][nobody] = Phase.GONE
-    state = states[0]._replace(
-        trains=trains,  # type: ignore[arg-type]
-        scratch=new_lanes(np.float64, SCRATCH_SHAPE),
-        flow=_join_flow([each.flow for each in states]),
-        clock=join([each.clock for each in states]),  # type: ignore[arg-type]
-    )
-    return state, numbers
+    trains = new_lanes(Train.dtype, (rows,), OF_TRAIN)
+    trains.words[:, word_of(Train.dtype, "motion", "phase")] = Phase.GONE
+    for lane, (each, order) in enumerate(zip(states, orders, strict=True)):
+        words = words_of(each.trains)
+        for columns in OF_STEPPED:
+            trains.words[: order.size, columns, lane] = words[order, columns]
+    changed: Any = {
+        "trains": trains,
+        "scratch": new_lanes(np.float64, SCRATCH_SHAPE),
+        "flow": _join_flow([each.flow for each in states]),
+        "clock": join([each.clock for each in states]),
+    }
+    return states[0]._replace(**changed), numbers
+
+
+def part_trains(trains: LaneArray, numbers: LaneArray, lane: int, target: Any) -> None:
+    """Write the trains of one case into its own records."""
+    order, words = numbers.words[:, 0, lane], words_of(target)
+    known = np.flatnonzero(order >= 0)
+    for columns in OF_STEPPED:
+        words[order[known], columns] = trains.words[:, columns, lane][known]
 
 
 def _join_flow(flows: Sequence[Flow]) -> Flow:
@@ -79,14 +103,3 @@ def _join_flow(flows: Sequence[Flow]) -> Flow:
     rows = changed["standing"].shape[0]
     changed["standing"].words[:, 0] = np.arange(rows)[:, None]
     return flows[0]._replace(**changed)
-
-
-def word_of(dtype: Any, *path: str) -> int:
-    """Word of a field of a record, of one within it."""
-    offset = 0
-    for name in path:
-        dtype, inner = dtype.fields[name][:2]
-        offset += inner
-    return offset // 8
-
-

@@ -1,11 +1,13 @@
 """Which cases are alike: those by whose numbers kernels branch alike, and whose arrays match."""
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from tpss.api import Prepared
+from tpss.lanes.records import WORD, words_of
 
 
 
@@ -32,16 +34,26 @@ def structure_of(case: Prepared) -> tuple[Any, ...]:
         network.tolerance,
         model.points.shape,
         tuple(each.shape for each in records),
-        tuple(part for each in records for part in _whole_numbers(np.asarray(each))),
+        tuple(_whole_numbers(each) for each in records),
         tuple(np.asarray(each).tobytes() for each in plain),
     )
 
 
-def _whole_numbers(array: Any) -> Iterator[bytes]:
+def _whole_numbers(array: Any) -> bytes:
     """All numbers of an array of records that are whole."""
-    if array.dtype.names is None:
-        if array.dtype.kind in "iub":
-            yield array.tobytes()
-        return
-    for name in array.dtype.names:
-        yield from _whole_numbers(array[name])
+    return words_of(array)[..., _whole_words(array.dtype)].tobytes()
+
+
+@cache
+def _whole_words(dtype: Any) -> list[int]:
+    """Words of a record that hold whole numbers or booleans."""
+    return sorted({offset // WORD for offset in _whole_offsets(dtype)})
+
+
+def _whole_offsets(dtype: Any) -> Iterator[int]:
+    for name in dtype.names:
+        kind, offset = dtype.fields[name][:2]
+        if kind.names is not None:
+            yield from (offset + inner for inner in _whole_offsets(kind))
+        elif kind.base.kind in "iub":
+            yield offset
