@@ -14,7 +14,7 @@ import numpy as np
 from tpss.api import Prepared, build
 from tpss.kernel import compiles
 from tpss.lanes.compile import are_compiled
-from tpss.lanes.known import not_covered
+from tpss.lanes.known import covers
 from tpss.lanes.structure import structure_of
 from tpss.lanes.types import LANES
 from tpss.results.key_figures import KeyFigures, run_for_figures
@@ -173,7 +173,7 @@ def _steps(built: Future[Prepared]) -> int:
 
 def _structure(case: Prepared) -> Any:
     """What cases that run together have in common; None: lanes do not cover this one."""
-    return None if not_covered(case) else structure_of(case)
+    return structure_of(case) if covers(case) else None
 
 
 def _figures_together(cases: Sequence[Prepared]) -> list[KeyFigures]:
@@ -181,7 +181,9 @@ def _figures_together(cases: Sequence[Prepared]) -> list[KeyFigures]:
     from tpss.lanes.batch import figures_together  # which takes seconds to convert the kernels
 
     found = figures_together(cases)
-    return [key_figures(case) if each is None else each for case, each in zip(cases, found, strict=True)]
+    return [
+        key_figures(case) if each is None else each for case, each in zip(cases, found, strict=True)
+    ]
 
 
 def key_figures(scenario: Scenario | Prepared) -> KeyFigures:

@@ -199,6 +199,7 @@ def _begin(figures: Figures) -> None:
 
 @inlined
 def note_place(position_m: float, train: TrainFigures) -> None:
+    """Note where a train has been. [m]"""
     if not math.isnan(position_m):
         train.first_m = min(train.first_m, position_m)
         train.last_m = max(train.last_m, position_m)

@@ -23,7 +23,6 @@ from numba.core.typing.templates import (
 from tpss.lanes.types import (
     LANES,
     NUMBERS,
-    WHOLES,
     LaneComplex,
     LaneComplexType,
     LaneInt,
@@ -54,7 +53,7 @@ def widest(arguments: Any) -> Any:
 def _infer(function: Any, typing: Callable[[Any], Any]) -> None:
     """Let numba know a function of lanes by what its arguments' types give; None: none of ours."""
 
-    class Template(AbstractTemplate):  # type: ignore[misc]
+    class Template(AbstractTemplate):
         def generic(self, arguments: Any, _: Any) -> Any:
             return typing(arguments)
 
@@ -278,7 +277,7 @@ _lower(float, (LanesType,), lambda _, value: value)
 
 
 @infer_getattr
-class _ComplexAttributes(AttributeTemplate):  # type: ignore[misc]
+class _ComplexAttributes(AttributeTemplate):
     key = LaneComplexType
 
     def resolve_real(self, _: Any) -> Any:
@@ -306,5 +305,3 @@ def _imag(context: Any, builder: Any, _: Any, value: Any) -> Any:
 def _conjugate(context: Any, builder: Any, _: Any, values: Any) -> Any:
     real, imag = parts(context, builder, values[0])
     return pair(context, builder, real, builder.fneg(imag))
-
-

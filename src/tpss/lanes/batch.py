@@ -71,7 +71,7 @@ def _begin(case: Prepared) -> Begun:
     peak = window_steps(OPEN, h, frame.peak_from_min, frame.peak_to_min)
     window = (0, 0) if peak is None else (peak.start, peak.stop)
     gather(
-        0, FIRST, FIRST + 1, h, *window, frame.at_line_level, run.state.trains, run.model,
+        0, FIRST, FIRST + 1, h, window[0], window[1], frame.at_line_level, run.state.trains, run.model,
         run.recording, figures,
     )  # fmt: skip
     figures.run[0].passes = figures.run[0].most_passes = run.recording.passes[0]
@@ -117,8 +117,8 @@ def _join_figures(lanes: list[Begun], numbers: LaneArray) -> tuple[Figures, Lane
         "section": new_lanes(np.int64, (count,)),
         "place_m": new_lanes(np.float64, (count,)),
     }
-    figures: Any = Figures(**whole, trains=trains, audit=first._replace(**scratch))
-    return figures, trains
+    whole |= {"trains": trains, "audit": first._replace(**scratch)}
+    return Figures(**whole), trains
 
 
 def _recordings(runs: list[Run], numbers: LaneArray) -> tuple[Recording, Recording]:

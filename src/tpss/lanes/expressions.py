@@ -2,6 +2,7 @@
 
 import ast
 import copy
+import inspect
 from collections.abc import Callable
 from enum import EnumMeta
 from typing import Any
@@ -27,7 +28,7 @@ def set_to(target: str, value: ast.expr) -> ast.Assign:
 def load(target: ast.expr) -> ast.expr:
     """What is stored to, as it is read."""
     read = copy.deepcopy(target)
-    read.ctx = ast.Load()  # type: ignore[attr-defined]
+    read.ctx = ast.Load()
     return read
 
 
@@ -51,7 +52,8 @@ class Pruned(ast.NodeTransformer):
     def __init__(self, fold: Callable[[ast.expr], ast.expr]) -> None:
         self.fold = fold
 
-    def visit_If(self, node: ast.If) -> Any:  # noqa: N802
+    def visit_If(self, node: ast.If) -> Any:
+        """A branch that is decided goes."""
         node.test = self.fold(node.test)
         self.generic_visit(node)
         if isinstance(node.test, ast.Constant):
@@ -201,19 +203,18 @@ class Expressions(ast.NodeTransformer):
 
     def _fold_without(self, without: Any, test: ast.Call) -> ast.expr:
         """What a function gives where there is nothing that it asks about, if that is a constant."""
-        import inspect
-
         source = ast.parse(inspect.getsource(without)).body[0]
-        last = source.body[-1]  # type: ignore[attr-defined]
+        last = source.body[-1]
         constant = isinstance(last, ast.Return) and isinstance(last.value, ast.Constant)
         return last.value if constant else test
 
     # Expressions
 
-    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:  # noqa: N802
+    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
+        """Masks joined; what is called sees the lanes that are left."""
         folded = self.fold(node)
         if not isinstance(folded, ast.BoolOp):
-            return self.visit(folded)  # type: ignore[no-any-return]
+            return self.visit(folded)
         if self.is_same(folded):
             return self.generic_visit(folded)  # type: ignore[return-value]
         join = "both" if isinstance(folded.op, ast.And) else "either"
@@ -227,15 +228,17 @@ class Expressions(ast.NodeTransformer):
             self._narrowed = outer
         return made
 
-    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:  # noqa: N802
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:
+        """A mask's other lanes."""
         if not isinstance(node.op, ast.Not):
             return self.generic_visit(node)  # type: ignore[return-value]
         return call("negated", call("as_mask", self.visit(node.operand)))
 
-    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:  # noqa: N802
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        """A choice by a mask."""
         test = self.fold(node.test)
         if isinstance(test, ast.Constant):
-            return self.visit(node.body if test.value else node.orelse)  # type: ignore[no-any-return]
+            return self.visit(node.body if test.value else node.orelse)
         if self.is_same(test):
             return self.generic_visit(node)  # type: ignore[return-value]
         condition = call("as_mask", self.visit(test))
@@ -248,7 +251,8 @@ class Expressions(ast.NodeTransformer):
         self._narrowed = outer
         return call("select", condition, body, orelse)
 
-    def visit_Compare(self, node: ast.Compare) -> ast.expr:  # noqa: N802
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        """Chains apart; what is one of several is compared with each."""
         if isinstance(self.fold(node), ast.Constant):
             return self.fold(node)
         left, right = self.visit(node.left), [self.visit(each) for each in node.comparators]
@@ -268,7 +272,8 @@ class Expressions(ast.NodeTransformer):
             made = call(join, made, each)
         return made
 
-    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:  # noqa: N802
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """A square is a product."""
         left, right = self.visit(node.left), self.visit(node.right)
         if isinstance(node.op, ast.Pow):
             if not (isinstance(right, ast.Constant) and right.value == 2):
@@ -276,7 +281,8 @@ class Expressions(ast.NodeTransformer):
             return ast.BinOp(left, ast.Mult(), copy.deepcopy(left))
         return ast.BinOp(left, node.op, right)
 
-    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:  # noqa: N802
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        """Members of enumerations are numbers."""
         owner = self.space.get(node.value.id) if isinstance(node.value, ast.Name) else None
         if isinstance(owner, EnumMeta) and isinstance(node.value, ast.Name):
             known = f"{node.value.id}_{node.attr}"
@@ -284,13 +290,14 @@ class Expressions(ast.NodeTransformer):
             return name(known)
         return self.generic_visit(node)  # type: ignore[return-value]
 
-    def visit_Call(self, node: ast.Call) -> ast.expr:  # noqa: N802
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        """Kernels are their lane versions."""
         folded = self.fold(node)
         if isinstance(folded, ast.Constant):
             return folded
         text = ast.unparse(node.func)
         if text == "bool":
-            return self.visit(node.args[0])  # type: ignore[no-any-return]
+            return self.visit(node.args[0])
         if text.startswith("math.") and text[5:] in self.math:
             known = f"lane_{text[5:]}"
             self.replaced[known] = self.math[text[5:]]

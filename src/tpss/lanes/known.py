@@ -22,7 +22,7 @@ from tpss.vehicle.effort.kinds import EffortKind
 
 def _is_single(network: Network) -> bool:
     """Whether a network has no part that most lack; see `kernel.where_any`."""
-    parts = (network.groups, network.links, network.bundles, network.shared)
+    parts: tuple[Any, ...] = (network.groups, network.links, network.bundles, network.shared)
     return all(part == () for part in parts)
 
 
@@ -39,7 +39,15 @@ def _types(case: Prepared) -> Any:
     return np.asarray(case.start.model.types)
 
 
+LEAST_STEPS = 300
+"""A shorter run takes no longer alone than its case takes to join others, and to part from them."""
+
 RULES = (
+    Rule(
+        "runs are long enough to be worth it",
+        lambda case: (case.start.steps or case.start.capacity) >= LEAST_STEPS,
+        {},
+    ),
     Rule(
         "trains move in steps",
         lambda case: case.start.model.options.motion == MotionModel.STEPPED,
@@ -57,9 +65,9 @@ RULES = (
     Rule(
         "all trains have one type and one route, along one line",
         lambda case: (
-            len(case.start.model.types) == 1
+            case.start.model.types.size == 1
             and case.start.model.legs.shape == (1, 1)
-            and len(case.start.model.stops) == 1
+            and case.start.model.stops.shape[0] == 1
         ),
         {},
     ),
@@ -92,7 +100,7 @@ RULES = (
             (_types(case)["regeneration"]["highest_force_n"] <= 0.0).all()
             and (_types(case)["over_load"]["count"] == 0).all()
             and not case.start.model.control.has_stores
-            and len(case.start.model.network.stores) == 0
+            and case.start.model.network.stores.size == 0
         ),
         {
             "asks_more": False,
@@ -169,23 +177,28 @@ DECIDED = {
 """Conditions of kernels that are decided, and what they are."""
 
 SAME_PARAMETERS = frozenset({
-    "derivatives", "start", "with_slopes", "warm", "step", "step_s", "time_s", "scale", "number", "s", "n",
-    "i",
+    "derivatives", "start", "with_slopes", "warm", "step", "step_s", "time_s", "scale", "number", "s",
+    "n", "i",
 })  # fmt: skip
 """Parameters of kernels that are the same in all cases of a batch."""
 
 SAME_FIELDS = frozenset({
     "size", "shape", "kind", "reactive_model", "voltage_model", "current_model", "profile", "train_type",
     "route", "leg", "place.train", "efficiency.points", "efficiency.first", "adhesion.points",
-    "power_factor.points", "curve.points", "curve.first", "start_node", "end_node", "block_aa", "block_ab",
-    "block_ba", "block_bb", "node", "upper", "lower", "pivot.first", "pivot.end", "update", "controlled",
-    "installed", "line", "tolerance", "options.step_s", "options.mean_power", "options.mean_gradient",
+    "power_factor.points", "curve.points", "curve.first", "start_node", "end_node", "block_aa",
+    "block_ab", "block_ba", "block_bb", "node", "upper", "lower", "pivot.first", "pivot.end", "update",
+    "controlled", "installed", "line", "tolerance", "options.step_s", "options.mean_power", "options.mean_gradient",
     "options.adhesion_in_km_h", "options.rail", "options.driver", "control.studied_train",
 })  # fmt: skip
 """Fields of which the same holds, by the last part of what they are fields of where that matters."""
 
 SAME_ARRAYS = frozenset({"shape", "source_of_node", "places", "row_start"})
 """Arrays of which the same holds."""
+
+
+def covers(case: Prepared) -> bool:
+    """Whether lanes cover a case."""
+    return all(rule.holds(case) for rule in RULES)
 
 
 def not_covered(case: Prepared) -> list[str]:

@@ -76,7 +76,7 @@ def newton(network: Any, flow: Any, loads: Any, mask: Any) -> tuple[Any, Any]:
 
 
 @compiled(fused=False)
-def solve(warm: Any, network: Any, flow: Any, loads: Any, mask: Any) -> tuple[Any, Any]:
+def solve(_warm: Any, network: Any, flow: Any, loads: Any, mask: Any) -> tuple[Any, Any]:
     """`powerflow.solve.solve_or_ask` in every step but the first of a run."""
     status, passes = newton(network, flow, loads, mask)
     solved = both(mask, status == _SOLVED)

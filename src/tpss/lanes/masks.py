@@ -9,7 +9,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic
+from numba.extending import intrinsic as _numba_intrinsic
 
 from tpss.lanes.arithmetic import widest
 from tpss.lanes.types import (
@@ -31,6 +31,8 @@ from tpss.lanes.types import (
     spread,
 )
 
+intrinsic: Any = _numba_intrinsic
+
 _truth = (MaskType, types.Boolean)
 _whole = (LaneIntType, types.Integer, *_truth)
 
@@ -51,7 +53,12 @@ def _choose(context: Any, builder: Any, kind: Any, mask: Any, a: Any, b: Any) ->
     if isinstance(kind, types.BaseTuple):
         chosen = [
             _choose(
-                context, builder, each, mask, builder.extract_value(a, k), builder.extract_value(b, k)
+                context,
+                builder,
+                each,
+                mask,
+                builder.extract_value(a, k),
+                builder.extract_value(b, k),
             )
             for k, each in enumerate(kind.types)
         ]
@@ -224,7 +231,7 @@ is_nan, is_finite = _test(_not_a_number), _test(_finite)
 
 
 @intrinsic
-def power_of_two_times(_: Any, value: Any, rounded: Any) -> Any:
+def power_of_two_times(_: Any, _value: Any, _rounded: Any) -> Any:
     """A number times two to the whole number in the last bits of another, see `numerics.exponential`."""
 
     def generate(_: Any, builder: Any, __: Any, values: Any) -> Any:
@@ -247,7 +254,7 @@ def lane_of(_: Any, values: Any, lane: Any) -> Any:
 
 
 @intrinsic
-def one_lane(_: Any, lane: Any) -> Any:
+def one_lane(_: Any, _lane: Any) -> Any:
     """The mask of one lane."""
 
     def generate(_: Any, builder: Any, __: Any, values: Any) -> Any:

@@ -26,6 +26,7 @@ from tpss.lanes.types import LANES
 from tpss.powerflow.network import SHORTEST_PIECE_M
 from tpss.vehicle.train import is_on_line
 
+
 class Rows(NamedTuple):
     """What lies in the order of the trains, as words, lanes last."""
 
@@ -142,9 +143,7 @@ def place_trains(model: Any, state: Any, rows: Rows) -> Any:
 
 
 @compiled(fused=False)
-def find_places(
-    step: int, _: Any, model: Any, recording: Any, scratch: Any
-) -> Any:
+def find_places(step: int, _: Any, model: Any, recording: Any, scratch: Any) -> Any:
     """`audit.network.sort_trains` of trains that are in their order: where they stand, and how many."""
     count, last = as_lane_int(0), model.network.sections.size - 1
     leg = model.legs[lane_at(0), lane_at(0)]

@@ -8,13 +8,15 @@ places of blocks and kinds of laws are, is read as a plain number from the first
 import hashlib
 import operator
 from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.datamodel import models, register_default
+from numba.core.datamodel import models
+from numba.core.datamodel.registry import register_default
 from numba.core.extending import infer_getattr, lower_builtin, typeof_impl
 from numba.core.imputils import lower_getattr_generic
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global, signature
@@ -44,7 +46,7 @@ WORD = 8
 """Bytes of a number. [B]"""
 
 
-class LaneRecord(types.Record):  # type: ignore[misc]
+class LaneRecord(types.Record):
     """Record whose numbers are lanes; a short name makes short symbols."""
 
     def __init__(self, fields: Any, size: int) -> None:
@@ -60,6 +62,7 @@ class LaneRecord(types.Record):  # type: ignore[misc]
 register_default(LaneRecord)(models.RecordModel)
 
 
+@cache
 def lane_type(dtype: Any, same: frozenset[str]) -> Any:
     """Type of a number or record in lanes.
 
@@ -161,16 +164,21 @@ def join(arrays: Iterable[Any], same: Iterable[str] = (), fill: float | None = N
     if fill is not None:
         joined.words.view(np.float64)[...] = fill
     for lane, each in enumerate(given):
-        joined.words[(*(slice(n) for n in each.shape), slice(None), lane)] = words_of(each)
+        joined.words[_of_lane(each, lane)] = words_of(each)
     return joined
 
 
 def part(array: LaneArray, lane: int, target: Any) -> None:
     """Write what an array of lanes has of one case into an array of its own."""
-    words_of(target)[...] = array.words[(*(slice(n) for n in target.shape), slice(None), lane)]
+    words_of(target)[...] = array.words[_of_lane(target, lane)]
 
 
-class VaryingRecord(types.Type):  # type: ignore[misc]
+def _of_lane(array: Any, lane: int) -> tuple[Any, ...]:
+    """Where the words of one case's array lie among those of lanes."""
+    return (*(slice(n) for n in array.shape), slice(None), lane)
+
+
+class VaryingRecord(types.Type):
     """A record whose place in its array differs by lane; its fields can be read."""
 
     def __init__(self, record: Any) -> None:
@@ -179,13 +187,13 @@ class VaryingRecord(types.Type):  # type: ignore[misc]
 
 
 @register_default(VaryingRecord)
-class _VaryingModel(models.StructModel):  # type: ignore[misc]
+class _VaryingModel(models.StructModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         super().__init__(manager, fe_type, [("base", types.voidptr), ("index", LaneInt)])
 
 
 @infer_global(operator.getitem)
-class _GetVarying(AbstractTemplate):  # type: ignore[misc]
+class _GetVarying(AbstractTemplate):
     def generic(self, arguments: Any, _: Any) -> Any:
         array, index = arguments
         if not isinstance(array, types.Array):
@@ -257,7 +265,7 @@ def _get_varying_of_two(context: Any, builder: Any, typed: Any, values: Any) -> 
 
 
 @infer_getattr
-class _VaryingAttributes(AttributeTemplate):  # type: ignore[misc]
+class _VaryingAttributes(AttributeTemplate):
     key = VaryingRecord
 
     def generic_resolve(self, varying: Any, name: str) -> Any:

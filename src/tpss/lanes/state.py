@@ -62,9 +62,7 @@ def join_model(models: Sequence[Model]) -> Model:
 
 def _join_network(networks: Sequence[Network]) -> Network:
     parts = ("sections", "branches", "sources", "admittance_s")
-    changed: Any = {
-        name: join([getattr(each, name) for each in networks], SAME) for name in parts
-    }
+    changed: Any = {name: join([getattr(each, name) for each in networks], SAME) for name in parts}
     return networks[0]._replace(**changed)
 
 

@@ -10,7 +10,6 @@ from tpss.api import Prepared
 from tpss.lanes.records import WORD, words_of
 
 
-
 def structure_of(case: Prepared) -> tuple[Any, ...]:
     """What has to be the same in all cases of a batch, to be compared.
 

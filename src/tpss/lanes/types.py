@@ -8,9 +8,10 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.datamodel import models, register_default
+from numba.core.datamodel import models
+from numba.core.datamodel.registry import register_default
 from numba.core.extending import lower_cast
-from numba.core.typeconv import Conversion
+from numba.core.typeconv.castgraph import Conversion
 
 LANES = 8
 """Cases that are run at once.  On a processor whose vectors hold four numbers each takes two."""
@@ -23,7 +24,7 @@ NAUGHT = ir.Constant(WHOLES, [0] * LANES)
 _plain_number = (types.Float, types.Integer, types.Boolean)
 
 
-class LaneType(types.Type):  # type: ignore[misc]
+class LaneType(types.Type):
     """Base of the types; a value of one of `holds` becomes one of it where need be.
 
     One of `cuts` does too where it is stored in a field of this type, and loses its fraction.
@@ -83,7 +84,7 @@ Lanes, LaneInt, LaneComplex, Mask = LanesType(), LaneIntType(), LaneComplexType(
 def _as_vector(kind: Any, vector: Any) -> None:
     """Let values of a type be vectors."""
 
-    class Model(models.PrimitiveModel):  # type: ignore[misc]
+    class Model(models.PrimitiveModel):
         def __init__(self, manager: Any, fe_type: Any) -> None:
             super().__init__(manager, fe_type, vector)
 
@@ -95,7 +96,7 @@ for _kind, _vector in ((LanesType, NUMBERS), (LaneIntType, WHOLES), (MaskType, B
 
 
 @register_default(LaneComplexType)
-class _ComplexModel(models.StructModel):  # type: ignore[misc]
+class _ComplexModel(models.StructModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         super().__init__(manager, fe_type, [("real", Lanes), ("imag", Lanes)])
 

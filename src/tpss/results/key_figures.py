@@ -276,6 +276,7 @@ def key_figures_of(
     whole = _of_whole_run(figures)
     studied = start.studied if start.studied < run.departed else -1
     trip_min, speed_kmh = _studied_trip(run, studied, figures)
+    sides = grid_side_mwh(run, frame.sides, frame.feeds_back)
     return KeyFigures(
         name=frame.name,
         status=status,
@@ -288,7 +289,9 @@ def key_figures_of(
         services=_services(run, start),
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
-        **grid_side_mwh(run, frame.sides, frame.feeds_back),
+        converter_losses_mwh=sides["converter_losses_mwh"],
+        drawn_from_grid_mwh=sides["drawn_from_grid_mwh"],
+        fed_back_to_grid_mwh=sides["fed_back_to_grid_mwh"],
         braking=braking_mwh(run, frame.sides, frame.rheostats),
         thermal={},
         grid_and_rails={},
