@@ -73,7 +73,9 @@ def simulate_many(
     """
     if lanes is False or not compiles():
         return in_threads(key_figures, scenarios, threads)
-    return _together(scenarios, threads or os.cpu_count() or 1, lanes is True)
+    if lanes or are_compiled():
+        return _together(scenarios, threads or os.cpu_count() or 1)
+    return _alone_at_first(scenarios, threads or os.cpu_count() or 1)
 
 
 def in_threads(
@@ -104,25 +106,37 @@ def in_threads(
                 future.cancel()
 
 
-def _together(
-    scenarios: Iterable[Scenario | Prepared], threads: int, at_once: bool
-) -> Iterator[KeyFigures]:
-    """`simulate_many` with lanes, at once or when they are worth it.
+def _alone_at_first(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterator[KeyFigures]:
+    """`simulate_many` that takes to lanes when the cases before have had `STEPS_ALONE` steps."""
+    drawn, steps = iter(scenarios), 0
+
+    def few() -> Iterator[Scenario | Prepared]:
+        for each in drawn:
+            yield each
+            if steps >= STEPS_ALONE:
+                return
+
+    for figures in in_threads(key_figures, few(), threads):
+        steps += figures.steps
+        yield figures
+    yield from _together(drawn, threads)
+
+
+def _together(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterator[KeyFigures]:
+    """`simulate_many` with lanes.
 
     So many cases are drawn as give each thread two full batches; they are built, and sorted by their
     structures, while those that were drawn before run.
     """
-    drawn, steps = iter(scenarios), 0
+    drawn = iter(scenarios)
     waiting: deque[Callable[[], KeyFigures]] = deque()
     with ThreadPoolExecutor(threads, thread_name_prefix="tpss") as pool:
         try:
             while window := list(islice(drawn, 2 * LANES * threads)):
                 built = [pool.submit(_built, each) for each in window]
                 wait(built)
-                ready = at_once or steps >= STEPS_ALONE or are_compiled()
-                steps += sum(_steps(each) for each in built)
                 before = len(waiting)
-                waiting.extend(_submit(built, ready, pool))
+                waiting.extend(_submit(built, pool))
                 for _ in range(before):
                     yield waiting.popleft()()
             while waiting:
@@ -132,13 +146,13 @@ def _together(
 
 
 def _submit(
-    built: list[Future[Prepared]], in_lanes: bool, pool: ThreadPoolExecutor
+    built: list[Future[Prepared]], pool: ThreadPoolExecutor
 ) -> list[Callable[[], KeyFigures]]:
     """Start the runs of cases; what waits for the figures of each."""
     alike: dict[Any, list[int]] = {}
     for number, future in enumerate(built):
         if future.exception() is None:
-            structure = _structure(future.result()) if in_lanes else None
+            structure = _structure(future.result())
             alike.setdefault(number if structure is None else structure, []).append(number)
     figures: list[Callable[[], KeyFigures]] = [future.result for future in built]  # type: ignore[misc]
     for numbers in alike.values():
@@ -161,14 +175,6 @@ def _one_of(batch: Future[list[KeyFigures]], place: int) -> KeyFigures:
 
 def _built(scenario: Scenario | Prepared) -> Prepared:
     return scenario if isinstance(scenario, Prepared) else build(scenario)
-
-
-def _steps(built: Future[Prepared]) -> int:
-    """Steps that a case is foreseen to have."""
-    if built.exception() is not None:
-        return 0
-    start = built.result().start
-    return start.steps or start.capacity
 
 
 def _structure(case: Prepared) -> Any:

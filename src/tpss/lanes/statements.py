@@ -269,10 +269,15 @@ class Statements(Expressions):
     def _is_read_behind(self, body: Body, local: str) -> bool:
         """Whether a name is looked at behind statements before it is set anew."""
         end = body[-1].end_lineno or 0
+        added = {id(each.target) for each in ast.walk(self.tree) if isinstance(each, ast.AugAssign)}
         behind = [
             each
             for each in ast.walk(self.tree)
             if isinstance(each, ast.Name) and each.id == local and each.lineno > end
         ]
         line = min((each.lineno for each in behind), default=0)
-        return any(isinstance(each.ctx, ast.Load) for each in behind if each.lineno == line)
+        return any(
+            isinstance(each.ctx, ast.Load) or id(each) in added
+            for each in behind
+            if each.lineno == line
+        )
