@@ -4,11 +4,15 @@ What is not in the user's cache may have come with the package (`tpss.shipped`).
 
 A computer that loses its power may leave files of a cache empty or cut off; a disk may be full.  What
 cannot be read is thrown away and compiled anew, what cannot be written stays in memory, and either is
-told once by the logger ``tpss.kernels``.
+told once by the logger ``tpss.kernels``.  Files end in a checksum: machine code with another bit in it
+can be read, and ends the process without a word.
 """
 
+import io
 import logging
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +21,43 @@ import numba.core.caching
 from tpss.shipped import Shipped, key_of, name_of
 
 _FunctionCache: Any = numba.core.caching.FunctionCache
+_CacheFiles: Any = numba.core.caching.IndexDataCacheFile
 _log = logging.getLogger("tpss.kernels")
 _told: set[str] = set()
+
+
+_CHECKSUM_BYTES = 4
+
+
+def _checksum(content: bytes) -> bytes:
+    return zlib.crc32(content).to_bytes(_CHECKSUM_BYTES, "big")
+
+
+class CheckedFiles(_CacheFiles):  # type: ignore[misc]
+    """The files of a kernel in the cache, each of which ends in a checksum of what is before it."""
+
+    def _load_index(self) -> Any:
+        self._demand_whole(Path(self._index_path))
+        return super()._load_index()
+
+    def _load_data(self, name: str) -> Any:
+        self._demand_whole(Path(self._data_path(name)))
+        return super()._load_data(name)
+
+    @staticmethod
+    def _demand_whole(file: Path) -> None:
+        """Raise a `ValueError` if a file is there and not as it was written."""
+        content = file.read_bytes() if file.exists() else b""
+        if content and content[-_CHECKSUM_BYTES:] != _checksum(content[:-_CHECKSUM_BYTES]):
+            raise ValueError(f"{file.name} is not as it was written")
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
+        """A file in memory, which is written with its checksum; what reads it passes that over."""
+        content = io.BytesIO()
+        yield content
+        with super()._open_for_write(filepath) as file:
+            file.write(content.getvalue() + _checksum(content.getvalue()))
 
 
 class KernelCache(_FunctionCache):  # type: ignore[misc]
@@ -34,6 +73,8 @@ class KernelCache(_FunctionCache):  # type: ignore[misc]
 
     def __init__(self, function: Callable[..., Any], shipped: Callable[[], Shipped | None]) -> None:
         super().__init__(function)
+        stamp, name = self._impl.locator.get_source_stamp(), self._impl.filename_base
+        self._cache_file: Any = CheckedFiles(self._cache_path, name, stamp)
         self._shipped = shipped
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

@@ -90,6 +90,7 @@ def spoilt(file, *path, value):
         (("figures", "w1", 0), [[1.0]]),
         (("figures", "b2", 0, 0), float("nan")),
         (("figures", "b2", 0, 0), "__import__('os')"),
+        (("figures", "w1", 0, 0, 0), 1e308),
         (("outputs", 0, "scale"), "eval"),
         (("outputs", 0, "low"), None),
         (("domain", "pairs"), []),
@@ -109,6 +110,15 @@ def test_a_damaged_file_says_where(path, value, model_file):
     assert str(model_file) in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [(("figures", "b2", 0, 0), 0.25), (("outputs", 0, "factor"), 9.0), (("data", "seed"), 99)],
+)
+def test_other_numbers_than_were_written_are_told(path, value, model_file):
+    with pytest.raises(tpss.ApproximatorError, match="its checksum is another; train it again"):
+        tpss.load_approximator(spoilt(model_file, *path, value=value))
+
+
 def test_a_file_cut_off_anywhere_is_refused(model_file):
     text = model_file.read_text("utf-8")
     for share in range(1, 20):
@@ -121,3 +131,8 @@ def test_an_existing_file_is_kept_unless_it_may_be_replaced(model, model_file):
     with pytest.raises(tpss.ApproximatorError, match="exists"):
         model.save(model_file)
     model.save(model_file, force=True)
+
+
+def test_a_name_that_no_file_can_have_is_told(model):
+    with pytest.raises(tpss.ApproximatorError, match="cannot be written: File name too long"):
+        model.save("x" * 300)

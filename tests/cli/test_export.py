@@ -1,6 +1,7 @@
 """The command ``tpss export``: files of a result, and bad folders that are called what they are."""
 
 import json
+import os
 
 import pytest
 import xarray as xr
@@ -139,3 +140,11 @@ def test_electrical_profiles_are_written_and_say_what_they_cover(tpss_command, d
     assert document["levels"][0]["track_ranges"][0]["begin"] == 0.0
     again = tpss_command("export-profiles", "demo", "--out", "p.json")
     assert (again.code, "exists already" in again.err) == (2, True)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names of files have no such characters there")
+def test_a_folder_whose_name_would_steer_the_terminal_is_shown_escaped(tpss_command, demo):
+    said = tpss_command("export", demo, "--out", "red\x1b[31m")
+    assert said.code == 0
+    assert "\x1b" not in said.out
+    assert r"red\x1b[31m" in said.out

@@ -58,6 +58,30 @@ def test_the_options_of_a_run_are_explained(tpss_command):
         assert option in said.out
 
 
+@pytest.mark.parametrize("arguments", [[], ["run"], ["import"], ["import", "csv"]])
+def test_options_that_take_no_value_are_shown_without_one(tpss_command, arguments):
+    assert "<bool>" not in tpss_command(*arguments, "--help").out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["export", "r", "--to", "ods"], "'--to': 'ods' is not one of 'csv', 'xlsx', 'parquet'"),
+        (["sweep", "s.toml", "--workers", "two"], "'--workers': 'two' is not a "),
+        (["sweep", "s.toml", "--workers", "0"], "'--workers': "),
+        (["spare-time", "line.toml", "--percent", "nan"], "'--percent': "),
+    ],
+)
+def test_a_wrong_value_of_an_option_is_told_by_the_value_and_what_it_may_be(
+    tpss_command, arguments, told
+):
+    said = tpss_command(*arguments)
+    assert said.code == 2
+    assert told in said.err
+    assert "Value error" not in said.err
+    assert arguments[-1] in said.err.replace(arguments[-2], "", 1)
+
+
 @pytest.mark.parametrize(
     "arguments", [["--help"], ["run", "--help"], ["report", "--help"], ["library", "--help"]]
 )

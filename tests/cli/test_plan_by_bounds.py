@@ -108,9 +108,9 @@ def test_a_claim_that_is_withdrawn_leaves_the_plan_open(solved, tpss_command, tm
     assert strongest.sum() == 2
     whole.loc[strongest, "drawn_from_grid_mw"] *= 2.0
     shutil.rmtree(tmp_path / "out" / "tables")
-    for file in others:
+    for file in (part, *others):
         file.unlink()
-    whole.to_parquet(part)
+    whole.to_parquet(part.with_name("all.parquet"))
     said = run(tpss_command, tmp_path)
     assert said.code == 5
     assert "Nothing is claimed of other plans" in said.out

@@ -31,6 +31,19 @@ def test_a_report_goes_into_the_result_folder(tpss_command, folder):
     assert is_report(folder / "report.html")
 
 
+def test_a_report_may_begin_with_the_words_of_its_author(tpss_command, folder):
+    words = {"title": "Line 90", "project": "Renewal 2030", "author": "A. Lind", "remarks": "Draft"}
+    options = [part for name, text in words.items() for part in (f"--{name}", text)]
+    assert tpss_command("report", folder, *options, "--force").code == 0
+    page = (folder / "report.html").read_text("utf-8")
+    assert all(text in page.split('id="summary"')[0] for text in words.values())
+
+
+def test_a_comparison_has_no_first_page(tpss_command, folder):
+    said = tpss_command("report", folder, folder, "--author", "A. Lind")
+    assert (said.code, said.err) == (2, "a comparison has no use for --author; leave it out")
+
+
 def test_out_names_another_file(tpss_command, folder, tmp_path):
     assert tpss_command("report", "a", "--out", "b.html").out == "Wrote b.html"
     assert is_report(tmp_path / "b.html")

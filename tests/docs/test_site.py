@@ -4,8 +4,11 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import partial
 from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from urllib.parse import unquote, urlsplit
 
 import pytest
@@ -151,3 +154,18 @@ def test_pages_have_no_barriers_that_axe_knows(site, browser, scheme, pages):
             found[f"{page}: {rule['id']}"] = [node["html"] for node in rule["nodes"]]
     tab.close()
     assert found == {}
+
+
+def test_the_page_that_is_served_for_a_missing_one_has_no_barriers(site, browser):
+    """Its links begin at the root of the server, so that a folder is not enough to see it."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+    handler = partial(SimpleHTTPRequestHandler, directory=site)
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        tab = browser.new_page()
+        tab.goto(f"http://127.0.0.1:{server.server_port}/404.html")
+        tab.wait_for_load_state("networkidle")
+        violations = axe.run(tab).response["violations"]
+        tab.close()
+        server.shutdown()
+    assert violations == []

@@ -4,7 +4,9 @@ A child process writes, and is killed with SIGKILL at its n-th call of the file 
 anything; n runs from 1 until the child lives to its end.  Then another process looks.
 """
 
+import errno
 import os
+import shutil
 import signal
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -12,12 +14,18 @@ from pathlib import Path
 
 import pytest
 
+from tpss.files import whole
 from tpss.files.several import check_files, save_files
 from tpss.files.whole import ABANDONED_S, write_file
 from tpss.files.workplace import NEW, clear_left, put_in_place, restore, workplace
 
-CHANGES = ("open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "shutil.rmtree")
-"""Events of the interpreter that come before the file system is changed."""
+WRITE = "write"
+"""What comes after a file was made and before anything is in it; no event of the interpreter."""
+
+CHANGES = (
+    "open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "shutil.rmtree", WRITE,
+)  # fmt: skip
+"""Events that come before the file system is changed."""
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="a process is not copied there")
 
@@ -36,6 +44,8 @@ def killed_at(call: int, work) -> bool:
                     os.kill(os.getpid(), signal.SIGKILL)
 
         sys.addaudithook(count)
+        write = whole._write_through
+        whole._write_through = lambda *file: (count(WRITE, None), write(*file))
         try:
             work()
         finally:
@@ -44,12 +54,39 @@ def killed_at(call: int, work) -> bool:
     return os.WIFSIGNALED(status)
 
 
-def at_every_call(prepare, work, look) -> int:
-    """Do some work, killed at each of its calls in turn; return the number of calls."""
+def refused_from(call: int, work) -> bool:
+    """Whether some work fails on a disk that is full from this call on: what is there may be moved."""
+    child = os.fork()
+    if child == 0:
+        seen = 0
+
+        def refuse(event, arguments):
+            nonlocal seen
+            needs_room = event in ("os.mkdir", WRITE, "fsync")
+            if event == "open" and isinstance(arguments[2], int):
+                needs_room = bool(arguments[2] & os.O_CREAT)
+            if needs_room:
+                seen += 1
+                if seen >= call:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        sys.addaudithook(refuse)
+        os.fsync = lambda _: refuse("fsync", ())
+        status = 1
+        try:
+            work()
+            status = 0
+        finally:
+            os._exit(status)
+    return bool(os.waitpid(child, 0)[1])
+
+
+def at_every_call(prepare, work, look, ended_at=killed_at) -> int:
+    """Do some work, killed or refused at each of its calls in turn; return the number of calls."""
     call = 1
     while True:
         prepare()
-        killed = killed_at(call, work)
+        killed = ended_at(call, work)
         look(killed)
         if not killed:
             return call - 1
@@ -66,15 +103,17 @@ def content_of(folder: Path) -> dict[str, str]:
     return {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
 
 
+@pytest.mark.parametrize("ended_at", [killed_at, refused_from])
 @pytest.mark.parametrize("can_exchange", [True, False])
-def test_a_folder_is_the_old_or_the_new_one(tmp_path, monkeypatch, can_exchange):
-    """The user's own file is in it, too; without an exchange the next one to come restores it."""
+def test_a_folder_is_the_old_or_the_new_one(tmp_path, monkeypatch, can_exchange, ended_at):
+    """The user's own files are in it, too; without an exchange the next one to come restores it."""
     if not can_exchange:
         monkeypatch.setattr("tpss.files.workplace.exchange", lambda *_: False)
     target, kept = tmp_path / "result", {"notes.txt": "mine"}
 
     def carry_over(old: Path, new: Path) -> None:
         for file in old.glob("*.txt"):
+            (new / "checked").mkdir(exist_ok=True)
             file.rename(new / file.name)
 
     def put_right(work: Path) -> None:
@@ -102,31 +141,53 @@ def test_a_folder_is_the_old_or_the_new_one(tmp_path, monkeypatch, can_exchange)
         assert found in ({"a.nc": each, "b.json": each, **kept} for each in ("old", "new"))
         assert [path.name for path in tmp_path.iterdir() if path.name != "result"] == []
 
-    assert at_every_call(prepare, work, look) > 10
+    assert at_every_call(prepare, work, look, ended_at) > 6
 
 
-def test_several_files_are_all_old_or_all_new(tmp_path):
-    old, new = (dict.fromkeys(("b.csv", "c.csv"), each) for each in ("old", "new"))
-    new |= {"a.csv": "new", "d.csv": "new"}
+@pytest.mark.parametrize("ended_at", [killed_at, refused_from])
+def test_several_files_are_all_old_or_all_new(tmp_path, ended_at):
+    old, new = (dict.fromkeys(("b.csv", "in/c.csv"), each) for each in ("old", "new"))
+    new |= {"a.csv": "new", "in/d.csv": "new"}
 
     def prepare() -> None:
-        for file in tmp_path.iterdir():
-            file.unlink()
+        shutil.rmtree(tmp_path)
+        (tmp_path / "in").mkdir(parents=True)
         for name, text in {**old, "mine.txt": "mine"}.items():
             (tmp_path / name).write_text(text)
 
     def look(_: bool) -> None:
         make_old(tmp_path)
         check_files(tmp_path, [], force=True)
-        found = content_of(tmp_path)
+        inner = {f"in/{name}": text for name, text in content_of(tmp_path / "in").items()}
+        found = content_of(tmp_path) | inner
         assert found.pop("mine.txt") == "mine"
         assert found in (old, new)
-        assert not [path for path in tmp_path.iterdir() if path.is_dir()]
+        assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["in"]
 
     def work() -> None:
         save_files(tmp_path, {name: text.encode() for name, text in new.items()}, force=True)
 
-    assert at_every_call(prepare, work, look) > 10
+    assert at_every_call(prepare, work, look, ended_at) > 10
+
+
+def test_a_folder_that_was_not_there_is_made_with_all_files_or_not_at_all(tmp_path):
+    """Whoever comes next leaves nothing behind, where there was no folder to work in, either."""
+    folder, files = tmp_path / "deep" / "tables", {"a.csv": "new", "b.csv": "new"}
+
+    def prepare() -> None:
+        shutil.rmtree(tmp_path / "deep", ignore_errors=True)
+
+    def work() -> None:
+        save_files(folder, {name: text.encode() for name, text in files.items()}, force=False)
+
+    def look(_: bool) -> None:
+        assert not folder.exists() or content_of(folder) == files
+        shutil.rmtree(tmp_path / "deep", ignore_errors=True)
+        make_old(tmp_path)
+        check_files(folder, files, force=False)
+        assert list(tmp_path.iterdir()) == []
+
+    assert at_every_call(prepare, work, look) > 5
 
 
 def test_a_file_is_the_old_or_the_new_one(tmp_path):

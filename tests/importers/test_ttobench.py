@@ -324,7 +324,7 @@ def test_existing_files_are_kept_without_force(folder, monkeypatch, capsys):
     assert again() == 0
     (folder / "m" / "XX_Unit.toml").write_text("edited")
     assert again() == 2
-    assert "it exists already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
     assert (folder / "m" / "XX_Unit.toml").read_text() == "edited"
     assert again("--force") == 0
     assert (folder / "m" / "XX_Unit.toml").read_text() != "edited"

@@ -5,8 +5,9 @@ import math
 import pytest
 
 from laws.own_laws import CALM, TUNNEL
-from tpss.laws import Law, LawError, Parameter
+from tpss.laws import Law, LawError, Parameter, law
 from tpss.laws.kinds import DRIVER
+from tpss.numerics import called
 
 
 def test_its_function_takes_what_its_kind_gives_and_its_parameters():
@@ -19,6 +20,7 @@ def test_its_function_takes_what_its_kind_gives_and_its_parameters():
 
 
 def test_it_has_no_more_parameters_than_a_record_has_places():
+    assert law.MOST_PARAMETERS == called.MOST_PARAMETERS == len(called.Called().parameters)
     names = [f"p{k}" for k in range(17)]
     taken = ", ".join(["speed_m_s", "limit_m_s", "position_m", "to_stop_m", *names])
     function = eval(f"lambda {taken}: 1.0")

@@ -193,6 +193,7 @@ BAD = {
     "train": (headed("active_power:up 9 [MW]"), "'up 9'", "up 1"),
     "unit": (headed("station_active_power:West [MVA]"), "'MVA'", "choose from W, kW, MW"),
     "quotes": ('time [min],"a\n0,1\n1,2\n', "no rows follow the header", "add rows"),
+    "a cell without an end": (f'time [min],{WEST}\n0,"{"1" * 200_000}', "line 2", "close quotes"),
     "number": (at(range(10), "time [min]", values=[*VALUES[:3], "1x", *VALUES[4:]]),
                "line 5, column 'station_active_power:West [MW]' = 1x", "decimal point"),
     "infinite": (at(range(10), "time [min]", values=["inf", *VALUES[1:]]), "= inf", "not a number"),

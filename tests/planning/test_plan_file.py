@@ -99,6 +99,10 @@ BAD = {
         {"budget": {"per_stage": [10.0]}},
         "budget.per_stage", "1 values for 2 stages", "one for each stage",
     ),
+    "a measure beyond all numbers": (
+        {"measures/AT/set": {"line.length_km": float("nan")}},
+        "measures.AT.set", "line.length_km has a number that is not finite", "a finite number",
+    ),
     "an unknown measure": (
         {"measures/AT/excludes": ["Middle"]},
         "measures.AT.excludes", "no such measure", "Mid",

@@ -12,7 +12,6 @@ from tpss.numerics.pair_matrix import eliminate
 from tpss.original.grid import lay_out
 from tpss.powerflow.chain import LINKED, MOVED, WARM
 from tpss.powerflow.coupled import evaluate_groups
-from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.newton import begin_pass, evaluate, find_direction, mark_base, take_step
 from tpss.powerflow.solve import solve
 
@@ -336,7 +335,6 @@ def test_a_track_that_is_not_fed_carries_nothing_and_induces_nothing():
     trains = [(0, 12e3, 2e6 + 1e6j), (0, 30e3, 1e6 + 0j)]
     fed = sources((0, STIFF), (1, STIFF))
     case = side_by_side([0.0, D], [[0, 1], [2, 3]], trains, fed, ZM, impedance=ZS)
-    case.network = mark_unfed(case.network)
     solved(case)
     alone = simple_line(D, [12e3, 30e3], [2e6 + 1e6j, 1e6 + 0j], STIFF, STIFF, impedance=ZS)
     solved(alone)

@@ -14,6 +14,7 @@ from tpss.report.html import report, write_report
 from tpss.sweep.report import write_study_report
 
 from chromium import needs_chromium
+from scenarios import run
 
 pytestmark = needs_chromium
 
@@ -70,6 +71,11 @@ def opened(browser: Any, report_file: Path) -> Iterator[Opened]:
     assert found.requests == [report_file.as_uri()]
 
 
+def test_a_report_is_a_file_that_is_sent_by_mail(report_file):
+    """The script of the plots, 4.8 MB as plotly's own package has it, is 0.7 MB of at most 2 MB."""
+    assert report_file.stat().st_size < 2e6
+
+
 def test_every_plot_is_drawn(opened):
     plots = opened.tab.locator(".plot")
     assert plots.count() == 6
@@ -119,6 +125,17 @@ def test_the_slider_moves_trains_and_cursors_by_keyboard(opened):
     for plot in ("graph", "powers", "converters", "losses"):
         assert opened.cursor(plot) == pytest.approx(minutes)
     assert "on the line; lowest voltage" in opened.tab.locator("#state").inner_text()
+
+
+def test_times_are_shown_by_the_clock_too_where_there_is_one(browser, tmp_path):
+    file = tmp_path / "report.html"
+    file.write_text(report(run({"simulation.starts_at": "06:58"})), encoding="utf-8")
+    found = open_page(browser, file)
+    found.tab.locator("#time").fill("60")
+    found.wait_for("document.getElementById('now').textContent.startsWith('3.00')")
+    assert found.tab.locator("#now").inner_text() == "3.00 min (07:01:00)"
+    assert found.faults == []
+    found.tab.close()
 
 
 def test_pointing_at_one_plot_moves_the_cursor_of_the_others(opened):

@@ -36,6 +36,14 @@ def test_a_scenario_is_a_line_at_a_prompt():
     assert repr(scenario) == f"<Scenario 'a-b': {lines}>"
 
 
+def test_a_prompt_completes_what_a_scenario_is_and_nothing_of_the_library_below():
+    """With pydantic's there would be forty more names, of which some skip all checks."""
+    names = {name for name in dir(short_line()) if not name.startswith("_")}
+    assert {"with_", "save", "digest", "variant", "traffic", "supply"} <= names
+    assert not {"parse_obj", "dict", "model_copy", "construct"} & names
+    assert "time_step_min" in dir(short_line().simulation)
+
+
 def test_a_scenario_is_saved_as_it_is_run(tmp_path):
     scenario = short_line({"traffic.0.headway_min": 7.0})
     file = scenario.save(tmp_path / "line.toml")

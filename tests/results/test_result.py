@@ -366,7 +366,9 @@ def test_a_folder_holds_dataset_summary_and_scenario(folder, at_line):
     }
     saved = json.loads((folder / "summary.json").read_text("utf-8"))
     content = (folder / "result.nc").read_bytes()
-    assert saved.pop("sha256") == {"result.nc": hashlib.sha256(content).hexdigest()}
+    checksums = saved.pop("sha256")
+    assert checksums["result.nc"] == hashlib.sha256(content).hexdigest()
+    assert sorted(checksums) == ["result.nc", "scenario.toml", "summary.json"]
     assert saved == at_line.summary
 
 

@@ -1,6 +1,7 @@
 """Result folders are written whole or not at all, whatever befalls the program."""
 
 import gzip
+import json
 import os
 import shutil
 import signal
@@ -83,6 +84,8 @@ if sys.argv[1] == "writing":
     store.json.dumps = kill
 elif sys.argv[1] == "moving":
     workplace.put_in_place = kill
+elif sys.argv[1] == "carrying over":
+    store.carry_over = kill
 else:
     workplace.exchange = lambda *_: False
     Path.rename = kill_at_second()
@@ -118,6 +121,28 @@ def test_a_process_killed_between_the_old_result_and_the_new_one_loses_neither(o
     assert names_in(tmp_path) == ["new", "result"]
 
 
+@pytest.mark.parametrize("comes_next", [load_result, lambda folder: refused_in(folder)])
+def test_what_a_user_has_put_into_a_result_comes_back_whoever_comes_next(
+    old, new, tmp_path, comes_next
+):
+    """Killed after the new result took the place of the old one, before the user's file followed."""
+    old.save(tmp_path / "result")
+    new.save(tmp_path / "new")
+    (tmp_path / "result" / "mine.txt").write_text("mine")
+    save_and_be_killed("carrying over", tmp_path)
+    assert not (tmp_path / "result" / "mine.txt").exists()
+    comes_next(tmp_path / "result")
+    assert (tmp_path / "result" / "mine.txt").read_text() == "mine"
+    assert load_result(tmp_path / "result").scenario.name == "new"
+    assert names_in(tmp_path) == ["new", "result"]
+
+
+def refused_in(folder) -> None:
+    """A run that may not replace what is there."""
+    with pytest.raises(ResultError, match="exists already"):
+        store.check_target(load_scenario(EXAMPLES / "thesis_3_3.toml"), folder, force=False)
+
+
 def test_a_flipped_bit_is_told(old, tmp_path):
     """Wherever it lies: 150 places of the dataset, of which many would give other numbers silently."""
     folder = old.save(tmp_path / "result")
@@ -129,6 +154,41 @@ def test_a_flipped_bit_is_told(old, tmp_path):
             load_result(folder)
         written[place] ^= 4
     (folder / "result.nc").write_bytes(written)
+    assert load_result(folder).summary.keys() == old.summary.keys()
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("summary.json", '"passed": true', '"passed": false'),
+        ("summary.json", '"trip_time_min"', '"trip_time_mim"'),
+        ("scenario.toml", "mass_t = 14", "mass_t = 15"),
+    ],
+)
+def test_other_words_in_a_result_are_told(old, tmp_path, name, before, after):
+    folder = old.save(tmp_path / "result")
+    written = (folder / name).read_text("utf-8")
+    assert before in written
+    (folder / name).write_text(written.replace(before, after, 1), "utf-8")
+    with pytest.raises(ResultError, match=f"{name} is not as it was written"):
+        load_result(folder)
+
+
+def test_a_summary_without_a_checksum_that_lacks_something_is_told(old, tmp_path):
+    folder = old.save(tmp_path / "result")
+    summary = json.loads((folder / "summary.json").read_text("utf-8"))
+    for key in ("sha256", "trip_time_min", "losses_mwh"):
+        del summary[key]
+    (folder / "summary.json").write_text(json.dumps(summary), "utf-8")
+    with pytest.raises(ResultError, match=r"summary\.json has no losses_mwh, trip_time_min"):
+        load_result(folder)
+
+
+def test_a_result_may_pass_through_a_system_that_ends_lines_otherwise(old, tmp_path):
+    folder = old.save(tmp_path / "result")
+    for name in ("summary.json", "scenario.toml"):
+        text = (folder / name).read_bytes().replace(b"\n", b"\r\n")
+        (folder / name).write_bytes(text)
     assert load_result(folder).summary.keys() == old.summary.keys()
 
 

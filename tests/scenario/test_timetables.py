@@ -226,7 +226,7 @@ def test_a_name_may_be_that_of_one_train_only(tmp_path):
     [
         ("name,station,departure,arival", "arival", "did you mean arrival?"),
         ("name,station,departure,name", "name", "leave one out"),
-        ("train,station,departure", "train,station,departure", "begin with the line name,station"),
+        ("type,station,departure", "type,station,departure", "begin with the line name,station"),
         ("a,b,c", "a,b,c", "begin with the line name,station,departure"),
     ],
 )
@@ -234,6 +234,12 @@ def test_a_header_that_is_none(tmp_path, header, value, remedy):
     (finding,) = faults(tmp_path, f"{header}\na,b,c\n")
     assert (finding.key, finding.value) == ("line 1", value)
     assert remedy in finding.remedy
+
+
+def test_trains_may_have_their_names_in_a_column_train_where_there_is_no_other(tmp_path):
+    text = "Train;station;arrival;departure\nIC 1;West;;05:40\nIC 1;East;06:10;\n"
+    (service,) = scenario(tmp_path, text).traffic
+    assert (service.name, service.train) == ("IC 1", "freight")
 
 
 def test_clock_times_need_a_clock(tmp_path):

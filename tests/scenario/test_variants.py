@@ -1,6 +1,7 @@
 """Variants of a scenario: what they change, and what is wrong with them."""
 
 import copy
+import math
 
 import pytest
 
@@ -93,6 +94,14 @@ def test_faults_of_a_changed_scenario_name_the_variant_and_one_that_there_is_not
         ({"all": {"set": {"description": "x"}}}, "stands for all of them"),
         ({"a/b": {"set": {"description": "x"}}}, "variants"),
         ({"it": {"replace": {}}}, "unknown key"),
+        (
+            {"it": {"set": {"line": {"length_km": math.nan}}}},
+            "line.length_km has a number that is not",
+        ),
+        (
+            {"it": {"add": {"traffic": [{"headway_min": math.inf}]}}},
+            "traffic has a number that is not",
+        ),
     ],
 )
 def test_a_variant_that_cannot_be_is_a_fault(variants, words):

@@ -13,6 +13,7 @@ from tpss.sweep.study import load_study
 
 from conftest import EXAMPLES
 
+DRAWN = {"mean_permille": 0.0, "standard_deviation_permille": 1.0}
 SOBOL = {"design": "sobol", "cases": 8}
 
 
@@ -29,6 +30,18 @@ def told(tmp_path, changes: dict[str, Any]) -> str:
         (
             {**SOBOL, "vary": {"traffic.0.headway_min": {"low": 30.0, "high": 5.0}}},
             ["vary.traffic.0.headway_min", "an empty range, 30 to 5", "set low below high"],
+        ),
+        (
+            {"gradients": DRAWN, "vary": {"line": [True]}},
+            ["vary.line = True", "not a table"],
+        ),
+        (
+            {"gradients": DRAWN, "vary": {"line.length_km": [1e300]}},
+            ["vary.line.length_km = 1e+300", "out of range"],
+        ),
+        (
+            {"gradients": {"mean_permille": 0.0, "standard_deviation_permille": 10**400}},
+            ["gradients.standard_deviation_permille", "out of range", "numbers from 0 to 100"],
         ),
         ({"vary": {"traffic.0.headway_min": []}}, ["vary.traffic.0.headway_min", "an empty list"]),
         (

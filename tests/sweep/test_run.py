@@ -1,5 +1,6 @@
 """A study's table holds every case once, however often the study was killed."""
 
+import io
 import json
 import multiprocessing
 import os
@@ -45,8 +46,9 @@ def without_timings(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def parts(folder: Path) -> dict[str, bytes]:
-    """Finished files of rows by name."""
-    return {file.name: file.read_bytes() for file in sorted(folder.glob("cases/*.parquet"))}
+    """Finished files of rows by name, without their checksums."""
+    files = sorted(folder.glob("cases/*.parquet"))
+    return {file.name.rpartition("-")[0]: file.read_bytes() for file in files}
 
 
 def command(file: Path, folder: Path) -> list[str]:
@@ -158,7 +160,7 @@ def test_what_is_done_is_not_run_again(tmp_path, scheduler):
     assert (again.done, again.before) == (6, 6)
     assert parts(tmp_path / "out") == before
     lost = sorted(before)[2]
-    (tmp_path / "out" / "cases" / lost).unlink()
+    next((tmp_path / "out" / "cases").glob(f"{lost}-*")).unlink()
     assert tpss.run_study(small, tmp_path / "out", scheduler=scheduler).before < 6
     kept = parts(tmp_path / "out")
     assert {name for name in before if kept[name] != before[name]} == {lost}
@@ -191,7 +193,7 @@ def test_killed_workers_and_studies_lose_nothing(tmp_path, scheduler):
     _, alive = psutil.wait_procs(workers, timeout=30)
     assert not alive, "workers outlive the command that started them"
     before = parts(folder)
-    done = sum(pq.read_metadata(folder / "cases" / name).num_rows for name in before)
+    done = sum(pq.read_metadata(io.BytesIO(content)).num_rows for content in before.values())
     assert 0 < done < SLOW["cases"]
     again = tpss.run_study(tpss.load_study(file), folder, scheduler=scheduler)
     assert (again.before, again.done) == (done, SLOW["cases"])
@@ -272,6 +274,32 @@ def test_a_damaged_file_is_told_with_the_remedy(tmp_path, scheduler):
     damaged = sorted(folder.glob("cases/*.parquet"))[0]
     damaged.write_bytes(damaged.read_bytes()[:100])
     with pytest.raises(tpss.StudyError, match="is damaged"):
+        tpss.load_table(folder)
+
+
+def test_a_flipped_bit_is_told_wherever_it_lies(tmp_path):
+    folder = tmp_path / "out"
+    tpss.run_study(study(tmp_path), folder)
+    part = sorted(folder.glob("cases/*.parquet"))[0]
+    written = bytearray(part.read_bytes())
+    for place in range(0, len(written), len(written) // 100):
+        written[place] ^= 4
+        part.write_bytes(written)
+        with pytest.raises(tpss.StudyError, match="not as it was written"):
+            tpss.load_table(folder)
+        written[place] ^= 4
+
+
+def test_files_whose_columns_differ_are_told(tmp_path):
+    """Files without a checksum in their names, as written before."""
+    folder = tmp_path / "out"
+    tpss.run_study(study(tmp_path), folder)
+    part = sorted(folder.glob("cases/*.parquet"))[0]
+    table = pq.read_table(part)
+    part.unlink()
+    for k, columns in enumerate((table.column_names, table.column_names[:-1])):
+        pq.write_table(table.select(columns), part.with_name(f"cases-{k}-{k + 1}.parquet"))
+    with pytest.raises(tpss.StudyError, match=r"cases-1-2\.parquet is damaged \(its columns"):
         tpss.load_table(folder)
 
 

@@ -13,6 +13,7 @@ from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError, shortened
+from tpss.files.checked import document_checksum
 from tpss.files.json_text import parse_json
 from tpss.files.read import read_bytes
 from tpss.files.refusals import ANOTHER, explained, reason
@@ -26,6 +27,13 @@ READ = (2, VERSION)
 
 MOST_BYTES = 200_000_000
 """Largest file that is read: a hundred times as large as those that are written. [byte]"""
+
+
+CHECKSUM = "sha256"
+"""Key of a checksum of everything else that the file says."""
+
+MOST_WEIGHT = 1e9
+"""Largest weight of a network whose inputs and outputs are scaled to 1."""
 
 
 class Weights(Part):
@@ -44,6 +52,8 @@ class Weights(Part):
             (m0, i0, o0), (m, i, n), (m1, n1), (m2, n2, o), (m3, o3) = shapes
         except ValueError:
             raise fault("weights that are not tables of numbers", REMEDY) from None
+        if max(float(np.abs(each).max(initial=0.0)) for each in self._all()) > MOST_WEIGHT:
+            raise fault("weights beyond all use", REMEDY)
         if not (m and m == m0 == m1 == m2 == m3 and i == i0 and n == n1 == n2 and o == o0 == o3):
             raise fault(f"weights of shapes {shapes}, which do not fit together", REMEDY)
         return self
@@ -200,10 +210,14 @@ def read_model(path: Path) -> ModelFile:
             f"{path} was written by another version of TPSS: its format is {document.get('version')!r}, "
             f"this version reads {' and '.join(map(str, READ))}; train it again"
         )
+    written = document.pop(CHECKSUM, None)
     try:
-        return ModelFile.model_validate(document)
+        model = ModelFile.model_validate(document)
     except ValidationError as error:
         raise ScenarioError([_finding(dict(d), path) for d in error.errors()]) from error
+    if written not in (None, document_checksum(document)):
+        raise ApproximatorError(f"{path} is damaged: its checksum is another; {REMEDY}")
+    return model
 
 
 def _document(path: Path) -> Any:
@@ -230,11 +244,11 @@ def check_target(path: Path, force: bool) -> None:
     ------
     ApproximatorError
     """
-    if path.is_dir():
-        raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
-    if path.exists() and not force:
-        raise ApproximatorError(f"{path} exists; {ANOTHER}, or --force to replace it")
     with _unwritable(path):
+        if path.is_dir():
+            raise ApproximatorError(f"{path} is a folder; give --out the name of a file")
+        if path.exists() and not force:
+            raise ApproximatorError(f"{path} exists; {ANOTHER}, or --force to replace it")
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
@@ -257,5 +271,7 @@ def _unwritable(path: Path) -> AbstractContextManager[None]:
 
 
 def text_of_model(model: ModelFile) -> str:
-    """The file as text, with all digits of its numbers."""
-    return json.dumps(model.model_dump(mode="json"), indent=None, separators=(",", ":")) + "\n"
+    """The file as text, with all digits of its numbers, and a checksum."""
+    document = model.model_dump(mode="json")
+    checked = {**document, CHECKSUM: document_checksum(document)}
+    return json.dumps(checked, indent=None, separators=(",", ":")) + "\n"

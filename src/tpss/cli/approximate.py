@@ -12,7 +12,7 @@ from rich.table import Table
 
 from tpss import units
 from tpss.cli.run import BAD_INPUT, DONE, INTERRUPTED
-from tpss.cli.terminal import Console, print_in_parts, progress_bar, say
+from tpss.cli.terminal import Console, print_in_parts, progress_bar, say, tell
 from tpss.errors import ApproximatorError, Finding, ScenarioError
 from tpss.extras import demand
 from tpss.files.read import MEGABYTE, demand_readable
@@ -47,7 +47,7 @@ def train_model(
     if not quiet:
         _print_model(model, Console())
         if not fault:
-            print(f"Wrote {written}")
+            tell(f"Wrote {written}")
     if fault:
         print(fault, file=sys.stderr)
         return BAD_INPUT
@@ -95,7 +95,7 @@ def predict_lines(
     predictions = model.predict(lines, "flag" if flag else "refuse", origin)
     if out is not None:
         _write(pd.concat([lines.reset_index(drop=True), predictions], axis=1), out)
-        print(f"Wrote {out}")
+        tell(f"Wrote {out}")
     elif len(predictions) == 1:
         _print_prediction(model, predictions.iloc[0])
     else:

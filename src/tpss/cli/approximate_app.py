@@ -7,8 +7,10 @@ from typing import Annotated
 import typer
 
 from tpss.cli.arguments import Force, Library, Quiet, argument, flag, option
+from tpss.cli.commands import Commands
 
 app = typer.Typer(
+    cls=Commands,
     help="TPSA, the approximator: learn from the simulations of a study, and predict further ones.",
     no_args_is_help=True,
     rich_markup_mode="markdown",

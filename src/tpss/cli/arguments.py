@@ -12,12 +12,13 @@ from typing import Annotated
 import typer
 
 from tpss.cli import complete
+from tpss.cli.commands import NO_VALUE
 from tpss.errors import ResultError
 
 option = partial(typer.Option, show_default=False)
 argument = partial(typer.Argument, show_default=False)
-flag = partial(typer.Option, show_default=False, metavar=" ")
-"""An option that takes no value; with nothing in the place of one, typer would show it as a `bool`."""
+flag = partial(typer.Option, show_default=False, metavar=NO_VALUE)
+"""An option that takes no value."""
 
 LIBRARY_VARIABLE = "TPSS_LIBRARY"
 

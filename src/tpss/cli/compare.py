@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tpss.cli.plot import figure_bytes
-from tpss.cli.terminal import Console, print_in_parts, say, widest_text
+from tpss.cli.terminal import Console, print_in_parts, say, tell, widest_text
 from tpss.errors import ResultError
 from tpss.extras import demand
 from tpss.files.several import check_files, save_files
@@ -100,11 +100,11 @@ def compare_result(
         if report:
             from tpss.report.html import write_report
 
-            print(f"Wrote {write_report(result, folder / REPORT, force=force, measured=compared)}")
+            tell(f"Wrote {write_report(result, folder / REPORT, force=force, measured=compared)}")
         return
     files = _save(compared, out, report, force)
     print_comparison(compared, console)
-    print(f"Wrote into {out}: {', '.join(each.name for each in files)}")
+    tell(f"Wrote into {out}: {', '.join(each.name for each in files)}")
 
 
 def _save(compared: "MeasuredComparison", out: Path, report: bool, force: bool) -> list[Path]:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from tpss.cli.terminal import tell
 from tpss.errors import ResultError
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
@@ -29,7 +30,7 @@ def export_result(
     demand_package(kind)
     place = folder / TABLES if out is None else out
     files = export(load_result(folder), kind, place, force=force, spreadsheet=spreadsheet)
-    print(f"Wrote into {place}: {', '.join(file.name for file in files)}")
+    tell(f"Wrote into {place}: {', '.join(file.name for file in files)}")
 
 
 def export_profiles_of(
@@ -69,4 +70,4 @@ def export_profiles_of(
             length_m = sum(part["end"] - part["begin"] for part in level["track_ranges"])
             covered_km[level["value"]] = length_m / 1e3
     bands = ", ".join(f"{value} on {kilometres(km)} km" for value, km in covered_km.items())
-    print(f"Wrote {out}: {bands or 'no stretch on which trains ran'}")
+    tell(f"Wrote {out}: {bands or 'no stretch on which trains ran'}")

@@ -7,8 +7,11 @@ from typing import Annotated
 import typer
 
 from tpss.cli.arguments import Force, argument, flag, option
+from tpss.cli.commands import Commands
 
-app = typer.Typer(help="Make scenario files from files of other formats.", no_args_is_help=True)
+app = typer.Typer(
+    help="Make scenario files from files of other formats.", cls=Commands, no_args_is_help=True
+)
 
 
 @app.callback()

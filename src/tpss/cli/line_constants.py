@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from tpss.cli.columns import Column
 from tpss.cli.tables import print_table
-from tpss.cli.terminal import Console, say
+from tpss.cli.terminal import Console, say, tell
 from tpss.files.refusals import explained, refuse_to_replace
 from tpss.files.whole import write_file
 from tpss.units import label
@@ -54,7 +54,7 @@ def print_line_constants(
         with explained(out):
             out.parent.mkdir(parents=True, exist_ok=True)
             write_file(out, text.encode())
-        print(f'Wrote {out}.  In a scenario:  supply.catenary = "{out.name}"')
+        tell(f'Wrote {out}.  In a scenario:  supply.catenary = "{out.name}"')
 
 
 def _print_conductors(found: "LineConstants", console: Console) -> None:

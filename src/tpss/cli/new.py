@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from tpss import examples
+from tpss.cli.terminal import tell
 from tpss.errors import ResultError
 from tpss.files.refusals import reason
 
@@ -58,7 +59,7 @@ def new_scenario(folder: Path, example: str | None = None) -> None:
     _write({folder / place: content for place, content in contents.items()}, folder)
     first = next(iter(contents))
     listed = " and ".join(str(folder / place) for place in contents)
-    print(f"Wrote {listed}.  Edit {'it' if len(contents) == 1 else 'them'}, then run:\n")
+    tell(f"Wrote {listed}.  Edit {'it' if len(contents) == 1 else 'them'}, then run:\n")
     document = tomllib.loads(contents[first].decode())
     calls = next(calls for kind, calls in NEXT.items() if kind in document or not kind)
     for call in calls:

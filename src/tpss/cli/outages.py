@@ -17,6 +17,7 @@ from tpss.cli.terminal import (
     parts_that_fit,
     progress_bar,
     say,
+    tell,
     widest_text,
 )
 from tpss.errors import ResultError
@@ -78,7 +79,7 @@ def run_outages(
     if report:
         file = found.write_report(place.with_suffix(HTML), force=force)
         if not quiet:
-            print(f"Wrote {file}")
+            tell(f"Wrote {file}")
     if interrupted:
         done = f"{len(found.rows)} of {found.cases} runs"
         print(f"Interrupted after {done}; the table holds these.", file=sys.stderr)

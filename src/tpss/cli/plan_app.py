@@ -6,8 +6,10 @@ from typing import Annotated
 import typer
 
 from tpss.cli.arguments import Force, Library, Quiet, argument, option
+from tpss.cli.commands import Commands
 
 app = typer.Typer(
+    cls=Commands,
     help="Plan investments in the power supply: what to build, where and when, under uncertain traffic.",
     no_args_is_help=True,
     rich_markup_mode="markdown",

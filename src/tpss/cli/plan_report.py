@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from tpss.cli.terminal import tell
 from tpss.extras import demand
 
 
@@ -18,4 +19,4 @@ def report_plan(folder: Path, out: Path | None, force: bool) -> None:
     demand("plan report", "plan")
     from tpss.planning.report import write_plan_report
 
-    print(f"Wrote {write_plan_report(folder, out, force=force)}")
+    tell(f"Wrote {write_plan_report(folder, out, force=force)}")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from tpss.cli.labels import demand_fitting, labels
+from tpss.cli.terminal import tell
 from tpss.errors import ResultError
 from tpss.extras import demand
 from tpss.results.contents import FIGURE_NAMES, FIGURES
@@ -81,7 +82,7 @@ def plot_results(
         raise ResultError(f"{which} holds nothing to draw: {reasons}")
     files = save_files(place, contents, force)
     listed = f"Wrote into {place}: {', '.join(file.name for file in files)}"
-    print(listed if figure == ALL else f"Wrote {files[0]}")
+    tell(listed if figure == ALL else f"Wrote {files[0]}")
     for name, reason in left_out:
         print(f"Left out {name}: {reason}")
 

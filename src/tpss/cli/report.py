@@ -1,17 +1,17 @@
 """The command ``tpss report``."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tpss.cli.labels import demand_fitting, labels
+from tpss.cli.terminal import tell
 from tpss.extras import demand
 from tpss.results.contents import REPORT
 
-if TYPE_CHECKING:
-    pass
-
 COMPARISON = "comparison.html"
+
+COVER = ("title", "project", "author", "remarks")
+"""What a first page may say."""
 
 
 def report_results(
@@ -20,6 +20,7 @@ def report_results(
     force: bool,
     given: Sequence[str] = (),
     corridor: Sequence[str] = (),
+    cover: Mapping[str, str] | None = None,
 ) -> None:
     """Write a report of a result folder, or a comparison of several, and print where it is.
 
@@ -32,6 +33,8 @@ def report_results(
         Labels of compared results, if they are given.
     corridor : sequence of str
         Stations over which plots along a line are drawn, if they are given.
+    cover : mapping of str to str, optional
+        What the first page of a single result's report says: title, project, author, remarks.
 
     Raises
     ------
@@ -40,6 +43,7 @@ def report_results(
         corridor, or the file cannot be written.
     """
     demand("report")
+    from tpss.report.cover import Cover
     from tpss.report.html import check_target, write_report
     from tpss.results.result import load_result
 
@@ -50,5 +54,7 @@ def report_results(
     check_target(out or own, force)
     named = dict(zip(given or labels(folders, results), results, strict=True))
     shown = results[0] if len(results) == 1 else named
-    file = write_report(shown, out or own, force=force, corridor=corridor)
-    print(f"Wrote {file}")
+    title, project, author, remarks = ((cover or {}).get(name, "") for name in COVER)
+    page = Cover(title, project, author, remarks) if cover else None
+    file = write_report(shown, out or own, force=force, corridor=corridor, cover=page)
+    tell(f"Wrote {file}")

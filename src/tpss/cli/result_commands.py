@@ -58,21 +58,43 @@ def report(
     corridor: Corridor = None,
     from_: From = None,
     to: To = None,
+    title: Annotated[
+        str | None,
+        option(
+            metavar="TEXT", help="Title of the report of a result, which gets a first page then."
+        ),
+    ] = None,
+    project: Annotated[
+        str | None, option(metavar="TEXT", help="Project, for the first page.")
+    ] = None,
+    author: Annotated[
+        str | None, option(metavar="TEXT", help="Author, for the first page.")
+    ] = None,
+    remarks: Annotated[
+        str | None,
+        option(metavar="TEXT", help="Remarks, for the first page; empty lines part paragraphs."),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Write a report of a result, a comparison of several, or a report of a study into one HTML file.
 
     It holds summary, plots, tables, audit and scenario, opens in any browser without a network, and
-    can be printed.
+    can be printed. With a title, project, author or remarks it begins with a page that has them, a
+    drawing of the lines and the worst places.
     """
     from tpss.cli.report import report_results
     from tpss.cli.study import demand_unused, is_study, report_study
 
+    stations = stations_of(corridor, from_, to)
+    said = {"title": title, "project": project, "author": author, "remarks": remarks}
+    cover = {name: text for name, text in said.items() if text is not None}
     if len(results) == 1 and is_study(results[0]):
-        demand_unused("a study", label=label, corridor=stations_of(corridor, from_, to))
+        demand_unused("a study", label=label, corridor=stations, **cover)
         report_study(results[0], out, force)
         return
-    report_results(results, out, force, label or [], stations_of(corridor, from_, to))
+    if len(results) > 1:
+        demand_unused("a comparison", **cover)
+    report_results(results, out, force, label or [], stations, cover)
 
 
 def compare(

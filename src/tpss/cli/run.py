@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tpss.cli.terminal import Console, compilation, progress_bar, say
+from tpss.cli.terminal import Console, compilation, progress_bar, say, tell
 from tpss.errors import ResultError
 from tpss.extras import demand
+from tpss.printable import printable
 from tpss.results.contents import REPORT
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def _run_one(
         return _report(ended, quiet, show, report), ended.result
     except KeyboardInterrupt:
         if not ended.fault:
-            print(f"Interrupted.  The result is in {ended.folder}", file=sys.stderr)
+            print(printable(f"Interrupted.  The result is in {ended.folder}"), file=sys.stderr)
         return INTERRUPTED, ended.result
     finally:
         if ended.fault:
@@ -189,7 +190,7 @@ def _report(ended: _Ended, quiet: bool, show: str | None, report: bool) -> int:
 
         file = write_report(result, ended.folder / REPORT)
         if not quiet:
-            print(f"Wrote {file}")
+            tell(f"Wrote {file}")
     if ended.fault:
         return BAD_INPUT
     code = exit_code(result)

@@ -5,6 +5,7 @@ import os
 from importlib import import_module
 from pathlib import Path
 
+from tpss.cli.terminal import tell
 from tpss.errors import ResultError
 from tpss.files.json_text import read_json_file
 from tpss.files.refusals import explained
@@ -39,7 +40,7 @@ def write_schema(out: Path | None, kind: str = "scenario") -> None:
         raise ResultError(f"{out} exists and is not a schema of TPSS; name another file")
     with explained(out, "name another file"):
         write_file(out, text.encode())
-    print(f"Wrote {out}.  In a {kind}, the first line  #:schema {out.name}  makes editors use it.")
+    tell(f"Wrote {out}.  In a {kind}, the first line  #:schema {out.name}  makes editors use it.")
 
 
 def _is_our_schema(file: Path) -> bool:

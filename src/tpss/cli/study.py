@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from tpss.cli.plot import ALL, FORMATS, figure_bytes
+from tpss.cli.terminal import tell
 from tpss.errors import ResultError, StudyError, no_such
 from tpss.extras import demand
 from tpss.files.refusals import refuse_to_replace
@@ -57,8 +58,8 @@ def write_case(place: Path, case: int, out: Path | None, force: bool) -> None:
     refuse_to_replace(target, force, "a file", Path.is_file)  # before a scenario is made
     scenario_of(design, case).save(target, force=force)
     values = ", ".join(f"{name} = {value!r}" for name, value in design.values(case).items())
-    print(f"Wrote {target}: case {case}, {values}")
-    print(f"Run it with  tpss run {target}")
+    tell(f"Wrote {target}: case {case}, {values}")
+    tell(f"Run it with  tpss run {target}")
 
 
 def export_study(
@@ -81,7 +82,7 @@ def export_study(
     contents = contents_of({"cases": table}, kind, "study.xlsx", spreadsheet)
     check_files(place, contents, force)
     files = save_files(place, contents, force)
-    print(f"Wrote into {place}: {', '.join(file.name for file in files)}")
+    tell(f"Wrote into {place}: {', '.join(file.name for file in files)}")
 
 
 def plot_study(folder: Path, figure: str, out: Path | None, force: bool) -> None:
@@ -117,7 +118,7 @@ def plot_study(folder: Path, figure: str, out: Path | None, force: bool) -> None
         for name, file in zip(names, files, strict=True)
     }
     written = save_files(place, contents, force)
-    print(f"Wrote into {place}: {', '.join(file.name for file in written)}")
+    tell(f"Wrote into {place}: {', '.join(file.name for file in written)}")
 
 
 def report_study(folder: Path, out: Path | None, force: bool) -> None:
@@ -131,4 +132,4 @@ def report_study(folder: Path, out: Path | None, force: bool) -> None:
     demand("study", "report")
     from tpss.sweep.report import write_study_report
 
-    print(f"Wrote {write_study_report(folder, out or folder / REPORT, force=force)}")
+    tell(f"Wrote {write_study_report(folder, out or folder / REPORT, force=force)}")

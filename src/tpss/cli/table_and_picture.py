@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tpss.cli.plot import demand_format, figure_bytes
+from tpss.cli.terminal import tell
 from tpss.extras import demand
 from tpss.files import whole
 from tpss.files.refusals import explained, refuse_to_replace
@@ -47,4 +48,4 @@ def _write(file: Path, content: bytes) -> None:
     with explained(file):
         file.parent.mkdir(parents=True, exist_ok=True)
         whole.write_file(file, content)
-    print(f"Wrote {file}")
+    tell(f"Wrote {file}")

@@ -57,6 +57,11 @@ def say(console: Console, text: str) -> None:
     console.print(text, highlight=False, markup=False, soft_wrap=True)
 
 
+def tell(text: str) -> None:
+    """Print a line that may hold names of files, which others may have chosen."""
+    print(printable(text, "\n"))
+
+
 def announce_compilation(console: Console) -> bool:
     """Print that the kernels have to be compiled, if they have; tell whether."""
     from tpss.run.kernels import are_ready

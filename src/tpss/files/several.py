@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tpss.errors import ResultError
 from tpss.files.refusals import ANOTHER, explained, refuse_to_replace
-from tpss.files.whole import real, settle, write_new
+from tpss.files.whole import real, settle, write_file, write_new
 from tpss.files.workplace import NEW, OLD, clear_left, workplace
 
 JOURNAL = "journal.json"
@@ -22,7 +22,7 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
     ResultError
         The folder is not one, or files exist and may not be replaced.
     """
-    clear_left(_named(real(folder)), take_back)
+    _clear_left(real(folder))
     if os.path.lexists(folder) and not folder.is_dir():
         raise ResultError(f"{folder} is not a folder; {ANOTHER}")
     there = [folder / name for name in names if os.path.lexists(folder / name)]
@@ -36,16 +36,20 @@ def check_files(folder: Path, names: Iterable[str], force: bool) -> None:
 def save_files(folder: Path, contents: Mapping[str, bytes], force: bool) -> list[Path]:
     """Write files into a folder, all of them or none; the folder is made if it is not there.
 
+    Names may be those of files in folders within it, parted by slashes.
+
     Raises
     ------
     ResultError
         As `check_files`, or the folder cannot be written.
     """
     target = real(folder)
+    _clear_left(target)
     with explained(folder), workplace(_named(target), take_back) as work:
         new = work / NEW
         new.mkdir()
         for name, content in contents.items():
+            (new / name).parent.mkdir(parents=True, exist_ok=True)
             write_new(new / name, content)
         check_files(folder, contents, force)
         if target.exists():
@@ -61,18 +65,26 @@ def _named(target: Path) -> Path:
     return target / "export"
 
 
+def _clear_left(target: Path) -> None:
+    """Put right what killed processes left in a folder, or above it while it was not there."""
+    for folder in (target, target.parent):
+        clear_left(_named(folder), take_back)
+
+
 def _move_files(work: Path, target: Path) -> None:
     """Put written files into a folder; if one cannot be moved, everything is restored."""
-    (work / OLD).mkdir()
-    names = sorted(file.name for file in (work / NEW).iterdir())
+    new, old = work / NEW, work / OLD
+    names = sorted(file.relative_to(new).as_posix() for file in new.rglob("*") if file.is_file())
     there = [name for name in names if os.path.lexists(target / name)]
-    write_new(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
+    write_file(work / JOURNAL, json.dumps({"names": names, "there": there}).encode())
     settle(work)
     try:
         for name in names:
             if name in there:
-                (target / name).rename(work / OLD / name)
-            (work / NEW / name).rename(target / name)
+                (old / name).parent.mkdir(parents=True, exist_ok=True)
+                (target / name).rename(old / name)
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            (new / name).rename(target / name)
     except BaseException:
         take_back(work)
         raise

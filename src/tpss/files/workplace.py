@@ -40,16 +40,37 @@ def workplace(target: Path, put_right: PutRight = nothing_to_put_right) -> Itera
     target : Path
         What is to be made.
     put_right : callable
-        Called first for every workplace of the same target that was left behind.
+        Called first for every workplace of the same target that was left behind, and for this one if
+        the work ends in an error.
     """
     clear_left(target, put_right)
     work, lock = _locked(target)
+    is_right = True
     try:
         yield work
+    except BaseException:
+        is_right = _can_put_right(work, put_right)
+        raise
     finally:
-        _empty(work)
+        if is_right:
+            _empty(work)
         lock.release()
-        _remove(work)
+        if is_right:
+            _remove(work)
+
+
+def _can_put_right(work: Path, put_right: PutRight) -> bool:
+    """Put a workplace right if the system lets us; else it is left to whoever comes next."""
+    try:
+        put_right(work)
+    except OSError:
+        return False
+    return True
+
+
+def _above(target: Path) -> Path:
+    """The nearest folder above that exists, in which workplaces of a target are made."""
+    return next(folder for folder in target.parents if os.path.lexists(folder))
 
 
 def _locked(target: Path) -> tuple[Path, FileLock]:
@@ -58,9 +79,8 @@ def _locked(target: Path) -> tuple[Path, FileLock]:
     Between the two, another process may take the folder for one that was left behind, and remove it;
     then the next one is made.
     """
-    parent = next(folder for folder in target.parents if os.path.lexists(folder))
     while True:
-        work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=parent))
+        work = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=_above(target)))
         lock = FileLock(work / LOCK)
         try:
             lock.acquire()
@@ -85,17 +105,16 @@ def _empty(work: Path) -> None:
 
 
 def _remove(work: Path) -> None:
-    """Remove a workplace that is empty but for its lock, which nobody holds: the lock last."""
+    """Remove a workplace with its lock, which nobody holds; not one in which something is left."""
     with suppress(OSError):
-        (work / LOCK).unlink(missing_ok=True)
-        work.rmdir()
+        if all(path.name == LOCK for path in work.iterdir()):
+            (work / LOCK).unlink(missing_ok=True)
+            work.rmdir()
 
 
 def clear_left(target: Path, put_right: PutRight = nothing_to_put_right) -> None:
     """Put right and remove what processes that were killed have left of their work on a target."""
-    if not target.parent.is_dir():
-        return
-    for left in target.parent.glob(f".{literal(target.name)}-*"):
+    for left in _above(target).glob(f".{literal(target.name)}-*"):
         with suppress(Timeout, OSError):  # somebody works there, or clears it too
             if (left / LOCK).exists():
                 with FileLock(left / LOCK, timeout=0):

@@ -4,8 +4,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Protocol
 
-from tpss.errors import Finding, ScenarioError
-from tpss.files.refusals import reason
+from tpss.files.several import save_files
 from tpss.printable import printable
 
 WIDTH = 100
@@ -52,25 +51,11 @@ def comments(head: str, told: Told) -> str:
 def write(texts: dict[str, str], folder: Path, force: bool) -> list[Path]:
     """Write files into a folder, which is made if need be; return their paths.
 
+    Either all of them are written, or none.
+
     Raises
     ------
-    ScenarioError
+    ResultError
         Files exist and may not be replaced, or cannot be written.
     """
-    targets = [folder / name for name in texts]
-    existing = [target for target in targets if target.exists() and not force]
-    if existing:
-        remedy = "give another --out, or --force to replace it"
-        raise ScenarioError(
-            [Finding(str(target), "", "", "it exists already", remedy) for target in existing]
-        )
-    try:
-        for target, text in zip(targets, texts.values(), strict=True):
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8")
-    except OSError as error:
-        problem = f"it cannot be written: {reason(error)}"
-        raise ScenarioError(
-            [Finding(str(folder), "", "", problem, "give another --out")]
-        ) from error
-    return targets
+    return save_files(folder, {name: text.encode() for name, text in texts.items()}, force)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from tpss.errors import TpssError
 
 MOST_PARAMETERS = 16
-"""As many as a record of the kernels has places, `numerics.called`."""
+"""As many as a record of the kernels has places, `numerics.called`, which a scenario must not import."""
 
 
 class LawError(TpssError):

@@ -79,7 +79,7 @@ def read_table(path: Path) -> Table:
         remedy = "write a header, such as time [s],station_active_power:West [MW], and rows"
         raise ScenarioError([Finding(str(path), "line 1", "", problem, remedy)])
     separator = next((each for each in SEPARATORS if each in lines[skipped]), ",")
-    (_, header), *rows = _rows("\n".join(lines[skipped:]), separator, skipped)
+    (_, header), *rows = _rows(path, "\n".join(lines[skipped:]), separator, skipped)
     while (
         len(header) > 1
         and not header[-1]
@@ -108,10 +108,21 @@ def _text_of(path: Path) -> tuple[str, tuple[str, ...]]:
     return text, tuple(notes)
 
 
-def _rows(text: str, separator: str, skipped: int) -> list[tuple[int, list[str]]]:
-    """Rows with anything in them, and the numbers of their lines; no white space around the cells."""
+def _rows(path: Path, text: str, separator: str, skipped: int) -> list[tuple[int, list[str]]]:
+    """Rows with anything in them, and the numbers of their lines; no white space around the cells.
+
+    Raises
+    ------
+    ScenarioError
+        A cell is longer than any that Python's reader takes, such as one of quotes that nobody closes.
+    """
     reader = csv.reader(io.StringIO(text), delimiter=separator, skipinitialspace=True)
-    rows = [(skipped + reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    try:
+        rows = [(skipped + reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    except csv.Error as error:
+        place = f"line {skipped + reader.line_num}"
+        remedy = "close quotes that are open, and leave out what is no table"
+        raise ScenarioError([Finding(str(path), place, "", str(error), remedy)]) from error
     return [(number, row) for number, row in rows if any(row)]
 
 

@@ -31,7 +31,6 @@ from tpss.model.supply_plan import (
     SupplyPlan,
 )
 from tpss.powerflow.assembly import assemble
-from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import Network
 from tpss.powerflow.system import System, system
 from tpss.scenario.line import Line
@@ -55,7 +54,7 @@ def build_supply(
         flat_pu=plan.flat_pu, inner_ohm=plan.inner_ohm, mutual_ohm=mutual_impedances_ohm(supply),
         stores=build_stores(plan.stores, supply.storage),
     )  # fmt: skip
-    return mark_unfed(network), plan
+    return network, plan
 
 
 def joined_network(
@@ -98,7 +97,7 @@ def joined_network(
         mutual_ohm=mutual_impedances_ohm(supply),
         stores=build_stores([node[n] for n in plan.stores], supply.storage),
     )
-    return mark_unfed(network), {n: other for n, other in enumerate(node) if n != other}
+    return network, {n: other for n, other in enumerate(node) if n != other}
 
 
 def system_of(supply: Supply) -> System:

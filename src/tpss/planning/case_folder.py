@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from tpss.errors import StudyError
+from tpss.files.checked import checked_name
 from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained
 from tpss.files.whole import UNFINISHED, write_file
@@ -80,7 +81,8 @@ class CaseFolder:
     def add(self, rows: Sequence[dict[str, Any]]) -> None:
         """Add the rows of some cases, all of them or none."""
         name = hashlib.sha256("".join(sorted(row[DIGEST] for row in rows)).encode()).hexdigest()
-        write_file(self.path / CASES / f"{name[:24]}.parquet", as_parquet(rows))
+        content = as_parquet(rows)
+        write_file(self.path / CASES / checked_name(name[:24], ".parquet", content), content)
 
     def table(self) -> pd.DataFrame:
         """All rows, by their digests; no case is in it twice.
@@ -90,12 +92,10 @@ class CaseFolder:
         StudyError
             A file is damaged.
         """
-        import pyarrow as pa
-
-        tables = read_parts(sorted((self.path / CASES).glob("*.parquet")), "plan")
-        if not tables:
+        files = sorted((self.path / CASES).glob("*.parquet"))
+        if not files:
             return pd.DataFrame(index=pd.Index([], name=DIGEST, dtype=object))
-        whole: pd.DataFrame = pa.concat_tables(tables, promote_options="permissive").to_pandas()
+        whole: pd.DataFrame = read_parts(files, "plan", "permissive").to_pandas()
         return whole.set_index(DIGEST)
 
 

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from tpss.planning.price_fields import Cost, Money, PriceOrNumber, Year, amounts
 from tpss.scenario.fields import Flag, Name, Part, Real, Version, Whole, ascending, fault
+from tpss.scenario.variants import Value, Values
 
 PlainName = Annotated[Name, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 """A name without spaces, from which others are made."""
@@ -131,10 +132,10 @@ class PlannedMeasure(Part):
     like: Name | None = Field(
         default=None, description="Measure whose keys it has where it gives none of its own."
     )
-    changes: dict[str, Any] = Field(
+    changes: Values = Field(
         default={}, alias="set", description="Values by key path, as in a variant."
     )
-    additions: dict[str, Any] = Field(
+    additions: Values = Field(
         default={},
         alias="add",
         description="Items by the key path of the list behind which they come.",
@@ -142,7 +143,7 @@ class PlannedMeasure(Part):
     removals: tuple[str, ...] = Field(
         default=(), alias="remove", description="Key paths of what is taken out."
     )
-    levels: Annotated[tuple[Any, ...], Field(min_length=1, max_length=50)] | None = Field(
+    levels: Annotated[tuple[Value, ...], Field(min_length=1, max_length=50)] | None = Field(
         default=None,
         description=f"Values of which one is built, and may be raised to a later one; in set and add "
         f'"{LEVEL}" stands for it.',

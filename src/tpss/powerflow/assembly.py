@@ -14,6 +14,7 @@ from tpss.powerflow.bundles import (
     edges_of_bundles,
     new_bundle_flow,
 )
+from tpss.powerflow.completion import complete
 from tpss.powerflow.groups import edges_within, groups_of, new_group_flow
 from tpss.powerflow.links import LinkPart, add_admittances, edges_of_links, links_of
 from tpss.powerflow.network import (
@@ -29,6 +30,7 @@ from tpss.powerflow.network import (
     SourceFlow,
     Standing,
 )
+from tpss.powerflow.passive import passive_nodes
 from tpss.powerflow.shared_grids import (
     edges_of_shared,
     shared_grids,
@@ -117,7 +119,9 @@ def assemble(
     edges += [(part.start_node, part.end_node) for part in branches]
     edges += edges_of_links(links) + edges_of_bundles(bundles, ends)
     edges += [*room, *edges_of_shared(mutual_ohm, sources["node"].tolist())]
-    pattern, place = _pattern(n_nodes, tuple(edges))
+    joined = {n for pair in [*ends, *room] for n in pair} | set(sources["node"].tolist())
+    joined |= set() if stores is None else set(stores["node"].tolist())
+    pattern, place = _pattern(n_nodes, tuple(edges), passive_nodes(n_nodes, joined))
     impedances = [abs(part.impedance_ohm) for part in branches]
     impedances += [part.shortest_ohm for part in sections]
     impedances += [abs(part.impedance_ohm) for part in links]
@@ -139,7 +143,7 @@ def assemble(
     shared = shared_grids(mutual_ohm, sources, inner if bundles else None)
     stamp_shared(admittance_s, shared, sources, place)
 
-    return Network(
+    network = Network(
         system=system,
         sections=Section.array(
             (*part[:-1], *blocks(part), gap_weight(part.shortest_ohm, system)) for part in sections
@@ -156,6 +160,7 @@ def assemble(
         shared=shared,
         stores=StoreLaw.blank(0) if stores is None else stores,
     )
+    return complete(network, admittance_s)
 
 
 def new_flow(network: Network, n_trains: int) -> Flow:

@@ -18,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tpss.numerics.block_lu import Pattern
-from tpss.powerflow.bundles import NO_BUNDLES, without_dead_conductors
-from tpss.powerflow.links import add_admittances, ends_of, weakened
+from tpss.powerflow.bundles import NO_BUNDLES
+from tpss.powerflow.completion import complete
+from tpss.powerflow.links import add_admittances, weakened
 from tpss.powerflow.network import UNFED, Network
 from tpss.powerflow.shared_grids import NO_SHARED_GRIDS, shared_grids, stamp_shared
 from tpss.record import Records, copy_of_records
@@ -65,7 +66,7 @@ def in_service(
         inner_ohm = None if network.bundles == NO_BUNDLES else network.bundles.inner_ohm
         shared = shared_grids(network.shared.mutual_ohm, sources, inner_ohm)
         changed = changed._replace(shared=shared)
-    return mark_unfed(changed._replace(admittance_s=_constant_admittance(changed)))
+    return complete(changed, constant_admittance(changed))
 
 
 def _idle(stores: Records[StoreLaw], out: Collection[int]) -> Records[StoreLaw]:
@@ -76,18 +77,7 @@ def _idle(stores: Records[StoreLaw], out: Collection[int]) -> Records[StoreLaw]:
     return changed
 
 
-def mark_unfed(network: Network) -> Network:
-    """The network with those nodes marked that no source reaches."""
-    unfed = unfed_nodes(network)
-    if not unfed.any():
-        return network
-    source_of_node = np.where(unfed, UNFED, network.source_of_node)
-    dead = unfed[network.sections["start_node"]]
-    bundles = without_dead_conductors(network.bundles, dead)
-    return network._replace(source_of_node=source_of_node, bundles=bundles)
-
-
-def _constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
+def constant_admittance(network: Network) -> npt.NDArray[np.complex128]:
     """What branches and links in service, and common grids, put into each block of the system. [S]
 
     Summed anew: what is left of a sum after a part of it is taken off is a rounding, not nothing.
@@ -114,26 +104,3 @@ def places_of_blocks(pattern: Pattern) -> dict[tuple[int, int], int]:
             place[int(pivot.node), int(neighbour.node)] = int(neighbour.upper)
             place[int(neighbour.node), int(pivot.node)] = int(neighbour.lower)
     return place
-
-
-def unfed_nodes(network: Network) -> npt.NDArray[np.bool_]:
-    """Nodes that no source in service reaches by what is in service, and sections, shape (nodes,)."""
-    neighbours: list[list[int]] = [[] for _ in range(network.source_of_node.size)]
-    carrying = network.branches["admittance_s"] != 0.0
-    starts = [*network.branches["start_node"][carrying], *network.sections["start_node"]]
-    ends = [*network.branches["end_node"][carrying], *network.sections["end_node"]]
-    for start, end in zip(starts, ends, strict=True):
-        neighbours[start].append(end)
-        neighbours[end].append(start)
-    for k, (nodes, _) in enumerate(ends_of(network.links)):
-        if network.links.admittance_s[k] != 0.0:
-            for node in nodes:
-                neighbours[node] += [other for other in nodes if other != node]
-    unfed = network.source_of_node < 0
-    waiting = np.flatnonzero(~unfed).tolist()
-    while waiting:
-        for node in neighbours[waiting.pop()]:
-            if unfed[node]:
-                unfed[node] = False
-                waiting.append(node)
-    return unfed

@@ -29,7 +29,7 @@ from tpss.powerflow.newton import (
     MOST_PASSES,
     Solution,
     begin_pass,
-    evaluate_node,
+    evaluate_nodes,
     find_direction,
     join_section,
     mark_base,
@@ -126,10 +126,7 @@ def _evaluate_linked(
     largest, merit, _ = evaluate_bundles(
         network.bundles, largest, merit, 1.0, scale, start, network, flow, loads
     )
-    for n in range(flow.nodes.size):
-        square = evaluate_node(n, not moves, network, flow)
-        largest = max(largest, square)
-        merit += square
+    largest, merit = evaluate_nodes(largest, merit, not moves, network, flow)
     return math.sqrt(largest), merit
 
 

@@ -248,7 +248,9 @@ class Network(NamedTuple):
     `following.FOLLOWS` less the index of another node: it has the voltage of that one."""
     pattern: Pattern
     admittance_s: Complexes
-    """What the branches, and grids of several sources, put into each block of the linear system. [S]"""
+    """With what each block of the linear system begins: what the branches, and grids of several sources,
+    put into it, once the passive nodes are eliminated; in their places it has their factors, see
+    `block_lu.eliminate_passive`. [S]"""
     tolerance: float
     """Largest mismatch of a solution, in per unit of base power or base voltage."""
     groups: Groups

@@ -44,7 +44,7 @@ import math
 from enum import IntEnum
 
 from tpss.kernel import at, inlined, kernel, switch
-from tpss.numerics.block_lu import Block, solve_blocks
+from tpss.numerics.block_lu import Block, solve_blocks, substitute_passive
 from tpss.numerics.pairs import (
     Pair,
     apply,
@@ -73,6 +73,7 @@ from tpss.powerflow.coupled import direct_groups, evaluate_groups, is_coupled
 from tpss.powerflow.following import FOLLOWS, follow
 from tpss.powerflow.links import leave_by_links
 from tpss.powerflow.network import UNFED, Flow, Loads, Network
+from tpss.powerflow.passive import evaluate_passive
 from tpss.powerflow.plausible import sources_are_plausible, voltages_are_plausible
 from tpss.powerflow.sharing import balance_of_sharing, shares_its_grid
 from tpss.powerflow.stores import add_stores
@@ -208,6 +209,26 @@ def evaluate_node(n: int, derivatives: bool, network: Network, flow: Flow) -> fl
 
 
 @inlined
+def evaluate_nodes(
+    largest: float, merit: float, derivatives: bool, network: Network, flow: Flow
+) -> tuple[float, float]:
+    """`evaluate_node` of all nodes: the largest square of a residual so far, and the sum of them."""
+    # 1. Rows that are eliminated once, before those to which they are carried over become laws.
+    for k in range(network.pattern.once):
+        square = evaluate_passive(k, derivatives, network, flow)
+        largest = max(largest, square)
+        merit += square
+    # 2. All others.
+    for n in range(flow.nodes.size):
+        if network.pattern.is_once[at(n)]:
+            continue
+        square = evaluate_node(n, derivatives, network, flow)
+        largest = max(largest, square)
+        merit += square
+    return largest, merit
+
+
+@inlined
 def begin_pass(derivatives: bool, network: Network, flow: Flow) -> None:
     """Start the leaving currents, and the linear system, with the lumped branches and the stores."""
     _leave_by_branches(network, flow)
@@ -276,10 +297,7 @@ def evaluate(
         network.bundles, largest, merit, sign, scale, start, network, flow, loads
     )
     # 3. Current balance of the nodes, or the law of the sources.
-    for n in range(flow.nodes.size):
-        square = evaluate_node(n, derivatives, network, flow)
-        largest = max(largest, square)
-        merit += square
+    largest, merit = evaluate_nodes(largest, merit, derivatives, network, flow)
     if not math.isfinite(merit):
         return math.inf, math.inf, 0.0
     return math.sqrt(largest), merit, sign
@@ -289,6 +307,7 @@ def evaluate(
 def find_direction(network: Network, flow: Flow) -> float:
     """Solve for the Newton step; return the sign of the node system's determinant."""
     sign = solve_blocks(network.pattern, flow.blocks, flow.nodes)
+    substitute_passive(network.pattern, network.admittance_s, flow.nodes)
     for n in range(flow.nodes.size):
         flow.nodes[at(n)].direction_v = flow.nodes[at(n)].right_side
     for s in range(network.sections.size):

@@ -260,6 +260,7 @@ def _moving(seen: Mapping[str, Result], whole: Mapping[str, Result], plot: str) 
     return {
         "plot": plot,
         "step_min": finest,
+        "start_s": next(iter(whole.values())).scenario.simulation.start_s,
         "steps": max(round(run["steps"] * run["step_min"] / finest) for run in moving),
         "runs": moving,
         "choices": [name for name in names if all(name in each for each in common)],

@@ -14,6 +14,7 @@ import xarray as xr
 
 from tpss.errors import ResultError, ScenarioError
 from tpss.files import whole, workplace
+from tpss.files.checked import document_checksum
 from tpss.files.json_text import read_json_file
 from tpss.files.read import MEGABYTE, demand_readable
 from tpss.files.refusals import explained, refuse_to_replace
@@ -31,7 +32,7 @@ PACKED = {"zlib": True, "complevel": 1, "shuffle": True}
 """How numbers are compressed: more than this level takes longer and saves little."""
 
 CHECKSUMS = "sha256"
-"""Key of a saved summary: checksums of the other files, by their names."""
+"""Key of a saved summary: checksums of all files, its own too, by their names."""
 
 ONE_AT_A_TIME = threading.Lock()
 """The netCDF library is not safe in several threads at once."""
@@ -52,6 +53,7 @@ def check_target(scenario: Scenario, folder: Path | None, force: bool) -> None:
         It exists and may not be replaced, it cannot be made, or the disk is full.
     """
     with explained(folder or PARENT):
+        _put_right_first(folder)
         _refuse(folder, force)
         workplace.try_out(whole.real(folder or next_folder(scenario.name)))
 
@@ -65,6 +67,7 @@ def save(
 ) -> Path:
     """Write a result folder.  See `Result.save`."""
     with explained(folder or PARENT):
+        _put_right_first(folder)
         _refuse(folder, force)
         target = whole.real(folder or next_folder(scenario.name))
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -75,10 +78,9 @@ def save(
             # The simulation has needed more memory than this.
             content = _as_netcdf(dataset)
             whole.write_new(new / DATASET, content)
-            whole.write_new(new / SCENARIO, tomli_w.dumps(scenario.as_document()).encode())
-            checked = {**summary, CHECKSUMS: {DATASET: hashlib.sha256(content).hexdigest()}}
-            text = json.dumps(checked, indent=2, ensure_ascii=False)
-            whole.write_new(new / SUMMARY, f"{text}\n".encode())
+            run = tomli_w.dumps(scenario.as_document()).encode()
+            whole.write_new(new / SCENARIO, run)
+            whole.write_new(new / SUMMARY, _with_checksums(summary, content, run))
             if folder is None:
                 return _move_to_next(new, scenario.name)
             _refuse(folder, force)
@@ -86,9 +88,26 @@ def save(
             return folder
 
 
+def _with_checksums(summary: dict[str, Any], dataset: memoryview, scenario: bytes) -> bytes:
+    """Content of a summary's file, with the checksums of all files."""
+    checksums = {
+        DATASET: hashlib.sha256(dataset).hexdigest(),
+        SCENARIO: _of_text(scenario),
+        SUMMARY: document_checksum(summary),
+    }
+    text = json.dumps({**summary, CHECKSUMS: checksums}, indent=2, ensure_ascii=False)
+    return f"{text}\n".encode()
+
+
 def _put_right(target: Path) -> workplace.PutRight:
     """What is done where a process was killed while it put a result into its place."""
     return lambda work: workplace.restore(work, target, carry_over)
+
+
+def _put_right_first(folder: Path | None) -> None:
+    """Put right what processes that were killed have left of a named folder, before it is looked at."""
+    if folder is not None:
+        workplace.clear_left(whole.real(folder), _put_right(whole.real(folder)))
 
 
 def _refuse(folder: Path | None, force: bool) -> None:
@@ -125,8 +144,7 @@ def next_folder(name: str, parent: Path = PARENT) -> Path:
 
 def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
     """Read a result folder.  See `load_result`."""
-    if not folder.exists():
-        workplace.clear_left(whole.real(folder), _put_right(whole.real(folder)))
+    _put_right_first(folder)
     missing = [name for name in (DATASET, SUMMARY, SCENARIO) if not (folder / name).is_file()]
     if missing:
         raise ResultError(
@@ -137,7 +155,8 @@ def load(folder: Path) -> tuple[Scenario, xr.Dataset, dict[str, Any]]:
         summary = read_json_file(folder / SUMMARY)
         _demand_this_format(folder, summary)
         # First: on some damaged files HDF5 ends the process.
-        _demand_what_was_written(folder / DATASET, summary.pop(CHECKSUMS, {}))
+        _demand_what_was_written(folder, summary)
+        _demand_whole(summary)
         dataset = _read_netcdf(folder / DATASET)
         with using(None):  # it holds what it took from any library
             scenario = load_scenario(folder / SCENARIO)
@@ -217,12 +236,40 @@ def _demand_this_format(folder: Path, summary: Any) -> None:
         )
 
 
-def _demand_what_was_written(file: Path, checksums: dict[str, str]) -> None:
-    """Raise a `ValueError` if a file is not the one of which a checksum is known."""
-    with file.open("rb") as opened:
+ALWAYS = {
+    "name", "status", "audit", "limited", "provenance", "time_step_min", "duration_min", "studied_train",
+    "trip_time_min", "total_energy_mwh", "station_energy_mwh", "losses_mwh", "lowest_voltage",
+}  # fmt: skip
+"""Keys of every summary of this format."""
+
+
+def _demand_whole(summary: dict[str, Any]) -> None:
+    """Raise a `ValueError` if a summary lacks what all have, as one without a checksum may."""
+    if lacking := ALWAYS - set(summary):
+        raise ValueError(f"{SUMMARY} has no {', '.join(sorted(lacking))}")
+
+
+def _demand_what_was_written(folder: Path, summary: dict[str, Any]) -> None:
+    """Take the checksums out of a summary, and raise a `ValueError` if a file has another one.
+
+    Results that were saved before know some of them, or none.
+    """
+    written = summary.pop(CHECKSUMS, {})
+    with (folder / DATASET).open("rb") as opened:
         found = hashlib.file_digest(opened, "sha256").hexdigest()
-    if checksums.get(file.name, found) != found:
-        raise ValueError(f"{file.name} is not as it was written: its checksum is another")
+    there = {
+        DATASET: found,
+        SCENARIO: _of_text((folder / SCENARIO).read_bytes()),
+        SUMMARY: document_checksum(summary),
+    }
+    for name, checksum in there.items():
+        if written.get(name, checksum) != checksum:
+            raise ValueError(f"{name} is not as it was written: its checksum is another")
+
+
+def _of_text(content: bytes) -> str:
+    """Checksum of a text, whatever ends its lines."""
+    return hashlib.sha256(content.replace(b"\r\n", b"\n")).hexdigest()
 
 
 def _demand_a_result(dataset: xr.Dataset) -> None:

@@ -33,6 +33,14 @@ class Part(BaseModel):
         frozen=True, extra="forbid", allow_inf_nan=False, validate_by_name=True
     )
 
+    def __dir__(self) -> list[str]:
+        """Names that a prompt completes: what a part is, not what pydantic gives to any model."""
+        return [
+            name
+            for name in super().__dir__()
+            if name.startswith("__") or not hasattr(BaseModel, name)
+        ]
+
 
 def fields_of(part: Any) -> dict[str, FieldInfo]:
     """Fields of a part of a scenario, a model or a dataclass; empty for anything else."""

@@ -1,5 +1,6 @@
 """Variants of a scenario: named changes, kept in its file."""
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -15,17 +16,41 @@ ALL = "all"
 """Stands for the scenario as it is and each of its variants, where they are chosen."""
 
 
+def _all_finite(value: Any) -> Any:
+    """A value without numbers that are not finite, which no file of a result could hold."""
+    for path, inside in _flat(value) if isinstance(value, dict) else [("it", value)]:
+        if not all(map(math.isfinite, _numbers(inside))):
+            raise fault(f"{path} has a number that is not finite", "write a finite number")
+    return value
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """Numbers with decimals anywhere in a value."""
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, dict | list | tuple):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from _numbers(each)
+
+
+Value = Annotated[Any, AfterValidator(_all_finite)]
+"""Any value; what else is wrong with it shows where it is put in."""
+
+Values = Annotated[dict[str, Any], AfterValidator(_all_finite)]
+"""Values by key path."""
+
+
 class Variant(Part):
     """Changes of the scenario, made in this order."""
 
     description: str = Field(default="", description="What it is about.")
-    changes: dict[str, Any] = Field(
+    changes: Values = Field(
         default={},
         alias="set",
         description="Values by key path. Keys without dots may be nested; a quoted path with a table "
         "replaces that as a whole.",
     )
-    additions: dict[str, Any] = Field(
+    additions: Values = Field(
         default={},
         alias="add",
         description="Items by the key path of the list behind which they come.",

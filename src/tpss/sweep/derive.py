@@ -56,6 +56,10 @@ def scenario_with(design: Design, values: Mapping[str, Any], case: int) -> Scena
     return Scenario.from_own_document(document, study.base_source)
 
 
+MOST_PIECES = 1_000_000
+"""Pieces of a line with a drawn profile; no line that a scenario may have is cut into more."""
+
+
 def draw_gradients(
     document: dict[str, Any], mean: float, deviation: float, number: int, design: Design
 ) -> None:
@@ -67,8 +71,13 @@ def draw_gradients(
     drawn = design.study.file.gradients
     assert drawn is not None, "they are asked for"
     line = document["line"] if drawn.key == LINE else document["lines"][drawn.line]
-    length_km, begin_km = line.get("length_km"), line.get("begins_at_km", 0.0)
+    if not isinstance(line, dict):
+        return  # it is refused where the scenario is made, and so is what follows
+    length_km: Any = line.get("length_km")
+    begin_km: Any = line.get("begins_at_km", 0.0)
     if not all(isinstance(km, int | float) for km in (length_km, begin_km)):
+        return
+    if not 0.0 < length_km <= MOST_PIECES * drawn.piece_km:
         return
     pieces = max(1, math.ceil(length_km / drawn.piece_km - 1e-9))
     if pieces == 1 and deviation > 0.0:

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import pandas as pd
 from filelock import FileLock, Timeout
 
 from tpss.errors import StudyError
+from tpss.files.checked import checked_name, read_checked
 from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import UNFINISHED, write_file
@@ -30,7 +31,7 @@ It increases when a column is renamed, removed or changes its meaning.
 STEP_CHECK = "step_check"
 """Key of what the time step costs a sample of the cases."""
 
-_PART = re.compile(r"cases-(\d+)-(\d+)\.parquet")
+_PART = re.compile(r"cases-(\d+)-(\d+)(-[0-9a-f]+)?\.parquet")
 
 Ranges = list[tuple[int, int]]
 """Cases from the first to the one before the second, ascending."""
@@ -104,7 +105,8 @@ class Folder:
 
     def add(self, first: int, end: int, content: bytes) -> None:
         """Add the rows of a batch."""
-        write_file(self.path / CASES / f"cases-{first:08d}-{end:08d}.parquet", content)
+        name = checked_name(f"cases-{first:08d}-{end:08d}", ".parquet", content)
+        write_file(self.path / CASES / name, content)
 
 
 LOCK = ".lock"
@@ -173,8 +175,6 @@ def load_table(folder: str | Path) -> pd.DataFrame:
     StudyError
         The folder is not that of a study, or of another version's format, or a file is damaged.
     """
-    import pyarrow as pa
-
     path = Path(folder)
     written = read_manifest(path).get(FORMAT_KEY)
     if written != FORMAT:
@@ -185,34 +185,48 @@ def load_table(folder: str | Path) -> pd.DataFrame:
     files = sorted((path / CASES).glob("*.parquet"))
     if not files:
         raise StudyError(f"{path} has no cases yet; run the study's command again")
-    table: pd.DataFrame = pa.concat_tables(read_parts(files, "study")).to_pandas()
+    table: pd.DataFrame = read_parts(files, "study").to_pandas()
     return table.sort_values("case", ignore_index=True)
 
 
-def read_parts(files: Iterable[Path], what: str) -> list[Any]:
-    """Tables of files of cases.
+def read_parts(files: Sequence[Path], what: str, options: str = "none") -> Any:
+    """Table of the rows in files of cases, of which there is one at least.
 
     Parameters
     ----------
-    files : iterable of Path
+    files : sequence of Path
     what : str
         What they are of, whose command repeats cases that are not there.
+    options : str
+        How columns that differ are put together, as in pyarrow.
 
     Raises
     ------
     StudyError
-        A file is damaged.
+        A file is damaged, or has other columns than the first one.
     """
+    import pyarrow as pa
+
+    tables = [_read_part(file, what) for file in files]
+    try:
+        return pa.concat_tables(tables, promote_options=options)
+    except pa.ArrowException as error:
+        schemas = [table.schema for table in tables]
+        other = next(k for k, schema in enumerate(schemas) if not schema.equals(schemas[0]))
+        problem = f"its columns are others than those of {files[0].name}"
+        raise _damaged(files[other], problem, what) from error
+
+
+def _read_part(file: Path, what: str) -> Any:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    tables = []
-    for file in files:
-        try:
-            tables.append(pq.read_table(file))
-        except (OSError, pa.ArrowException) as error:
-            raise StudyError(
-                f"{file} is damaged ({error}); delete it and run the {what}'s command again, which "
-                "repeats its cases"
-            ) from error
-    return tables
+    try:
+        return pq.read_table(pa.BufferReader(read_checked(file)))
+    except (OSError, ValueError, pa.ArrowException) as error:
+        raise _damaged(file, reason(error), what) from error
+
+
+def _damaged(file: Path, problem: str, what: str) -> StudyError:
+    remedy = f"delete it and run the {what}'s command again, which repeats its cases"
+    return StudyError(f"{file} is damaged ({problem}); {remedy}")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from tpss.errors import Finding, ScenarioError
 from tpss.laws.registry import laws_named
@@ -26,14 +26,28 @@ from tpss.sweep.variable import fault_of_drawn_line, faults_of_paths
 from tpss.sweep.variation import Variation, flattened
 
 
+def _between(least: float, most: float) -> AfterValidator:
+    """A check that all values of a variation are numbers between two."""
+
+    def check(variation: Variation) -> Variation:
+        for value in variation.ends:
+            if isinstance(value, bool | str) or not least <= value <= most:
+                raise fault("out of range", f"give numbers from {least:g} to {most:g}")
+        return variation
+
+    return AfterValidator(check)
+
+
 class Gradients(Part):
     """A gradient profile that is drawn for every case."""
 
     line: Name | None = Field(
         default=None, description="Name of the line that gets it; needed where there are several."
     )
-    mean_permille: Variation = Field(description="Mean of the gradient over the line.")
-    standard_deviation_permille: Variation = Field(
+    mean_permille: Annotated[Variation, _between(-100.0, 100.0)] = Field(
+        description="Mean of the gradient over the line."
+    )
+    standard_deviation_permille: Annotated[Variation, _between(0.0, 100.0)] = Field(
         description="Standard deviation of the gradient over the line."
     )
     profile: Variation | None = Field(

@@ -113,6 +113,10 @@ def _known(headings: Sequence[str], kind: Kind) -> dict[str, Column]:
         own = heading == ALIASES[meaning.quantity].key
         if own or meaning.quantity not in columns:
             columns[meaning.quantity] = Column(place, heading, meaning)
+    for further, needed in kind.alone:
+        column = columns.get(further)
+        if column and needed not in columns and column.heading.casefold() == ALIASES[further].key:
+            columns[needed] = columns.pop(further)._replace(meaning=Meaning(needed, "", 1.0, False))
     return columns
 
 

@@ -19,6 +19,8 @@ class Kind(NamedTuple):
         What a row is, in words.
     used : str
         How a scenario names its file.
+    alone : tuple of (str, str)
+        Further quantities, and what they are in a table where no other column is that.
     """
 
     name: str
@@ -26,6 +28,7 @@ class Kind(NamedTuple):
     further: tuple[str, ...]
     row: str
     used: str
+    alone: tuple[tuple[str, str], ...] = ()
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -86,6 +89,7 @@ TIMETABLE = Kind(
     ("train_type", "arrival", "dwell", "turn", "track", "kind"),
     "a train, a station and times",
     '[[timetables]] with file = "{file}"',
+    alone=(("train_type", "train_name"),),
 )
 
 KINDS = {

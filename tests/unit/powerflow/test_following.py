@@ -6,7 +6,6 @@ import pytest
 from tpss.powerflow.assembly import SectionPart, assemble
 from tpss.powerflow.chain import FLAT
 from tpss.powerflow.following import FOLLOWS, following
-from tpss.powerflow.in_service import mark_unfed
 from tpss.powerflow.network import UNFED
 from tpss.powerflow.newton import MOST_PASSES, Solution, newton
 
@@ -32,9 +31,9 @@ def solved(network):
 
 
 def test_a_node_that_follows_has_the_voltage_of_the_other_and_changes_nothing_else():
-    pair = following(mark_unfed(line(0, 1, 2, room=[(1, 3)])), {3: 1})
+    pair = following(line(0, 1, 2, room=[(1, 3)]), {3: 1})
     assert pair.source_of_node.tolist() == [0, -1, 1, FOLLOWS - 1]
-    found, alone = solved(pair), solved(mark_unfed(line(0, 1, 2)))
+    found, alone = solved(pair), solved(line(0, 1, 2))
     volts = found.flow.nodes.voltage_v
     assert volts[3] == pytest.approx(volts[1], rel=1e-14)
     assert abs(volts[1]) < 16.4e3
@@ -44,7 +43,7 @@ def test_a_node_that_follows_has_the_voltage_of_the_other_and_changes_nothing_el
 
 
 def test_it_follows_a_source_as_it_does_another_node():
-    pair = following(mark_unfed(line(0, 1, 2, room=[(0, 3)])), {3: 0})
+    pair = following(line(0, 1, 2, room=[(0, 3)]), {3: 0})
     volts = solved(pair).flow.nodes.voltage_v
     assert volts[3] == pytest.approx(volts[0], rel=1e-14)
 
@@ -53,7 +52,7 @@ def test_where_the_other_is_not_fed_neither_is_it():
     """Two nodes that nothing reaches stay at 0."""
     parts = [SectionPart(0, 1, 0.0, 10e3, BT, 0.0)]
     network = assemble(4, parts, [], sources((0, STIFF)), SYSTEM, room=[(2, 3)])
-    both = following(mark_unfed(network), {3: 2})
+    both = following(network, {3: 2})
     assert both.source_of_node.tolist() == [0, -1, UNFED, UNFED]
 
 

@@ -32,7 +32,7 @@ def time_distance(
     ----------
     result : Result
     voltage : LineVoltage, optional
-        Of this run: it is shown in colours below paths in black, without the stations.
+        Of this run: it is shown in colours below paths in black.
     from_min, to_min : float, optional
         Minutes of the run that are shown, by default all of them.
 
@@ -51,16 +51,15 @@ def time_distance(
     train, step = np.nonzero(np.pad(_shown(km, is_corridor(result)), below, constant_values=True).T)
     km, kv = (np.pad(all_, below, constant_values=np.nan)[step, train] for all_ in (km, kv))
     minutes, names = np.append(minutes, np.nan)[step], trains[train].tolist()
-    items: list[parts.Item]
+    items: list[parts.Item] = [parts.Mark(km, name) for name, km in landmarks(result).items()]
     if voltage is None:
         colours = parts.Colours(kv, "voltage at the pantograph [kV]", *colour_range(kv))
-        items = [parts.Mark(km, name) for name, km in landmarks(result).items()]
         items.append(parts.Curve(minutes, km, width=1.3, words=names, colours=colours))
     else:
         middle_min = voltage.time_min + voltage.steps_a_column * data.attrs["time_step_s"] / 120.0
         label, kv = "voltage of the contact line [kV]", voltage.map_kv
         colours = parts.Colours(kv, label, *colour_range(kv))
-        items = [parts.Map(middle_min, voltage.position_km, colours)]
+        items.insert(0, parts.Map(middle_min, voltage.position_km, colours))
         items.append(parts.Curve(minutes, km, colour=BLACK, width=0.6, words=names))
     panel = parts.Panel(parts.POSITION, items, span=span_km(result))
     return parts.Drawing(parts.TIME, [panel], span, panel_inch=4.6)

@@ -154,6 +154,14 @@
     }, [plots.network.data.length - 1]);
   }
 
+  // What the clock shows at a minute, in brackets; nothing where there is none.
+  function clockAt(minutes) {
+    if (run.start_s === null) return "";
+    const seconds = Math.round(run.start_s + 60 * minutes);
+    const parts = [seconds / 3600, (seconds / 60) % 60, seconds % 60];
+    return ` (${parts.map((part) => String(Math.floor(part)).padStart(2, "0")).join(":")})`;
+  }
+
   function showMoment(step) {
     const minutes = step * run.step_min, single = run.runs.length === 1;
     const moments = run.runs.map((each, k) =>
@@ -164,7 +172,7 @@
       "marker.symbol": all("symbol"), "marker.color": all("color"),
     }, moments.map((_, k) => traces + k));
     if (plots.network) showNetwork(step);
-    const text = `${minutes.toFixed(2)} min`;
+    const text = `${minutes.toFixed(2)} min${clockAt(minutes)}`;
     element("now").textContent = text;
     slider.setAttribute("aria-valuetext", text);
     element("state").replaceChildren(...moments.map((moment) => {
