@@ -187,13 +187,13 @@ SAME_FIELDS = frozenset({
     "route", "leg", "place.train", "efficiency.points", "efficiency.first", "adhesion.points",
     "power_factor.points", "curve.points", "curve.first", "start_node", "end_node", "block_aa",
     "block_ab", "block_ba", "block_bb", "node", "upper", "lower", "pivot.first", "pivot.end", "update",
-    "controlled", "installed", "line", "tolerance", "options.step_s", "options.mean_power",
+    "controlled", "installed", "line", "once", "tolerance", "options.step_s", "options.mean_power",
     "options.mean_gradient",
     "options.adhesion_in_km_h", "options.rail", "options.driver", "control.studied_train",
 })  # fmt: skip
 """Fields of which the same holds, by the last part of what they are fields of where that matters."""
 
-SAME_ARRAYS = frozenset({"shape", "source_of_node", "places", "row_start"})
+SAME_ARRAYS = frozenset({"is_once", "shape", "source_of_node", "places", "row_start"})
 """Arrays of which the same holds."""
 
 
