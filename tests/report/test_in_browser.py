@@ -71,6 +71,11 @@ def opened(browser: Any, report_file: Path) -> Iterator[Opened]:
     assert found.requests == [report_file.as_uri()]
 
 
+def test_a_report_is_a_file_that_is_sent_by_mail(report_file):
+    """The script of the plots, 4.8 MB as plotly's own package has it, is 0.7 MB of at most 2 MB."""
+    assert report_file.stat().st_size < 2e6
+
+
 def test_every_plot_is_drawn(opened):
     plots = opened.tab.locator(".plot")
     assert plots.count() == 6

@@ -1,18 +1,20 @@
 """What all pages share: templates that escape every text, style and script, and data for the script.
 
 Jinja2 fills a page, because it escapes every name and text of a scenario; plotly draws, and its script
-is part of the file.  A page blocks all access to the network.
+is part of the file, packed: as it is, it would be four fifths of it.  A page blocks all access to the
+network.
 """
 
+import base64
 import json
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
 import jinja2
 from plotly.graph_objects import Figure
-from plotly.offline import get_plotlyjs
 
 from tpss.printable import printable
 from tpss.results.contents import REPORT_MARK
@@ -55,7 +57,8 @@ def fill(
             data=data,
             style=_part("report.css"),
             script="\n".join(map(_part, scripts)),
-            plotly=get_plotlyjs() if figures else "",
+            plotly=_plotly() if figures else "",
+            unpack=_part("unpack.js"),
             report_data=_for_script(figures, data),
             **parts,
         )
@@ -80,6 +83,13 @@ def _shown(value: Any) -> Any:
     """A value as a page shows it: of texts of others, what turns lines round is shown as its code."""
     is_of_others = isinstance(value, str) and not hasattr(value, "__html__")
     return printable(value, "\n\t") if is_of_others else value
+
+
+@cache
+def _plotly() -> str:
+    """The script of the plots, packed by gzip, as base64."""
+    packed = files("tpss.report") / "vendor" / "plotly.js.gz"
+    return base64.b64encode(packed.read_bytes()).decode("ascii")
 
 
 def _part(name: str) -> str:
