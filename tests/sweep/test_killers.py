@@ -13,7 +13,7 @@ from tpss.errors import StudyError
 from tpss.sweep.batch import KILLER, Plan, file_of_killer
 from tpss.sweep.check import check
 from tpss.sweep.design import design_of
-from tpss.sweep.processes import Work, in_processes
+from tpss.sweep.processes import Work, in_processes, trial
 
 Batch = tuple[int, int]
 
@@ -44,6 +44,11 @@ def test_all_cases_come_once_and_those_that_kill_are_marked():
 def test_processes_that_never_get_ready_are_a_fault_of_their_surroundings():
     with pytest.raises(StudyError, match="end before they run any"):
         list(in_processes(work(end), batches(), 2))
+
+
+def test_a_trial_that_meets_a_case_that_kills_says_so():
+    with pytest.raises(StudyError, match="run the study, which marks a case that kills"):
+        trial(nothing, run, KILLERS, 1)
 
 
 def test_the_row_of_a_case_that_kills_says_so(tmp_path):

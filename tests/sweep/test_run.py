@@ -224,6 +224,7 @@ def test_a_folder_of_another_study_or_version_is_refused(tmp_path, scheduler):
     assert "holds another study" in refused(other, folder, scheduler)
     place = folder / "study.json"
     manifest = json.loads(place.read_text("utf-8"))
+    del manifest["sha256"]  # theirs would be of what they wrote
     for key, words in (
         ("tpss_version", "was begun by another version (tpss_version 9, here"),
         ("kernel_hash", "was begun by other kernels"),
@@ -288,6 +289,18 @@ def test_a_flipped_bit_is_told_wherever_it_lies(tmp_path):
         with pytest.raises(tpss.StudyError, match="not as it was written"):
             tpss.load_table(folder)
         written[place] ^= 4
+
+
+def test_other_words_in_the_manifest_are_told(tmp_path):
+    folder = tmp_path / "out"
+    tpss.run_study(study(tmp_path), folder)
+    manifest = json.loads((folder / "study.json").read_text("utf-8"))
+    manifest["study"] = manifest["study"].replace('"seed": ', '"seed": 1')
+    (folder / "study.json").write_text(json.dumps(manifest), "utf-8")
+    with pytest.raises(
+        tpss.StudyError, match=r"study\.json is damaged \(its checksum is another\)"
+    ):
+        tpss.load_table(folder)
 
 
 def test_files_whose_columns_differ_are_told(tmp_path):

@@ -12,8 +12,9 @@ from tpss.errors import Finding, ScenarioError, alike_together, closest, shorten
 from tpss.scenario.absences import absence_of
 from tpss.scenario.clock import START_S, start_of
 from tpss.scenario.cross_check import cross_check
+from tpss.scenario.document_places import lines_of
 from tpss.scenario.fields import fields_of
-from tpss.scenario.inline import inline_files, lines_of
+from tpss.scenario.inline import inline_files
 from tpss.scenario.inlined import Inlined, Location
 from tpss.scenario.line import IN_FILES, Line
 from tpss.scenario.own_library import SUFFIX

@@ -11,7 +11,7 @@ import pandas as pd
 from filelock import FileLock, Timeout
 
 from tpss.errors import StudyError
-from tpss.files.checked import checked_name, read_checked
+from tpss.files.checked import checked_name, document_checksum, read_checked
 from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import UNFINISHED, write_file
@@ -27,6 +27,9 @@ FORMAT_KEY, FORMAT = "table_format", 1
 
 It increases when a column is renamed, removed or changes its meaning.
 """
+
+CHECKSUM = "sha256"
+"""Key of a checksum of all else in a manifest."""
 
 STEP_CHECK = "step_check"
 """Key of what the time step costs a sample of the cases."""
@@ -77,7 +80,7 @@ class Folder:
     def _begin(self, manifest: dict[str, Any]) -> dict[str, Any]:
         place = self.path / MANIFEST
         if not place.exists():
-            write_file(place, json.dumps(manifest, indent=1).encode())
+            write_file(place, _as_json(manifest))
             return manifest
         begun = read_manifest(self.path)
         for key, problem, remedy in (
@@ -96,7 +99,7 @@ class Folder:
     def add_to_manifest(self, key: str, value: Any) -> None:
         """Add what was found out about the study."""
         manifest = {**read_manifest(self.path), key: value}
-        write_file(self.path / MANIFEST, json.dumps(manifest, indent=1).encode())
+        write_file(self.path / MANIFEST, _as_json(manifest))
 
     def done(self) -> Ranges:
         """Cases whose rows are there."""
@@ -147,13 +150,18 @@ def batches(ranges: Ranges, size: int) -> Iterator[tuple[int, int]]:
             first = cut
 
 
+def _as_json(manifest: dict[str, Any]) -> bytes:
+    """A manifest with its checksum."""
+    return json.dumps({**manifest, CHECKSUM: document_checksum(manifest)}, indent=1).encode()
+
+
 def read_manifest(path: Path) -> dict[str, Any]:
     """Manifest of the folder of a study.
 
     Raises
     ------
     StudyError
-        It is no such folder.
+        It is no such folder, or damaged.
     """
     try:
         manifest = read_json_file(path / MANIFEST)
@@ -164,6 +172,10 @@ def read_manifest(path: Path) -> dict[str, Any]:
         ) from error
     if not isinstance(manifest, dict):
         raise StudyError(f"{path / MANIFEST} is damaged; give the study another folder")
+    if manifest.pop(CHECKSUM, None) not in (None, document_checksum(manifest)):
+        raise StudyError(
+            f"{path / MANIFEST} is damaged (its checksum is another); give the study another folder"
+        )
     return manifest
 
 

@@ -123,16 +123,27 @@ def trial(
         Cases that are simulated, at least one a process.
     count : int
         Number of processes.
+
+    Raises
+    ------
+    StudyError
+        A process was killed.
     """
     begun = time.perf_counter()
-    with _pool(warm_up, count) as pool:
-        wait([pool.submit(time.sleep, READY_S) for _ in range(count)])
-        started = time.perf_counter()
-        shares = [pool.submit(run, cases[k::count]) for k in range(count)]
-        wait(shares)
-        done = time.perf_counter()
-        for share in shares:
-            share.result()
+    try:
+        with _pool(warm_up, count) as pool:
+            wait([pool.submit(time.sleep, READY_S) for _ in range(count)])
+            started = time.perf_counter()
+            shares = [pool.submit(run, cases[k::count]) for k in range(count)]
+            wait(shares)
+            done = time.perf_counter()
+            for share in shares:
+                share.result()
+    except BrokenProcessPool as error:
+        raise StudyError(
+            "a process that tried some cases was killed, perhaps as memory was short; try it with fewer "
+            "--workers, or run the study, which marks a case that kills"
+        ) from error
     return started - begun - READY_S, (done - started) * count / len(cases)
 
 

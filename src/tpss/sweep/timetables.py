@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from tpss.scenario.inline import with_timetables
+from tpss.scenario.inline_tables import with_timetables
 from tpss.scenario.timetable_rows import text_of_timetable
 from tpss.sweep.settings import Settings, apply
 
