@@ -5,8 +5,8 @@ import math
 import numba
 import numpy as np
 import pytest
-from branching import KERNELS
 
+from branching import KERNELS
 from tpss.driving.braking import braking_plan
 from tpss.lanes import functions
 from tpss.lanes.compile import lane_version
