@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PUBLISHED = ("simulation", "many", "peers", "scaling", "network", "stress", "collapses")
+PUBLISHED = ("simulation", "many", "lanes", "peers", "scaling", "network", "stress", "collapses")
 
 
 def main() -> None:

@@ -3,15 +3,15 @@
 import html
 import re
 
-from latex2mathml.converter import convert
 from markdown import Extension, Markdown
 from markdown.postprocessors import Postprocessor
+
+from tpss.studio.formulas import mathml
 
 _FORMULA = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>',
     re.DOTALL,
 )
-_WORD_BELOW = re.compile(r"_\{([A-Za-z,]*[A-Za-z]{2}[A-Za-z,]*)\}")
 
 
 class Formulas(Extension):
@@ -29,7 +29,4 @@ class _InMathML(Postprocessor):
 
 def _in_mathml(match: re.Match[str]) -> str:
     tag, kind, tex = match.groups()
-    # A word below a symbol stands upright; letters there would be a product.
-    tex = _WORD_BELOW.sub(r"_{\\text{\1}}", html.unescape(tex))
-    display = "block" if kind == "[" else "inline"
-    return f'<{tag} class="formula">{convert(tex, display=display)}</{tag}>'
+    return f'<{tag} class="formula">{mathml(html.unescape(tex), kind == "[")}</{tag}>'

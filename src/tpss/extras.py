@@ -39,7 +39,9 @@ NEEDS = {
     "plan": Need("plans", ("pyarrow", "scipy", "xlsxwriter"), "plan", PlanError),
     "budget": Need("plans with a budget", ("highspy",), "plan", PlanError),
     "studio": Need(
-        "pages of the studio", ("starlette", "uvicorn", "tomlkit", "jinja2", "plotly"), "studio"
+        "pages of the studio",
+        ("starlette", "uvicorn", "tomlkit", "latex2mathml", "jinja2", "plotly"),
+        "studio",
     ),
     "least squares": Need("the load flow by least squares", ("scipy",), "least-squares"),
 }

@@ -188,6 +188,7 @@ def where_any(without: Callable[..., Any]) -> Callable[[_Function], _Function]:
         def choose(part: Any, *_: Any) -> Callable[..., Any]:
             return without if part == numba.types.Tuple(()) else function
 
+        call.without = without  # type: ignore[attr-defined]
         if compiles():
             _overload(call, jit_options=_WITHOUT_CACHE, strict=False)(choose)
         return call  # type: ignore[return-value]
@@ -210,6 +211,33 @@ def in_compiled_code(intrinsic: Any) -> Callable[[_Function], _Function]:
         return function
 
     return decorate
+
+
+def compiled_into(folder: Path, function: _Function, fused: bool) -> _Function:
+    """Compile a function that is no kernel of every run, with the options of one.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the result is kept.
+    function : callable
+        From a file that changes whenever it does.
+    fused : bool
+        As of `fused`.
+    """
+    folder_before = _config.CACHE_DIR
+    _config.CACHE_DIR = str(folder)
+    try:
+        compiled: _Function = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
+        if compiles():
+            setattr(compiled, "_cache", _cache_of(function, _none_shipped))  # noqa: B010
+    finally:
+        _config.CACHE_DIR = folder_before
+    return compiled
+
+
+def _none_shipped() -> None:
+    """No kernels came with the package."""
 
 
 def _compiled(function: _Function, inline: str, **others: Any) -> _Function:

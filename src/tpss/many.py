@@ -3,13 +3,20 @@
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from functools import partial
+from itertools import islice
+from typing import Any, TypeVar
 
 import numpy as np
 
 from tpss.api import Prepared, build
+from tpss.kernel import compiles
+from tpss.lanes.compile import are_compiled
+from tpss.lanes.known import covers
+from tpss.lanes.structure import structure_of
+from tpss.lanes.types import LANES
 from tpss.results.key_figures import KeyFigures, run_for_figures
 from tpss.scenario.scenario import Scenario
 from tpss.step.state import Floats
@@ -20,14 +27,26 @@ _Outcome = TypeVar("_Outcome")
 AHEAD = 4
 """Highest number of scenarios per thread that are running or waiting."""
 
+STEPS_ALONE = 10_000_000
+"""Steps that the cases of a call have, in about as much time as the kernels of lanes take to compile,
+before these are compiled without being asked for."""
+
+LEAST = 4
+"""Cases below which a batch is not worth its lanes."""
+
 
 def simulate_many(
-    scenarios: Iterable[Scenario | Prepared], threads: int | None = None
+    scenarios: Iterable[Scenario | Prepared],
+    threads: int | None = None,
+    *,
+    lanes: bool | None = None,
 ) -> Iterator[KeyFigures]:
     """Simulate scenarios in threads, and give the key figures of each, in their order.
 
     Scenarios are drawn as they are needed, so there may be any number of them; memory stays constant.
-    The figures are those of `simulate`, whatever the number of threads.
+    The figures are those of `simulate`, whatever the number of threads.  Cases that are alike run in
+    lanes, eight at once, where lanes cover them (`tpss.lanes.known`); their figures differ by roundings,
+    less than 1e-12 of each, and say so in ``way``.
 
     Parameters
     ----------
@@ -35,6 +54,10 @@ def simulate_many(
         A `Prepared` of `tpss.prepare` can be run repeatedly without being rebuilt.
     threads : int, optional
         Number of threads; by default one for each core.
+    lanes : bool, optional
+        Whether cases may run in lanes, for which more kernels are compiled, in about a minute.  By
+        default they do where these are compiled already, and after the cases before have had
+        `STEPS_ALONE` steps.
 
     Yields
     ------
@@ -48,7 +71,11 @@ def simulate_many(
     TooLargeError
         A run would not fit into memory.
     """
-    return in_threads(key_figures, scenarios, threads)
+    if lanes is False or not compiles():
+        return in_threads(key_figures, scenarios, threads)
+    if lanes or are_compiled():
+        return _together(scenarios, threads or os.cpu_count() or 1)
+    return _alone_at_first(scenarios, threads or os.cpu_count() or 1)
 
 
 def in_threads(
@@ -79,6 +106,92 @@ def in_threads(
                 future.cancel()
 
 
+def _alone_at_first(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterator[KeyFigures]:
+    """`simulate_many` that takes to lanes when the cases before have had `STEPS_ALONE` steps."""
+    drawn, steps = iter(scenarios), 0
+
+    def few() -> Iterator[Scenario | Prepared]:
+        for each in drawn:
+            yield each
+            if steps >= STEPS_ALONE:
+                return
+
+    for figures in in_threads(key_figures, few(), threads):
+        steps += figures.steps
+        yield figures
+    yield from _together(drawn, threads)
+
+
+def _together(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterator[KeyFigures]:
+    """`simulate_many` with lanes.
+
+    So many cases are drawn as give each thread two full batches; they are built, and sorted by their
+    structures, while those that were drawn before run.
+    """
+    drawn = iter(scenarios)
+    waiting: deque[Callable[[], KeyFigures]] = deque()
+    with ThreadPoolExecutor(threads, thread_name_prefix="tpss") as pool:
+        try:
+            while window := list(islice(drawn, 2 * LANES * threads)):
+                built = [pool.submit(_built, each) for each in window]
+                wait(built)
+                before = len(waiting)
+                waiting.extend(_submit(built, pool))
+                for _ in range(before):
+                    yield waiting.popleft()()
+            while waiting:
+                yield waiting.popleft()()
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _submit(
+    built: list[Future[Prepared]], pool: ThreadPoolExecutor
+) -> list[Callable[[], KeyFigures]]:
+    """Start the runs of cases; what waits for the figures of each."""
+    alike: dict[Any, list[int]] = {}
+    for number, future in enumerate(built):
+        if future.exception() is None:
+            structure = _structure(future.result())
+            alike.setdefault(number if structure is None else structure, []).append(number)
+    figures: list[Callable[[], KeyFigures]] = [future.result for future in built]  # type: ignore[misc]
+    for numbers in alike.values():
+        for first in range(0, len(numbers), LANES):
+            some = numbers[first : first + LANES]
+            cases = [built[number].result() for number in some]
+            if len(some) < LEAST:
+                for number, case in zip(some, cases, strict=True):
+                    figures[number] = pool.submit(key_figures, case).result
+            else:
+                batch = pool.submit(_figures_together, cases)
+                for place, number in enumerate(some):
+                    figures[number] = partial(_one_of, batch, place)
+    return figures
+
+
+def _one_of(batch: Future[list[KeyFigures]], place: int) -> KeyFigures:
+    return batch.result()[place]
+
+
+def _built(scenario: Scenario | Prepared) -> Prepared:
+    return scenario if isinstance(scenario, Prepared) else build(scenario)
+
+
+def _structure(case: Prepared) -> Any:
+    """What cases that run together have in common; None: lanes do not cover this one."""
+    return structure_of(case) if covers(case) else None
+
+
+def _figures_together(cases: Sequence[Prepared]) -> list[KeyFigures]:
+    """Key figures of cases of one structure, of those that leave the others too."""
+    from tpss.lanes.batch import figures_together  # which takes seconds to convert the kernels
+
+    found = figures_together(cases)
+    return [
+        key_figures(case) if each is None else each for case, each in zip(cases, found, strict=True)
+    ]
+
+
 def key_figures(scenario: Scenario | Prepared) -> KeyFigures:
     """Key figures of one scenario.
 
@@ -87,10 +200,15 @@ def key_figures(scenario: Scenario | Prepared) -> KeyFigures:
     ScenarioError, TooLargeError
         As `simulate_many`.
     """
-    prepared = scenario if isinstance(scenario, Prepared) else build(scenario)
-    scratch = _of_this_thread.__dict__.setdefault("scratch", Scratch())
+    prepared = _built(scenario)
+    return run_for_figures(prepared.start, prepared.frame, prepared.clock, _scratch().allocate)
+
+
+def _scratch() -> "Scratch":
+    """Memory of this thread, to be used anew."""
+    scratch: Scratch = _of_this_thread.__dict__.setdefault("scratch", Scratch())
     scratch.reset()
-    return run_for_figures(prepared.start, prepared.frame, prepared.clock, scratch.allocate)
+    return scratch
 
 
 class Scratch:

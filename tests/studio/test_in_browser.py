@@ -299,8 +299,11 @@ def test_the_equations_behind_a_chart_are_told(shown):
     shown.tab.get_by_role("tab", name="Research").click()
     shown.tab.get_by_label("Behind").select_option("Train graph")
     shown.tab.get_by_text("adhesion_limit").click()
-    text = shown.tab.locator("pre[aria-label=adhesion_limit]").inner_text()
-    assert text.startswith("Largest tractive force that wheel and rail transmit")
+    told = shown.tab.locator("pre[aria-label=adhesion_limit]")
+    assert told.inner_text().startswith("Largest tractive force that wheel and rail transmit")
+    drawn = told.locator("math").bounding_box()
+    assert drawn["width"] > 100
+    assert drawn["height"] > 15
     steps = shown.tab.get_by_role("region", name="Steps of a train")
     steps.get_by_role("row").nth(5).wait_for()
 

@@ -57,7 +57,7 @@ def test_trains_are_not_sent_unless_they_are_shown(page):
 def test_every_equation_is_told_from_its_source(chart):
     assert chart in CHARTS
     for each in behind(chart):
-        assert len(each["text"]) > 60, each["function"]
+        assert sum(len(text) for piece in each["pieces"] for text in piece.values()) > 60
 
 
 def test_charts_without_equations_are_told(page):

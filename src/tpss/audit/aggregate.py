@@ -163,13 +163,13 @@ def gather(
     for step in range(first, last):
         in_window = peak_from <= step and step < peak_to
         duration = h if step + 1 < steps else last_step_s
-        _gather_trains(step, in_window, duration, trains, model.legs, recording, figures)
-        _gather_network(step, duration, at_line_level, recording, figures)
+        gather_trains(step, in_window, duration, trains, model.legs, recording, figures)
+        gather_network(step, duration, at_line_level, recording, figures)
     _audit(first, last, steps, last_step_s, trains, model, recording, figures.audit)
     if last < steps:
         return
     for i in range(figures.trains.size):
-        _note_place(recording.trains[steps, i].route_position, figures.trains[i])
+        note_place(recording.trains[steps, i].route_position, figures.trains[i])
     for s in range(figures.stations.size):  # at last, as the tables of a dataset do
         station, row = figures.stations[s], recording.stations[max(steps, 1) - 1, s]
         station.energy_j *= h
@@ -178,7 +178,7 @@ def gather(
             station.energy_j -= row.station_active_power * (h - last_step_s)
             station.reactive_j -= row.station_reactive_power * (h - last_step_s)
     _gather_passes(steps, recording, run)
-    _conclude_audit(steps, model, figures.audit)
+    conclude_audit(steps, model, figures.audit)
 
 
 @inlined
@@ -198,14 +198,15 @@ def _begin(figures: Figures) -> None:
 
 
 @inlined
-def _note_place(position_m: float, train: TrainFigures) -> None:
+def note_place(position_m: float, train: TrainFigures) -> None:
+    """Note where a train has been. [m]"""
     if not math.isnan(position_m):
         train.first_m = min(train.first_m, position_m)
         train.last_m = max(train.last_m, position_m)
 
 
 @inlined
-def _gather_trains(
+def gather_trains(
     step: int, in_window: bool, h: float, trains: Records[Train], legs: Records[Leg],
     recording: Recording, figures: Figures,
 ) -> None:  # fmt: skip
@@ -216,7 +217,7 @@ def _gather_trains(
             continue
         row, train = recording.trains[step, i], figures.trains[i]
         voltage = magnitude(complex(row.pantograph_real, row.pantograph_imag))
-        _note_place(row.route_position, train)
+        note_place(row.route_position, train)
         if math.isnan(voltage) or voltage == 0.0 or lacks_power(step, i, h, recording):
             continue  # it is not fed, and draws nothing
         train.energy_j += row.active_power * h
@@ -258,7 +259,7 @@ def _note_useful_voltage(
 
 
 @inlined
-def _gather_network(
+def gather_network(
     step: int,
     h: float,
     at_line_level: npt.NDArray[np.bool_],
@@ -313,24 +314,34 @@ def _audit(
     scratch : Scratch
         As from `new_scratch`, with as many trains as count.
     """
-    figures, h = scratch.balances[0], model.options.step_s
+    h = model.options.step_s
     for step in range(first, last):
         duration = h if step + 1 < steps else last_step_s
-        audit_network(step, trains, model, recording, scratch)
-        audit_sources(step, duration, model, recording, scratch)
-        if model.network.stores.size > 0:
-            audit_stores(step, duration, model.network, recording.stores, scratch, figures)
-        figures.lost_j += recording.network_losses[step] * duration
-        for i in range(scratch.order.size):
-            if draws_power(recording.train_state[step, i]):
-                audit_train(step, i, duration, trains[i], model, recording, figures)
-                if recording.on_board.shape[0] > 0:
-                    kind = model.types[trains[i].train_type]
-                    audit_own_store(step, i, duration, kind, recording, scratch.stored[0], figures)
+        audit_step(step, duration, trains, model, recording, scratch)
 
 
 @inlined
-def _conclude_audit(steps: int, model: Model, scratch: Scratch) -> None:
+def audit_step(
+    step: int, duration: float, trains: Records[Train], model: Model, recording: Recording,
+    scratch: Scratch,
+) -> None:  # fmt: skip
+    """Audit one step of this length. [s]"""
+    figures = scratch.balances[0]
+    audit_network(step, trains, model, recording, scratch)
+    audit_sources(step, duration, model, recording, scratch)
+    if model.network.stores.size > 0:
+        audit_stores(step, duration, model.network, recording.stores, scratch, figures)
+    figures.lost_j += recording.network_losses[step] * duration
+    for i in range(scratch.order.size):
+        if draws_power(recording.train_state[step, i]):
+            audit_train(step, i, duration, trains[i], model, recording, figures)
+            if recording.on_board.shape[0] > 0:
+                kind = model.types[trains[i].train_type]
+                audit_own_store(step, i, duration, kind, recording, scratch.stored[0], figures)
+
+
+@inlined
+def conclude_audit(steps: int, model: Model, scratch: Scratch) -> None:
     """Find the balances of a whole recording."""
     figures, h = scratch.balances[0], model.options.step_s
     least = TOLERANCE * model.network.system.base_power_va / ALLOWED_BALANCE * h * max(steps, 1)

@@ -62,7 +62,7 @@ def audit_network(
         scratch.leaving_a[branch.start_node] += current
         scratch.leaving_a[branch.end_node] -= current
     audit_links(network.links, scratch.node_v, scratch.leaving_a)
-    count = _sort_trains(step, trains, model, recording, scratch)
+    count = sort_trains(step, trains, model, recording, scratch)
     k = 0
     for s in range(network.sections.size):
         if is_coupled(network.groups, s) and not is_unfed(s, network):
@@ -88,7 +88,7 @@ def audit_network(
 
 
 @inlined
-def _sort_trains(
+def sort_trains(
     step: int, trains: Records[Train], model: Model, recording: Recording, scratch: Scratch
 ) -> int:
     """Bring the trains on the line to the front of ``scratch.order``; return their number.

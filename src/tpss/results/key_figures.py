@@ -130,6 +130,8 @@ class KeyFigures:
     limited : dict of str to int
         What was limited or left its range, counted in train-steps.
     audit : Audit
+    way : str
+        How the run was made: ``alone``, or in ``lanes`` with others, see `tpss.lanes`.
     """
 
     name: str
@@ -157,6 +159,7 @@ class KeyFigures:
     most_passes: int
     limited: dict[str, int]
     audit: Audit
+    way: str = "alone"
 
     @cached_property
     def total_energy_mwh(self) -> float:
@@ -252,15 +255,28 @@ def run_for_figures(
     return figures
 
 
-def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigures:
+def key_figures_of(
+    run: Run, status: str, start: Start, frame: Frame, gathered: Figures | None = None
+) -> KeyFigures:
     """Key figures of a run that has ended with a status, but for those that take their time.
 
     These are `thermal` and `grid_and_rails`.
+
+    Parameters
+    ----------
+    run : Run
+    status : str
+        How it ended.
+    start : Start
+    frame : Frame
+    gathered : Figures, optional
+        Figures of its steps, where they were gathered as it ran; by default they are from its recording.
     """
-    figures = _gather(run, frame)
+    figures = _gather(run, frame) if gathered is None else gathered
     whole = _of_whole_run(figures)
     studied = start.studied if start.studied < run.departed else -1
     trip_min, speed_kmh = _studied_trip(run, studied, figures)
+    sides = grid_side_mwh(run, frame.sides, frame.feeds_back)
     return KeyFigures(
         name=frame.name,
         status=status,
@@ -273,7 +289,9 @@ def key_figures_of(run: Run, status: str, start: Start, frame: Frame) -> KeyFigu
         services=_services(run, start),
         stations=_stations(run, frame, figures),
         losses_mwh=whole["losses_j"] / J_PER_MWH,
-        **grid_side_mwh(run, frame.sides, frame.feeds_back),
+        converter_losses_mwh=sides["converter_losses_mwh"],
+        drawn_from_grid_mwh=sides["drawn_from_grid_mwh"],
+        fed_back_to_grid_mwh=sides["fed_back_to_grid_mwh"],
         braking=braking_mwh(run, frame.sides, frame.rheostats),
         thermal={},
         grid_and_rails={},

@@ -5,9 +5,10 @@ import inspect
 import threading
 from functools import cache
 from importlib.resources import files
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tpss.errors import ResultError
+from tpss.studio.formulas import in_pieces
 
 
 class Source(NamedTuple):
@@ -50,8 +51,8 @@ BEHIND: dict[str, tuple[Source, ...]] = {
 """What stands behind a chart, by its name; a chart more may have a line here."""
 
 
-def behind(chart: str) -> list[dict[str, str]]:
-    """Functions behind a chart, with their texts, files and pages.
+def behind(chart: str) -> list[dict[str, Any]]:
+    """Functions behind a chart, with their files and pages, and their texts as words and formulas.
 
     Raises
     ------
@@ -65,7 +66,7 @@ def behind(chart: str) -> list[dict[str, str]]:
             "function": each.function or each.file,
             "file": f"tpss/{each.file}",
             "page": each.page,
-            "text": text_of(each.file, each.function),
+            "pieces": in_pieces(text_of(each.file, each.function)),
         }
         for each in BEHIND[chart]
     ]

@@ -5,6 +5,10 @@ import { dataTable } from "./datatable.js";
 import { el, refill } from "./dom.js";
 import { ask } from "./server.js";
 
+/** Words, or a formula as the browser draws it; the server made it from the program's own text. */
+const drawn = ({ words, formula }) => formula
+  ? new DOMParser().parseFromString(formula, "text/html").querySelector("math") : words;
+
 export class Research {
   constructor(of, charts) {
     this.of = of;
@@ -36,7 +40,7 @@ export class Research {
       const { behind } = await ask("equations", { chart });
       if (chart === this.chart.value) refill(this.texts, behind.map(each => el("details", { class: "group" },
         el("summary", {}, el("code", {}, each.function), el("span", { class: "hint" }, ` ${each.file}`)),
-        el("pre", { class: "equation", tabindex: "0", "aria-label": each.function }, each.text),
+        el("pre", { class: "equation", tabindex: "0", "aria-label": each.function }, each.pieces.map(drawn)),
         el("p", { class: "hint" }, `How it is read: ${each.page} of the documentation.`))));
     } catch (error) { this.of.failed(error); }
   }
