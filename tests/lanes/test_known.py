@@ -61,10 +61,11 @@ def test_rules_decide_each_condition_once():
         ({"traffic.0.headway_min": 7.0}, True),
         ({"line.gradients": [{"from_km": k, "permille": 1.0} for k in (0.0, 3.0, 9.0)]}, True),
         ({"simulation.time_step_min": 0.1}, False),
+        ({"simulation.braking": "within-step"}, False),
         ({"supply.converter_stations.0.converters": 3}, False),
         ({"trains.freight.reactive_power": "double-bridge"}, False),
     ],
-    ids=["mass", "headway", "gradients", "step", "converters", "reactive power"],
+    ids=["mass", "headway", "gradients", "step", "braking", "converters", "reactive power"],
 )
 def test_cases_are_alike_whose_kernels_branch_alike(changes, alike):
     first, other = (structure_of(build(short_line(each))) for each in ({}, changes))

@@ -70,6 +70,14 @@ def test_cases_of_one_structure_run_in_lanes(changes):
     assert assert_alike(cases) == ["lanes"] * 5
 
 
+def test_a_run_that_takes_longer_than_foreseen_has_room_in_lanes():
+    """At 15 km/h behind a short stretch of 60 km/h, with trains that depart until the end."""
+    slow = {"line.speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0},
+                                  {"from_km": 1.0, "speed_kmh": 15.0}]}  # fmt: skip
+    cases = [each.with_({**slow, "simulation.time_step_min": 0.1}) for each in MASSES[:4]]
+    assert assert_alike(cases) == ["lanes"] * 4
+
+
 def test_whoever_stalls_leaves_and_runs_alone():
     ways = assert_alike([*MASSES[:4], short_line(OVERLOAD)])
     assert ways == ["lanes"] * 4 + ["alone"]

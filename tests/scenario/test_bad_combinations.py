@@ -51,6 +51,8 @@ ORDER_AND_UNIQUENESS = [
                  "give each one its own", id="station-name-twice"),
     pytest.param({"line.stations.1.position_km": 0.0}, "line.stations", "[{'name': 'West'",
                  "give each one its own", id="station-position-twice"),
+    pytest.param({"line.stations.1.position_km": 1e-9}, "line.stations", "[{'name': 'West'",
+                 "move one of them", id="stations-within-a-millimetre"),
     pytest.param({f"{EAST}.name": "West"}, "supply.converter_stations", "[{'name': 'West'",
                  "give each one its own", id="converter-station-name-twice"),
     pytest.param({f"{EAST}.position_km": 0.0}, "supply.converter_stations", "[{'name': 'West'",

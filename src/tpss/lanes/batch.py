@@ -11,13 +11,14 @@ from tpss.audit.aggregate import Figures, TrainFigures, conclude_audit, gather, 
 from tpss.kernel import plain
 from tpss.lanes.places import Rows
 from tpss.lanes.records import LaneArray, join, new_lanes, part, words_of
-from tpss.lanes.state import join_model, join_state, part_trains
+from tpss.lanes.state import join_model, join_state, part_trains, word_of
 from tpss.lanes.step import End, Together, run_together
 from tpss.lanes.types import LANES
 from tpss.record import Records
 from tpss.results.key_figures import KeyFigures, key_figures_of
 from tpss.results.standards.useful_voltage import window_steps
 from tpss.run.run import STATUS_NAME, Run
+from tpss.run.services import departing_trains
 from tpss.step.recorded import NodeRow, StationRow, TrainRow
 from tpss.step.recording import Recording
 from tpss.step.state import Status
@@ -25,6 +26,9 @@ from tpss.step.state import Status
 FIRST = 1
 """Steps that each case makes alone: the load flow of the first one knows of none before it."""
 
+
+MOST_TIMES = 8
+"""A run that takes longer than so many times what is foreseen is made alone."""
 
 OPEN = 1 << 40
 """More steps than any run has."""
@@ -40,31 +44,48 @@ class Begun(NamedTuple):
     """Bounds of the peak window, in steps, as if it were covered."""
 
 
-def figures_together(cases: Sequence[Prepared]) -> list[KeyFigures | None]:
+def figures_together(cases: Sequence[Prepared], longer: int = 1) -> list[KeyFigures | None]:
     """Key figures of cases that run together; None of one that has to run alone.
 
     Parameters
     ----------
     cases : sequence of Prepared
         As many as there are lanes at most, of one structure that lanes cover.
+    longer : int, optional
+        How many times the steps that are foreseen they may have, unless the number is given; those that
+        need more are run anew with twice as many.
     """
-    begun = [_begin(case) for case in cases]
+    begun = [_begin(case, longer) for case in cases]
     going = [each for each in begun if each.run.status == Status.RUNNING and each.run.step == FIRST]
     if not going:
         return [None] * len(cases)
-    lanes = [going[min(lane, len(going) - 1)] for lane in range(LANES)]
-    together = _join(lanes)
-    run_together(FIRST, min(each.case.start.capacity for each in lanes), together)
-    found: dict[int, KeyFigures | None] = {}
-    for lane, each in enumerate(going):
-        found[id(each)] = _end(lane, each, together)
+    together = _join([going[min(lane, len(going) - 1)] for lane in range(LANES)])
+    run_together(FIRST, min(_room(each.case, longer) for each in going), together)
+    found = {id(each): _end(lane, each, together) for lane, each in enumerate(going)}
+    left = together.ends.words[0, word_of(End.dtype, "status")] == Status.RUNNING
+    late = [
+        each
+        for lane, each in enumerate(going)
+        if left[lane] and found[id(each)] is None and longer < MOST_TIMES
+    ]
+    if late:
+        again = figures_together([each.case for each in late], 2 * longer)
+        found |= {id(each): figures for each, figures in zip(late, again, strict=True)}
     return [found.get(id(each)) for each in begun]
 
 
-def _begin(case: Prepared) -> Begun:
+def _room(case: Prepared, longer: int) -> int:
+    """Steps for which a case is prepared."""
+    return case.start.steps or longer * case.start.capacity
+
+
+def _begin(case: Prepared, longer: int) -> Begun:
     """Let a case make its first step, and gather its figures."""
     start, frame = case.start, case.frame
-    run = Run(start.model, start.trains, FIRST, case.clock, start.records, turns=start.turns)
+    late = departing_trains(
+        start.services, start.model.options, start.capacity, _room(case, longer)
+    )
+    run = Run(start.model, [*start.trains, *late], FIRST, case.clock, turns=start.turns)
     run.advance_to(FIRST)
     figures = new_figures(run.model, len(run.trains), frame.zones)
     h = run.model.options.step_s

@@ -58,6 +58,8 @@ RULES = (
         },
     ),
     Rule(
+        # Forces of courses that end within a step are roundings where there is none, and decide by their
+        # sign whether a train pulls in a step: figures that count such steps would differ.
         "trains brake in whole steps",
         lambda case: case.start.model.options.braking == Braking.WHOLE_STEPS,
         {"options.braking == Braking.WITHIN_STEP": False, "brakes_within_step": False},
@@ -188,8 +190,8 @@ SAME_FIELDS = frozenset({
     "power_factor.points", "curve.points", "curve.first", "start_node", "end_node", "block_aa",
     "block_ab", "block_ba", "block_bb", "node", "upper", "lower", "pivot.first", "pivot.end", "update",
     "controlled", "installed", "line", "once", "tolerance", "options.step_s", "options.mean_power",
-    "options.mean_gradient",
-    "options.adhesion_in_km_h", "options.rail", "options.driver", "control.studied_train",
+    "options.mean_gradient", "options.adhesion_in_km_h", "options.rail",
+    "options.driver", "control.studied_train",
 })  # fmt: skip
 """Fields of which the same holds, by the last part of what they are fields of where that matters."""
 
