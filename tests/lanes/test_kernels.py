@@ -5,7 +5,6 @@ import math
 import numba
 import numpy as np
 import pytest
-from branching import KERNELS
 
 from tpss.driving.braking import braking_plan
 from tpss.lanes import functions
@@ -15,6 +14,8 @@ from tpss.lanes.records import new_lanes
 from tpss.lanes.types import LANES
 from tpss.numerics.exponential import exponential
 from tpss.physics.adhesion import adhesion_limit
+
+from branching import KERNELS
 
 ROUNDING = 1e-15
 RANDOM = np.random.default_rng(7)

@@ -28,6 +28,7 @@ from tpss.scenario.fields import (
     fault,
     unique,
 )
+from tpss.scenario.routes import EQUAL_KM
 from tpss.units import kilometres
 
 FARTHEST_KM = 10_000.0
@@ -233,6 +234,18 @@ class Line(Part):
     stations: Annotated[
         tuple[Station, ...], Field(min_length=2), unique("name"), unique("position_km")
     ] = Field(description="Stations, at least two.")
+
+    @field_validator("stations")
+    @classmethod
+    def _stations_lie_apart(cls, stations: tuple[Station, ...]) -> tuple[Station, ...]:
+        """Nearer ones would be equally far from anywhere, so that no way could be told from another."""
+        for one, next_ in pairwise(sorted(stations, key=lambda station: station.position_km)):
+            if next_.position_km - one.position_km <= EQUAL_KM:
+                raise fault(
+                    f"{one.name} and {next_.name} lie within a millimetre of each other",
+                    "move one of them, or leave it out",
+                )
+        return stations
 
     @field_validator("gradients_smoothed_over_km")
     @classmethod
