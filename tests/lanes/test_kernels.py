@@ -16,6 +16,8 @@ from tpss.lanes.types import LANES
 from tpss.numerics.exponential import exponential
 from tpss.physics.adhesion import adhesion_limit
 
+from branching import KERNELS
+
 ROUNDING = 1e-15
 RANDOM = np.random.default_rng(7)
 PAIRS = np.round(RANDOM.uniform(-3.0, 3.0, (40, 2, LANES)), 1)

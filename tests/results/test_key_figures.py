@@ -192,7 +192,7 @@ def test_the_number_of_threads_changes_nothing_and_order_is_kept():
 
 def test_a_prepared_scenario_is_run_again_and_again():
     prepared = tpss.prepare(short_line())
-    first, *others = tpss.simulate_many([prepared] * 4, threads=2)
+    first, *others = tpss.simulate_many([prepared] * 4, threads=2, lanes=False)
     assert [repr(other) for other in others] == [repr(first)] * 3
     assert_same(first, prepared.run())
 

@@ -158,6 +158,8 @@ CONFLICTS = [
                  FREIGHT, "", "leave out motor_inertia_kg", id="motors-in-the-share-and-beside-it"),
     pytest.param({f"{FREIGHT}.adhesive_mass_t": 1470.0, f"{FREIGHT}.rotating_mass_factor": 0.1},
                  FREIGHT, "", "write rotating_mass_share = 0.1", id="rotating-mass-of-nothing-hauled"),
+    pytest.param({f"{FREIGHT}.adhesive_mass_t": 1470.0, f"{FREIGHT}.rotating_mass_factor": 1.0},
+                 FREIGHT, "", "write rotating_mass_share = 0.5", id="rotating-mass-beyond-any-share"),
     pytest.param({f"{ENTRY}.headway_min": None, f"{ENTRY}.departures_min": [0.0]}, ENTRY, "",
                  "use it with headway_min alone", id="already-running-by-timetable"),
     pytest.param({f"{ENTRY}.initial_trains": [{"position_km": 1.0, "speed_kmh": 1.0}]}, ENTRY, "",

@@ -362,10 +362,11 @@ class Train(Part):
                         f"leave out {name}, or rotating_mass_share",
                     )
         elif self.rotating_mass_factor > 0.0 and self.adhesive_mass_t == self.mass_t:
+            share = min(self.rotating_mass_factor, LARGEST_SHARE)
             raise fault(
                 "rotating_mass_factor is of the hauled mass, and the whole train is on driven axles",
-                f"write rotating_mass_share = {self.rotating_mass_factor:.4g} in its place, which "
-                "counts driven axles too, and leave out motor_inertia_kg",
+                f"write rotating_mass_share = {share:.4g} in its place, which counts driven axles too, "
+                "and leave out motor_inertia_kg",
             )
         return self
 
