@@ -6,7 +6,6 @@ import numba
 import numpy as np
 import pytest
 
-from branching import KERNELS
 from tpss.driving.braking import braking_plan
 from tpss.lanes import functions
 from tpss.lanes.compile import lane_version
