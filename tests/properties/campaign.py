@@ -17,6 +17,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
@@ -32,6 +33,7 @@ from .strategies import (
     sound_scenarios,
     spoilt_scenarios,
 )
+from .together import judge_together, like_cases
 
 Document = dict[str, Any]
 
@@ -47,7 +49,11 @@ KINDS = {
     "conductors": scenarios_of_conductors,
     "networks": network_scenarios,
     "laws of one's own": lambda: scenarios_by_own_laws(sound_scenarios()),
+    "like cases": lambda: like_cases(sound_scenarios()),
 }
+
+JUDGES: dict[str, Callable[[Document], str]] = {"like cases": judge_together}
+"""Of kinds that have one of their own."""
 
 
 class Campaign:
@@ -76,7 +82,7 @@ class Campaign:
         def look(document: Document) -> None:
             started = time.perf_counter()
             try:
-                self.tally[title, judge(document)] += 1
+                self.tally[title, JUDGES.get(title, judge)(document)] += 1
             except Exception as error:
                 found[_place_of(error)] = document  # the last one that shows it is the smallest
                 raise

@@ -20,6 +20,7 @@ from properties.junctions import junctions
 from properties.own_laws import scenarios_by_own_laws
 from properties.phases import scenarios_at_phases
 from properties.strategies import direct_scenarios, sound_scenarios, spoilt_scenarios
+from properties.together import judge_together, like_cases
 
 CASES = settings(
     max_examples=200,
@@ -114,6 +115,19 @@ def test_laws_of_one_s_own_run_by_the_rules_or_say_why_not():
 
     look()
     assert outcomes["finished"] > sum(outcomes.values()) / 4, outcomes
+
+
+def test_like_cases_come_out_the_same_in_lanes_and_alone():
+    """Six masses and headways of each; most of the others have too few steps to be worth lanes."""
+    outcomes: Counter[str] = Counter()
+
+    @settings(CASES, max_examples=40)
+    @given(like_cases(sound_scenarios()))
+    def look(document: dict[str, Any]) -> None:
+        outcomes[judge_together(document)] += 1
+
+    look()
+    assert outcomes["6 of 6 in lanes"] > 4, outcomes
 
 
 def test_spoilt_scenarios_lead_to_findings_or_run_by_the_rules():
