@@ -20,8 +20,8 @@ CASES = 6
 """Fewer than there are lanes: two of these are filled up."""
 
 AGREE = 1e-8
-"""Difference of two figures that counts as none, relative or in their unit: stations that hardly feed
-anything, or each other over metres of line, have energies of what the tolerance of the load flow leaves."""
+"""Difference of two figures that counts as none, relative or in their unit: of stations that hardly
+feed anything, or each other over metres of line, energies are what the load flow's tolerance leaves."""
 
 NOT_COMPARED = (
     "way", "audit", "mean_passes", "most_passes", "train", "time_min", "position_km", "line",
