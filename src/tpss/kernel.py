@@ -20,6 +20,7 @@ import numba.extending
 import numpy as np
 import platformdirs
 
+from tpss.kernel_arrays import handed_over
 from tpss.kernel_cache import KernelCache
 from tpss.shipped import Shipped, shipped
 
@@ -59,7 +60,7 @@ def source_digest(package_folder: Path) -> str:
     version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for shared in (Path(__file__).name, "record.py"):
+    for shared in (Path(__file__).name, "kernel_arrays.py", "record.py"):
         digest.update((package_folder / shared).read_bytes())
     for name in KERNEL_PACKAGES:
         for file in sorted((package_folder / name).rglob("*.py")):
@@ -303,10 +304,21 @@ def quick_inlining() -> Iterator[None]:
                 delattr(each, "__deepcopy__")
 
 
-def compile_for(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    """Compile a kernel for its arguments, or load it from the cache, without running it."""
+def compile_for(
+    function: Callable[..., Any], arguments: tuple[Any, ...], by_kernels: bool = False
+) -> None:
+    """Compile a kernel for its arguments, or load it from the cache, without running it.
+
+    Parameters
+    ----------
+    function : callable
+    arguments : tuple
+    by_kernels : bool
+        Whether kernels will call it, and so hand over arrays as `kernel_arrays` says, not Python.
+    """
     if hasattr(function, "compile"):  # not if compilation is switched off
-        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        kinds = [numba.typeof(argument) for argument in arguments]
+        function.compile(tuple(map(handed_over, kinds) if by_kernels else kinds))
 
 
 def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

@@ -46,12 +46,15 @@ class Record:
     """
 
     dtype: ClassVar[np.dtype[Any]]
+    dtypes: ClassVar[set[np.dtype[Any]]] = set()
+    """Those of all record classes."""
 
     def __init_subclass__(cls) -> None:
         classes = [each for each in reversed(cls.__mro__) if issubclass(each, Record)][1:]
         hints = {name: hint for each in classes for name, hint in get_annotations(each).items()}
         fields = [(name, *_numpy_type(hint)) for name, hint in hints.items()]
         cls.dtype = np.dtype((np.record, np.dtype(fields, align=True)))
+        Record.dtypes.add(cls.dtype)
 
     @classmethod
     def row(cls, **values: Any) -> Any:

@@ -151,10 +151,10 @@ def _start(model: Model) -> State:
     return new_state(model, train_records(trains, 0.0))
 
 
-def compile_calls(calls: list[Call]) -> None:
-    """Compile each kernel for its arguments, or load it from the cache, without running it."""
+def compile_calls(calls: list[Call], by_kernels: bool = False) -> None:
+    """`compile_for` of each kernel."""
     for function, arguments in calls:
-        compile_for(function, arguments)
+        compile_for(function, arguments, by_kernels)
 
 
 def _compile_in_parts(model: Model) -> None:
@@ -181,7 +181,7 @@ def _compile_in_parts(model: Model) -> None:
 def _help(model: Model) -> None:
     """The second process: compile what the clock calls, say so, then what audits a run."""
     with quick_inlining():
-        compile_calls(step_calls(model))
+        compile_calls(step_calls(model), by_kernels=True)
         print("step", flush=True)
         compile_calls(figures_calls(model))
 
