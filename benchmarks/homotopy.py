@@ -224,9 +224,17 @@ def is_sound(equations: "Equations", voltage: "Complexes") -> bool:
     low_v, high_v = equations.system.lowest_voltage_v, equations.system.highest_voltage_v
     if size_v.min() < low_v or size_v.max() > high_v or not are_in_step(equations, voltage):
         return False
-    alike = np.full(equations.buses, 1.0 + 0.0j)
-    stable = np.linalg.slogdet(apart(equations, 0.0).jacobian(alike, 0.0))[0]
-    return bool(np.linalg.slogdet(equations.jacobian(voltage, 1.0))[0] == stable)
+    return bool(np.linalg.slogdet(equations.jacobian(voltage, 1.0))[0] == stable_sign(equations))
+
+
+def stable_sign(equations: "Equations") -> float:
+    """Sign of the determinant where like stations are without load, which the stable branch keeps."""
+    begin = np.full(equations.buses, mean_phasor(equations) / equations.system.base_voltage_v)
+    state = alike_without_load(equations)
+    # Elsewhere, even at base voltage, the sign may be another one: machines have reactances.
+    return float(
+        np.linalg.slogdet(apart(equations, 0.0).jacobian(begin if state is None else state, 0.0))[0]
+    )
 
 
 def are_in_step(equations: "Equations", voltage: "Complexes") -> bool:

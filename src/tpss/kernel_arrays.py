@@ -18,6 +18,7 @@ import numba.extending
 import numpy as np
 from numba.core import types
 from numba.core.datamodel import models
+from numba.core.errors import NumbaTypeError
 
 from tpss.record import Record
 
@@ -32,7 +33,9 @@ PACKAGE = __name__.partition(".")[0]
 class KernelArray(_Array):  # type: ignore[misc]
     """Type of an array that is handed over in few words; a view of one is one too."""
 
-    def copy(self, dtype: Any = None, ndim: Any = None, layout: Any = None, readonly: Any = None) -> Any:
+    def copy(
+        self, dtype: Any = None, ndim: Any = None, layout: Any = None, readonly: Any = None
+    ) -> Any:
         """The type with another element, number of dimensions, or order in memory."""
         return kernel_array(super().copy(dtype, ndim, layout, readonly))
 
@@ -103,6 +106,21 @@ class KernelArrayModel(_ArrayModel):  # type: ignore[misc]
         pointer = self._model_of("data").get_value_type()
         word = _ir.Constant(_ir.IntType(64), 1)
         return _ir.Constant(pointer, None).gep([word]).ptrtoint(word.type)
+
+
+@numba.extending.box(KernelArray)
+def to_python(kind: Any, _: Any, __: Any) -> None:
+    """Refuse to give an array back: which object of Python it was, nobody handed over.
+
+    Raises
+    ------
+    NumbaTypeError
+        Always, when a kernel that Python calls is compiled.
+    """
+    raise NumbaTypeError(
+        f"a kernel gives {kind.ndim}-dimensional arrays back to Python, which cannot be: "
+        "call the plain function (`tpss.kernel.plain`)"
+    )
 
 
 _type_of_array, _type_of_tuple = (_typeof.dispatch(kind) for kind in (np.ndarray, tuple))

@@ -26,7 +26,7 @@ from tpss.step.advance import begin_step, change_length, prepare_step
 from tpss.step.coupling import apply_solutions, decide, pass_unfed, prepare_unfed
 from tpss.step.model import Model, driving_data, with_step
 from tpss.step.sparing import allow_currents
-from tpss.step.state import State, loads_of
+from tpss.step.state import State, loads_in_python
 
 from benchmarks.continuation import Equations
 from benchmarks.homotopy import End, is_sound, loads_last, sources_last
@@ -114,7 +114,7 @@ def solve_step_slowly(count: int, model: Model, state: State, raising: Raising) 
     if state.clock[0].unfed > 0:
         prepare_unfed(count, model, state)
     while True:
-        decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
+        decide(count, state.flow.standing, state.trains, plain(driving_data)(model), model.points)
         share = raising(model, state)
         if share != 1.0:
             return share
@@ -149,7 +149,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
         return math.nan
     if model.network.bundles != NO_BUNDLES or model.network.stores.size:
         return math.nan
-    loads = loads_of(model, state)
+    loads = loads_in_python(model, state)
     equations = Equations.of(model.network, state.flow._replace(standing=standing), loads)
     ends = [loads_last(equations), sources_last(equations)]
     for found in ends:
@@ -164,7 +164,7 @@ def raise_loads_by_homotopy(share: float, model: Model, state: State) -> float:
 def raise_loads_within_the_band(model: Model, state: State) -> float:
     """Raise all loads little by little, while all voltages are plausible."""
     flow = state.flow
-    loads = loads_of(model, state)
+    loads = loads_in_python(model, state)
     start_flat(model.network, flow)
     share, rise, start = 0.0, RISE, FLAT
     while share < 1.0 and rise > FINEST:

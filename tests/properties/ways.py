@@ -35,14 +35,12 @@ def along_way(scenario: tpss.Scenario, entry: Any) -> Along:
         end_m = hop.sign * 1e3 * hop.end_km + shift_m
         reached_m.append(end_m)
         seen = [(from_m + shift_m, limit) for from_m, limit in _seen(lines[hop.line], hop)]
-        held = [limit for from_m, limit in seen if from_m <= begin_m][-1]
-        limits.append((begin_m if i else -math.inf, held))
-        limits += [each for each in seen if begin_m < each[0] < end_m]
+        if i:  # of the first line, limits behind the first station may hold under a tail
+            held = [limit for from_m, limit in seen if from_m <= begin_m][-1]
+            limits.append((begin_m, held))
+        limits += [each for each in seen if (i == 0 or begin_m < each[0]) and each[0] < end_m]
         if i + 1 == len(way.hops):
             limits += [each for each in seen if each[0] >= end_m]
-    if way.hops:  # what lies before the first station holds for nobody
-        first_m = way.hops[0].sign * 1e3 * way.hops[0].begin_km
-        limits[0] = (first_m - 1e6, limits[0][1])
     return Along([reached_m[i] for i in way.stops], reached_m[-1], limits)
 
 

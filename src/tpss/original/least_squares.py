@@ -19,7 +19,6 @@ from scipy.optimize import least_squares
 from tpss.kernel import plain
 from tpss.original.grid import Complexes, Floats, Grid, lay_out
 from tpss.original.mismatch import Mismatch
-from tpss.powerflow.network import Loads
 from tpss.powerflow.raising import FIRST_STEP, SHORTEST_STEP, STEP_GROWTH
 from tpss.step.advance import (
     begin_step,
@@ -33,7 +32,7 @@ from tpss.step.model import Model, driving_data, with_step
 from tpss.step.record import record_instant
 from tpss.step.recording import Recording
 from tpss.step.sparing import allow_currents, heat_motors
-from tpss.step.state import State, Status
+from tpss.step.state import State, Status, loads_in_python
 
 SHORTEST_MOVE = 1e-8
 """The minimum is reached where a step changes the unknowns by less than this share of them.  Close to a
@@ -76,7 +75,7 @@ def solve_step(count: int, warm: bool, model: Model, state: State) -> tuple[floa
     """Solve a step until every driver's decision stands; see `step.coupling.solve_step`."""
     evaluations = 0
     while True:
-        decide(count, state.flow.standing, state.trains, driving_data(model), model.points)
+        decide(count, state.flow.standing, state.trains, plain(driving_data)(model), model.points)
         share, more = solve_network(count, warm, model, state)
         evaluations += more
         if share < 1.0 or apply_solutions(count, model, state):
@@ -113,8 +112,7 @@ class Search:
 
     def __init__(self, grid: Grid, count: int, model: Model, state: State) -> None:
         self.grid, self.count, self.model, self.state = grid, count, model, state
-        driving = plain(driving_data)(model)
-        self.loads = Loads(state.trains, model.types, state.scratch, driving, model.points)
+        self.loads = loads_in_python(model, state)
         self.evaluations = 0
         self.base_v = model.network.system.base_voltage_v
         powers = np.zeros(2 * model.network.sources.size)

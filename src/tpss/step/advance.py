@@ -26,7 +26,7 @@ from tpss.step.record import (
 from tpss.step.recording import Recording
 from tpss.step.separation import Separation, keep_apart
 from tpss.step.sparing import allow_currents, heat_motors
-from tpss.step.state import Counter, State, Status, loads_of
+from tpss.step.state import Counter, State, Status, loads_in_python, loads_of
 from tpss.step.traffic import depart, list_trains, move_train, remove_arrived, withhold
 from tpss.track.gate import Precedence
 from tpss.vehicle.on_board import begin_own_store
@@ -357,6 +357,6 @@ def advance(
     status, step = carry_out(first, last, model, state, recording)
     while status == Status.SEARCHING:
         now = plain(with_step)(model, state.clock[0].last_step_s)
-        answer_in_turn(model.network, state.flow, plain(loads_of)(now, state))
+        answer_in_turn(model.network, state.flow, loads_in_python(now, state))
         status, step = carry_out(step, last, model, state, recording)
     return status, step

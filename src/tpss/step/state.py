@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import inlined
+from tpss.kernel import inlined, plain
 from tpss.numerics.series import SCRATCH_SHAPE
 from tpss.powerflow.assembly import new_flow
 from tpss.powerflow.network import Flow, Indices, Loads
@@ -122,6 +122,12 @@ class State(NamedTuple):
 def loads_of(model: Model, state: State) -> Loads:
     """The trains, as far as the load flow is concerned."""
     return Loads(state.trains, model.types, state.scratch, driving_data(model), model.points)
+
+
+def loads_in_python(model: Model, state: State) -> Loads:
+    """`loads_of` for Python, to which kernels give no arrays back."""
+    data = plain(driving_data)(model)
+    return Loads(state.trains, model.types, state.scratch, data, model.points)
 
 
 def new_state(model: Model, trains: Records[Train], turns: Records[Turn] | None = None) -> State:

@@ -31,6 +31,7 @@ import numpy as np
 import pytest
 
 from tpss.driving.driver import prepare
+from tpss.kernel import plain
 from tpss.model import build_model
 from tpss.model.curves import CurveBook
 from tpss.numerics.series import SCRATCH_SHAPE
@@ -443,7 +444,7 @@ def test_a_step_at_the_same_speed_asks_the_machine_anew_beyond_its_band_only(
 ):
     model, _ = build_model(short_line())
     train = train_records([ScheduledTrain("", "", 0, 0, False, 0, speed_m_s=60 / 3.6)], 15e3)[0]
-    data = driving_data(model)
+    data = plain(driving_data)(model)
     as_run(prepare)(train, data, model.points, SCRATCH)
     assert train.demand.free_force_n == pytest.approx(169_170, abs=1.0)
     train.demand.free_force_n, train.demand.free_band_v = 7.0, band_v
