@@ -1,12 +1,12 @@
 """Arrays as kernels hand them to one another: where the elements lie, and how many there are.
 
 numba hands an array from function to function as seven machine words, nine if it has two dimensions: its
-owner and its parent, which are counted only where memory is allocated, its size twice over, the size of an
+owner and its parent, which count only where memory is allocated, its size twice over, the size of an
 element, which the type says, and strides, which follow from the shape.  A model, its state and what is
 recorded are a hundred arrays, so the kernels of a step spent a quarter of their time pushing words that
 nobody reads.
 
-Arrays of records and those in the named tuples of this package have a type of their own, a `KernelArray`,
+Arrays of records and those in the named tuples of this package have a type of their own, `KernelArray`,
 of which kernels hand over the address, the shape, and strides only if they do not follow from it.  To
 whatever else works on arrays it is an array like any other.
 """
@@ -25,6 +25,8 @@ from tpss.record import Record
 _Array: Any = types.Array
 _ArrayModel: Any = models.ArrayModel
 _typeof: Any = numba.extending.typeof_impl
+_box: Any = numba.extending.box
+_NamedTuple: Any = types.BaseNamedTuple
 _ir: Any = llvmlite.ir
 
 PACKAGE = __name__.partition(".")[0]
@@ -108,7 +110,7 @@ class KernelArrayModel(_ArrayModel):  # type: ignore[misc]
         return _ir.Constant(pointer, None).gep([word]).ptrtoint(word.type)
 
 
-@numba.extending.box(KernelArray)
+@_box(KernelArray)  # type: ignore[untyped-decorator]
 def to_python(kind: Any, _: Any, __: Any) -> None:
     """Refuse to give an array back: which object of Python it was, nobody handed over.
 
@@ -126,18 +128,18 @@ def to_python(kind: Any, _: Any, __: Any) -> None:
 _type_of_array, _type_of_tuple = (_typeof.dispatch(kind) for kind in (np.ndarray, tuple))
 
 
-@_typeof.register(np.recarray)
+@_typeof.register(np.recarray)  # type: ignore[untyped-decorator]
 def type_of_records(array: Any, context: Any) -> Any:
     """Type of an array of records: a `KernelArray` if they are of this package."""
     found = _type_of_array(array, context)
     return kernel_array(found) if array.dtype in Record.dtypes else found
 
 
-@_typeof.register(tuple)
+@_typeof.register(tuple)  # type: ignore[untyped-decorator]
 def type_of_tuple(values: Any, context: Any) -> Any:
     """Type of a tuple: the arrays in a named one of this package are `KernelArray`s."""
     found = _type_of_tuple(values, context)
-    if not (isinstance(found, types.BaseNamedTuple) and _is_ours(type(values))):
+    if not (isinstance(found, _NamedTuple) and _is_ours(type(values))):
         return found
     return types.BaseTuple.from_types([handed_over(part) for part in found], type(values))
 
