@@ -21,6 +21,7 @@ LIMITS = {"line.speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0},
                                 {"from_km": 12.0, "speed_kmh": 40.0}]}  # fmt: skip
 CONTROL = {"supply.converter_stations.0.control": "loading", "traffic.0.headway_min": 4.0,
            "traffic.0.already_running": True}  # fmt: skip
+DOWN = {"traffic.0.from": "East", "traffic.0.to": "West", **STOPS}
 
 
 def assert_alike(scenarios: list[tpss.Scenario]) -> list[str]:
@@ -35,8 +36,8 @@ def assert_alike(scenarios: list[tpss.Scenario]) -> list[str]:
     return [each.way for each in together]
 
 
-@pytest.mark.parametrize("changes", [{}, STOPS, LIMITS, CONTROL],
-                         ids=["plain", "stops", "limits", "control"])  # fmt: skip
+@pytest.mark.parametrize("changes", [{}, STOPS, LIMITS, CONTROL, DOWN],
+                         ids=["plain", "stops", "limits", "control", "down"])  # fmt: skip
 def test_cases_of_one_structure_run_in_lanes(changes):
     cases = [each.with_(changes) for each in MASSES[:5]]
     assert assert_alike(cases) == ["lanes"] * 5
