@@ -3,8 +3,6 @@
 Usage: python benchmarks/lanes_agree.py [--cases N] [--seed N]
 """
 
-import dataclasses
-import math
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +12,7 @@ import numpy as np
 
 import tpss
 
+from alike import difference, figures_in
 from report import arguments
 
 LINE = Path(__file__).parents[1] / "examples" / "thesis_3_3.toml"
@@ -49,35 +48,10 @@ def random_changes(random: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def figures_in(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """All figures by their names; those of the audit, which are roundings, but for its verdict."""
-    if isinstance(value, tpss.KeyFigures):
-        for field in dataclasses.fields(value):
-            if field.name not in ("way", "audit"):
-                yield from figures_in(getattr(value, field.name), field.name)
-        yield "audit.passed", value.audit.passed
-    elif dataclasses.is_dataclass(value):
-        for field in dataclasses.fields(value):
-            yield from figures_in(getattr(value, field.name), f"{name}.{field.name}")
-    elif isinstance(value, tuple):
-        for k, each in enumerate(value):
-            yield from figures_in(each, f"{name}.{k}")
-    elif isinstance(value, dict):
-        for key, each in value.items():
-            yield from figures_in(each, f"{name}.{key}")
-    else:
-        yield name, value
-
-
-def difference(found: Any, expected: Any) -> float:
-    """Relative difference of two figures; infinite where they are no numbers, and not the same."""
-    if found == expected:
-        return 0.0
-    if not (isinstance(found, float) and isinstance(expected, float)):
-        return math.inf
-    if math.isnan(found) and math.isnan(expected):
-        return 0.0
-    return abs(found - expected) / abs(expected) if expected else math.inf
+def _judged(figures: tpss.KeyFigures) -> Iterator[tuple[str, Any]]:
+    """All figures but those of the audit, and its verdict."""
+    yield from figures_in(figures)
+    yield "audit.passed", figures.audit.passed
 
 
 def main() -> None:
@@ -89,7 +63,8 @@ def main() -> None:
     ways, worst, apart = Counter[str](), 0.0, 0
     for number, (one, other) in enumerate(zip(alone, together, strict=True)):
         ways[f"{other.way}, {other.status}"] += 1
-        for (name, expected), (_, found) in zip(figures_in(one), figures_in(other), strict=True):
+        pairs = zip(_judged(one), _judged(other), strict=True)
+        for (name, expected), (_, found) in pairs:
             off = difference(found, expected)
             if off > AGREE:
                 apart += 1

@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # named as themselves, they are exported for type checkers to
     from tpss.errors import ApproximatorError as ApproximatorError
     from tpss.errors import AuditError as AuditError
     from tpss.errors import Finding as Finding
+    from tpss.errors import LanesError as LanesError
     from tpss.errors import NoPlanError as NoPlanError
     from tpss.errors import PlanError as PlanError
     from tpss.errors import ResultError as ResultError
@@ -62,6 +63,7 @@ _HOME = {
     "Finding": "tpss.errors",
     "Geometry": "tpss.conductors.geometry",
     "KeyFigures": "tpss.results.key_figures",
+    "LanesError": "tpss.errors",
     "LineConstants": "tpss.conductors.constants",
     "NoPlanError": "tpss.errors",
     "Plan": "tpss.planning.load",

@@ -130,6 +130,10 @@ class ApproximatorError(TpssError):
     """An approximator cannot be trained, written or read."""
 
 
+class LanesError(TpssError):
+    """Cases were to run in lanes, and cannot here."""
+
+
 class AuditError(TpssError):
     """The audit of a run failed whose figures were to be used."""
 

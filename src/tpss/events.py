@@ -22,6 +22,7 @@ EVENTS = {
         "notes: %(notes)d, steps in which something was limited: %(limited)d",
     ),
     "audit failed": (logging.WARNING, "%(scenario)s: the audit failed: %(failures)s"),
+    "no lanes": (logging.WARNING, "cases run alone, as lanes cannot be used: %(problem)s"),
     "saved": (logging.INFO, "%(scenario)s: saved in %(folder)s"),
     "cases": (logging.INFO, "%(name)s: %(done)d of %(cases)d cases done"),
 }

@@ -226,14 +226,10 @@ def compiled_into(folder: Path, function: _Function, fused: bool) -> _Function:
     fused : bool
         As of `fused`.
     """
-    folder_before = _config.CACHE_DIR
-    _config.CACHE_DIR = str(folder)
-    try:
+    with _kept_in(folder):
         compiled: _Function = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
         if compiles():
             setattr(compiled, "_cache", _cache_of(function, _none_shipped))  # noqa: B010
-    finally:
-        _config.CACHE_DIR = folder_before
     return compiled
 
 
@@ -243,17 +239,24 @@ def _none_shipped() -> None:
 
 def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     options = {**_OPTIONS, **others}
-    folder_before = _config.CACHE_DIR
-    _config.CACHE_DIR = str(cache_folder())
-    try:
+    with _kept_in(cache_folder()):
         compiled: _Function = _njit(inline=inline, **options)(function)
         if compiles():
             setattr(compiled, "_cache", _cache_of(function, shipped_kernels))  # noqa: B010
             if inline == "never":
                 _indices.append(compiled._cache.index.relative_to(cache_folder()))  # type: ignore[attr-defined]
+    return compiled
+
+
+@contextmanager
+def _kept_in(folder: Path) -> Iterator[None]:
+    """Let numba keep what is compiled in a folder."""
+    folder_before = _config.CACHE_DIR
+    _config.CACHE_DIR = str(folder)
+    try:
+        yield
     finally:
         _config.CACHE_DIR = folder_before
-    return compiled
 
 
 at = np.uint64

@@ -1,6 +1,7 @@
 """Many scenarios, simulated in threads, of which only the key figures are kept."""
 
 import os
+import re
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -10,8 +11,12 @@ from itertools import islice
 from typing import Any, TypeVar
 
 import numpy as np
+from numba.core.errors import NumbaError
 
 from tpss.api import Prepared, build
+from tpss.errors import LanesError
+from tpss.events import tell
+from tpss.files.refusals import reason
 from tpss.kernel import compiles
 from tpss.lanes.compile import are_compiled
 from tpss.lanes.known import covers
@@ -57,7 +62,7 @@ def simulate_many(
     lanes : bool, optional
         Whether cases may run in lanes, for which more kernels are compiled, in about a minute.  By
         default they do where these are compiled already, and after the cases before have had
-        `STEPS_ALONE` steps.
+        `STEPS_ALONE` steps; where they cannot, they run alone, and the logger ``tpss`` tells why.
 
     Yields
     ------
@@ -70,11 +75,13 @@ def simulate_many(
         As `simulate`, in the turn of the scenario that is at fault.
     TooLargeError
         A run would not fit into memory.
+    LanesError
+        With ``lanes=True``, if kernels of lanes cannot be made here.
     """
     if lanes is False or not compiles():
         return in_threads(key_figures, scenarios, threads)
     if lanes or are_compiled():
-        return _together(scenarios, threads or os.cpu_count() or 1)
+        return _together(scenarios, threads or os.cpu_count() or 1, bool(lanes))
     return _alone_at_first(scenarios, threads or os.cpu_count() or 1)
 
 
@@ -119,10 +126,12 @@ def _alone_at_first(scenarios: Iterable[Scenario | Prepared], threads: int) -> I
     for figures in in_threads(key_figures, few(), threads):
         steps += figures.steps
         yield figures
-    yield from _together(drawn, threads)
+    yield from _together(drawn, threads, demanded=False)
 
 
-def _together(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterator[KeyFigures]:
+def _together(
+    scenarios: Iterable[Scenario | Prepared], threads: int, demanded: bool
+) -> Iterator[KeyFigures]:
     """`simulate_many` with lanes.
 
     So many cases are drawn as give each thread two full batches; they are built, and sorted by their
@@ -136,7 +145,7 @@ def _together(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterato
                 built = [pool.submit(_built, each) for each in window]
                 wait(built)
                 before = len(waiting)
-                waiting.extend(_submit(built, pool))
+                waiting.extend(_submit(built, pool, demanded))
                 for _ in range(before):
                     yield waiting.popleft()()
             while waiting:
@@ -146,7 +155,7 @@ def _together(scenarios: Iterable[Scenario | Prepared], threads: int) -> Iterato
 
 
 def _submit(
-    built: list[Future[Prepared]], pool: ThreadPoolExecutor
+    built: list[Future[Prepared]], pool: ThreadPoolExecutor, demanded: bool
 ) -> list[Callable[[], KeyFigures]]:
     """Start the runs of cases; what waits for the figures of each."""
     alike: dict[Any, list[int]] = {}
@@ -163,7 +172,7 @@ def _submit(
                 for number, case in zip(some, cases, strict=True):
                     figures[number] = pool.submit(key_figures, case).result
             else:
-                batch = pool.submit(_figures_together, cases)
+                batch = pool.submit(_figures_together, cases, demanded)
                 for place, number in enumerate(some):
                     figures[number] = partial(_one_of, batch, place)
     return figures
@@ -182,14 +191,59 @@ def _structure(case: Prepared) -> Any:
     return structure_of(case) if covers(case) else None
 
 
-def _figures_together(cases: Sequence[Prepared]) -> list[KeyFigures]:
-    """Key figures of cases of one structure, of those that leave the others too."""
-    from tpss.lanes.batch import figures_together  # which takes seconds to convert the kernels
+def _figures_together(cases: Sequence[Prepared], demanded: bool) -> list[KeyFigures]:
+    """Key figures of cases of one structure, of those that leave the others too.
 
-    found = figures_together(cases)
+    Raises
+    ------
+    LanesError
+        Lanes are demanded, and cannot be used.
+    """
+    found: Sequence[KeyFigures | None] = [None] * len(cases)
+    if demanded or not _unusable:
+        try:
+            found = _in_lanes(cases)
+        except (LanesError, NumbaError, OSError) as error:
+            if demanded:
+                raise LanesError(
+                    f"cases cannot run in lanes: {_why(error)}; leave out lanes=True"
+                ) from error
+            _do_without(_why(error))
     return [
         key_figures(case) if each is None else each for case, each in zip(cases, found, strict=True)
     ]
+
+
+def _in_lanes(cases: Sequence[Prepared]) -> list[KeyFigures | None]:
+    """Key figures of cases of one structure; None of one that has to run alone."""
+    from tpss.lanes.batch import figures_together  # which takes seconds to convert the kernels
+
+    return figures_together(cases)
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename} cannot be written: {reason(error)}"
+    return _COLOURS.sub("", str(error))
+
+
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+"""What numba has for terminals in its messages."""
+
+
+_unusable: list[str] = []
+"""Why lanes cannot be used in this process, once that is known."""
+
+_one_finds_out = threading.Lock()
+
+
+def _do_without(problem: str) -> None:
+    """Let later cases run alone at once, and tell it to those who listen, once a process."""
+    with _one_finds_out:
+        if _unusable:
+            return
+        _unusable.append(problem)
+    tell("no lanes", problem=problem)
 
 
 def key_figures(scenario: Scenario | Prepared) -> KeyFigures:

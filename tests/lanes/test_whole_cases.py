@@ -1,15 +1,13 @@
 """Cases in lanes end as they end alone: in every figure to 1e-12, with the same audit."""
 
-import dataclasses
-import math
 from itertools import count, islice
-from typing import Any
 
 import pytest
 
 import tpss
 from tpss import many
 
+from alike import differences
 from scenarios import gradients, short_line
 
 AGREE = 1e-12
@@ -23,32 +21,7 @@ LIMITS = {"line.speed_limits": [{"from_km": 0.0, "speed_kmh": 60.0},
                                 {"from_km": 12.0, "speed_kmh": 40.0}]}  # fmt: skip
 CONTROL = {"supply.converter_stations.0.control": "loading", "traffic.0.headway_min": 4.0,
            "traffic.0.already_running": True}  # fmt: skip
-
-
-def differences(found: Any, expected: Any, path: str = "") -> list[str]:
-    """Where two figures differ by more than roundings; the audit's own roundings do not count."""
-    if dataclasses.is_dataclass(expected):
-        names = (each.name for each in dataclasses.fields(expected))
-        return [
-            line
-            for name in names
-            if name not in ("way", "audit")
-            for line in differences(getattr(found, name), getattr(expected, name), f"{path}.{name}")
-        ]
-    if isinstance(expected, dict):
-        assert found.keys() == expected.keys()
-        return differences(tuple(found.values()), tuple(expected.values()), path)
-    if isinstance(expected, tuple):
-        pairs = zip(found, expected, strict=True)
-        return [line for k, each in enumerate(pairs) for line in differences(*each, f"{path}.{k}")]
-    if isinstance(expected, float):
-        same = (
-            math.isnan(found)
-            if math.isnan(expected)
-            else abs(found - expected) <= AGREE * abs(expected)
-        )
-        return [] if same else [f"{path}: {found!r} in lanes, {expected!r} alone"]
-    return [] if found == expected else [f"{path}: {found!r} in lanes, {expected!r} alone"]
+DOWN = {"traffic.0.from": "East", "traffic.0.to": "West", **STOPS}
 
 
 def assert_alike(scenarios: list[tpss.Scenario]) -> list[str]:
@@ -57,14 +30,14 @@ def assert_alike(scenarios: list[tpss.Scenario]) -> list[str]:
     together = list(tpss.simulate_many(scenarios, lanes=True))
     assert [each.way for each in alone] == ["alone"] * len(alone)
     for found, expected in zip(together, alone, strict=True):
-        assert differences(found, expected) == []
+        assert differences(found, expected, AGREE) == []
         assert found.audit.passed == expected.audit.passed
         assert found.audit.limits == expected.audit.limits
     return [each.way for each in together]
 
 
-@pytest.mark.parametrize("changes", [{}, STOPS, LIMITS, CONTROL],
-                         ids=["plain", "stops", "limits", "control"])  # fmt: skip
+@pytest.mark.parametrize("changes", [{}, STOPS, LIMITS, CONTROL, DOWN],
+                         ids=["plain", "stops", "limits", "control", "down"])  # fmt: skip
 def test_cases_of_one_structure_run_in_lanes(changes):
     cases = [each.with_(changes) for each in MASSES[:5]]
     assert assert_alike(cases) == ["lanes"] * 5

@@ -135,7 +135,7 @@ def test_every_curve_and_network_cites_its_source():
     """The numerics of a machine's curves; that of pairs and blocks is derived where it stands."""
     helpers = {
         "index_at", "index_from", "room_to_next", "reaches", "series_at", "prepare_series", "outside",
-        "exponential", "outside_curve", "_piece_at",
+        "exponential", "times_power_of_two", "outside_curve", "_piece_at",
     }  # fmt: skip
     for name in ("staircase", "series", "neural_network", "exponential", "curve"):
         tree = ast.parse((SOURCE / "numerics" / f"{name}.py").read_text("utf-8"))

@@ -1,7 +1,5 @@
 """Random like cases, in lanes and alone: each has to come out the same both ways."""
 
-import dataclasses
-import math
 from random import Random
 from typing import Any
 
@@ -13,6 +11,7 @@ from tpss.errors import TooLargeError
 from tpss.lanes.known import not_covered
 
 from .judge import is_long, patience
+from alike import differences
 
 Document = dict[str, Any]
 
@@ -24,7 +23,8 @@ AGREE = 1e-8
 feed anything, or each other over metres of line, energies are what the load flow's tolerance leaves."""
 
 NOT_COMPARED = (
-    "way", "audit", "mean_passes", "most_passes", "train", "time_min", "position_km", "line",
+    "way", "audit", "mean_passes", "most_passes", "lowest_voltage.train", "lowest_voltage.time_min",
+    "lowest_voltage.position_km", "lowest_voltage.line",
 )  # fmt: skip
 """Figures that are not compared: roundings of the audit; how often Newton's method passed over the
 network, once more where a rounding lifts a mismatch over the tolerance; and where and when a voltage is
@@ -90,31 +90,7 @@ def judge_together(document: Document) -> str:
             return "refused: too large"
         together = list(simulate_many(cases, 1, lanes=True))
         for found, expected in zip(together, alone, strict=True):
-            assert not (off := differences(found, expected, AGREE)), off
+            off = differences(found, expected, AGREE, NOT_COMPARED, unit=1.0)
+            assert not off, off
             assert found.audit.passed == expected.audit.passed
         return f"{sum(each.way == 'lanes' for each in together)} of {CASES} in lanes"
-
-
-def differences(found: Any, expected: Any, agree: float, path: str = "") -> list[str]:
-    """Where two figures differ by more than roundings."""
-    if dataclasses.is_dataclass(expected):
-        names = (each.name for each in dataclasses.fields(expected))
-        return [
-            line
-            for name in names
-            if name not in NOT_COMPARED
-            for line in differences(
-                getattr(found, name), getattr(expected, name), agree, f"{path}.{name}"
-            )
-        ]
-    if isinstance(expected, dict):
-        assert found.keys() == expected.keys()
-        return differences(tuple(found.values()), tuple(expected.values()), agree, path)
-    if isinstance(expected, tuple):
-        pairs = enumerate(zip(found, expected, strict=True))
-        return [line for k, each in pairs for line in differences(*each, agree, f"{path}.{k}")]
-    same = found == expected
-    if isinstance(expected, float):
-        both_unknown = math.isnan(found) and math.isnan(expected)
-        same = both_unknown or abs(found - expected) <= agree * max(1.0, abs(expected))
-    return [] if same else [f"{path}: {found!r} in lanes, {expected!r} alone"]

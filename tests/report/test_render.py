@@ -104,3 +104,11 @@ def test_an_area_of_colours_and_a_bar_hold_what_was_described(short):
     figure = interactive.render(FIGURES["energy"].describe(short, None, "distance"), 400)
     ends = [trace.base[0] + trace.x[0] for trace in figure.data]
     assert ends == pytest.approx([bar.start + bar.length for bar in bars])
+
+
+def test_wide_numbers_of_a_vertical_axis_have_room():
+    """Of every panel: 12,500 is wider than the margin that all figures have."""
+    curve = Curve(np.array([0.0, 1.0]), np.array([0.0, 12500.0]))
+    panels = [Panel("power [kW]", [curve]), Panel("power [kW]", [curve])]
+    shown = interactive.render(Drawing("time [min]", panels), 400)
+    assert [axis.automargin for axis in shown.select_yaxes()] == [True, True]

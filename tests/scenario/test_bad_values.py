@@ -185,7 +185,7 @@ OUT_OF_RANGE = [
                  "on one line", id="name-on-two-lines"),
     pytest.param({"line.stations.1.name": "Mid\0dle"}, "line.stations.1.name", "'Mid\\x00dle'",
                  "control characters", id="name-with-a-control-character"),
-    pytest.param({"name": "a/b"}, "name", "'a/b'", "letters, digits, dots",
+    pytest.param({"name": "a/b"}, "name", "'a/b'", "letters (a to z), digits, dots",
                  id="name-that-is-no-file-name"),
 ]  # fmt: skip
 

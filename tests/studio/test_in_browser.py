@@ -215,6 +215,11 @@ def test_every_chart_has_its_table(shown):
     assert table.get_by_role("row").count() > 20
 
 
+def test_axes_write_numbers_as_the_rest_of_the_page_does(shown):
+    ask = "async () => (await import('./scales.js')).AXIS.values(null, [12500, 0.25, -3])"
+    assert shown.tab.evaluate(ask) == ["12500", "0.25", "−3"]
+
+
 def test_cells_of_a_spreadsheet_take_the_place_of_a_table(shown):
     shown.tab.get_by_text("line", exact=True).first.click()
     cell = shown.field("from 1 of gradients")

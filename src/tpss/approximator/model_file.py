@@ -13,7 +13,7 @@ from tpss.approximator.domain import Domain, fits
 from tpss.approximator.inputs import Inputs
 from tpss.approximator.network import Ensemble
 from tpss.errors import ApproximatorError, Finding, ScenarioError, shortened
-from tpss.files.checked import document_checksum
+from tpss.files.checked import takes_checksum, with_checksum
 from tpss.files.json_text import parse_json
 from tpss.files.read import read_bytes
 from tpss.files.refusals import ANOTHER, explained, reason
@@ -27,10 +27,6 @@ READ = (2, VERSION)
 
 MOST_BYTES = 200_000_000
 """Largest file that is read: a hundred times as large as those that are written. [byte]"""
-
-
-CHECKSUM = "sha256"
-"""Key of a checksum of everything else that the file says."""
 
 MOST_WEIGHT = 1e9
 """Largest weight of a network whose inputs and outputs are scaled to 1."""
@@ -210,12 +206,12 @@ def read_model(path: Path) -> ModelFile:
             f"{path} was written by another version of TPSS: its format is {document.get('version')!r}, "
             f"this version reads {' and '.join(map(str, READ))}; train it again"
         )
-    written = document.pop(CHECKSUM, None)
+    is_as_written = takes_checksum(document)
     try:
         model = ModelFile.model_validate(document)
     except ValidationError as error:
         raise ScenarioError([_finding(dict(d), path) for d in error.errors()]) from error
-    if written not in (None, document_checksum(document)):
+    if not is_as_written:
         raise ApproximatorError(f"{path} is damaged: its checksum is another; {REMEDY}")
     return model
 
@@ -272,6 +268,5 @@ def _unwritable(path: Path) -> AbstractContextManager[None]:
 
 def text_of_model(model: ModelFile) -> str:
     """The file as text, with all digits of its numbers, and a checksum."""
-    document = model.model_dump(mode="json")
-    checked = {**document, CHECKSUM: document_checksum(document)}
+    checked = with_checksum(model.model_dump(mode="json"))
     return json.dumps(checked, indent=None, separators=(",", ":")) + "\n"

@@ -11,6 +11,9 @@ from tpss.files.read import MEGABYTE, read_bytes
 MOST_BYTES = 2_000 * MEGABYTE
 """Longest file that is read. [byte]"""
 
+CHECKSUM = "sha256"
+"""Key of a document's checksum of everything else that it says."""
+
 _DIGITS = 16
 _CHECKED = re.compile(rf".*-([0-9a-f]{{{_DIGITS}}})\.\w+")
 
@@ -45,3 +48,14 @@ def document_checksum(document: dict[str, Any]) -> str:
     """Checksum of what a document of JSON says, however it is written and in whatever order."""
     as_read = json.loads(json.dumps(document))
     return hashlib.sha256(json.dumps(as_read, sort_keys=True).encode()).hexdigest()
+
+
+def with_checksum(document: dict[str, Any]) -> dict[str, Any]:
+    """A document of JSON with a checksum of what it says."""
+    return {**document, CHECKSUM: document_checksum(document)}
+
+
+def takes_checksum(document: dict[str, Any]) -> bool:
+    """Take the checksum out of a document as it was read; whether it is right, or there is none."""
+    written = document.pop(CHECKSUM, None)
+    return written in (None, document_checksum(document))

@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tpss.errors import LanesError
 from tpss.kernel import cache_folder, compiled_into
 from tpss.lanes import masks
 from tpss.lanes.convert import Converter
+from tpss.lanes.expressions import NotConvertedError
 
 HELPERS = {
     each: getattr(masks, each)
@@ -33,13 +35,11 @@ _made: dict[Any, tuple[Any, bool]] = {}
 
 @cache
 def lanes_folder() -> Path:
-    """Folder of the generated kernels and of what they are compiled to."""
+    """Folder of the generated kernels and of what they are compiled to; it need not be there yet."""
     digest = hashlib.sha256()
     for file in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(file.read_bytes())
-    folder = cache_folder() / f"lanes-{digest.hexdigest()[:16]}"
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+    return cache_folder() / f"lanes-{digest.hexdigest()[:16]}"
 
 
 def are_compiled() -> bool:
@@ -62,8 +62,10 @@ def lane_version(kernel: Any) -> tuple[Any, bool]:
 
     Raises
     ------
-    NotImplementedError
-        It has a form that is not converted.
+    LanesError
+        It, or what it calls, has a form that is not converted.
+    OSError
+        The folder of generated kernels cannot be written.
     """
     if kernel not in _made:
         _made[kernel] = by_hand.get(kernel) or _make(kernel)
@@ -73,11 +75,18 @@ def lane_version(kernel: Any) -> tuple[Any, bool]:
 def _make(kernel: Any) -> tuple[Any, bool]:
     without = getattr(kernel, "without", None)
     python = without or kernel.py_func
-    converter = Converter(python, lane_version, of_math)
-    tree = converter.converted()
+    title = f"{python.__module__}.{python.__name__}"
+    try:
+        converter = Converter(python, lane_version, of_math)
+        tree = converter.converted()
+    except NotConvertedError as error:
+        raise LanesError(
+            f"{title} has a form that is not converted, {error}; write it in one of those of "
+            "tpss.lanes.convert, or its lane version by hand"
+        ) from error
     tree.name = f"{python.__name__}_lanes"
     space = {**python.__globals__, **HELPERS, **converter.replaced}
-    made = _from_file(f"{python.__module__}.{python.__name__}", tree, space)
+    made = _from_file(title, tree, space)
     options = {} if without else kernel.targetoptions
     fused = bool(without) or options.get("forceinline") or options.get("inline") == "always"
     return compiled_into(lanes_folder(), made, bool(fused)), converter.needs_mask
@@ -88,6 +97,7 @@ def _from_file(title: str, tree: ast.FunctionDef, space: dict[str, Any]) -> Any:
     text = f'"""Made by tpss.lanes from {title}."""\n\n{ast.unparse(tree)}\n'
     file = lanes_folder() / f"{title}.py"
     if not file.exists() or file.read_text("utf-8") != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, "utf-8")
     exec(compile(text, str(file), "exec"), space)
     return space[tree.name]

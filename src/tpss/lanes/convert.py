@@ -18,7 +18,14 @@ import ast
 import copy
 from collections import Counter
 
-from tpss.lanes.expressions import assigned, call, name, set_to
+from tpss.lanes.expressions import (
+    NotConvertedError,
+    assigned,
+    call,
+    name,
+    not_converted,
+    set_to,
+)
 from tpss.lanes.statements import Body, Statements, blank, exits
 
 
@@ -49,14 +56,16 @@ class Converter(Statements):
         return ast.fix_missing_locations(made)
 
     def _for(self, statement: ast.For) -> Body:
-        assert isinstance(statement.target, ast.Name)
-        assert isinstance(statement.iter, ast.Call)
-        bounds, k = statement.iter.args, statement.target.id
+        bounds, k = self._turns_of(statement)
         self.known.add(k)
         if all(self.is_same(each) for each in bounds):
             again = self._each_turn(statement.body, None)
             head = ast.Call(name("range"), [self.visit(each) for each in bounds], [])
             return [ast.For(statement.target, head, again or [ast.Pass()], [])]
+        if len(bounds) == 3:
+            raise not_converted(
+                statement.iter, "a loop in steps, which lanes begin or end apart, over"
+            )
         low, high = bounds if len(bounds) == 2 else (ast.Constant(0), bounds[0])
         a, b, mask = self.fresh("_a"), self.fresh("_b"), self.fresh("_m")
         inside = call(
@@ -73,6 +82,19 @@ class Converter(Statements):
             set_to(a, self.visit(low)), set_to(b, self.visit(high)),
             ast.For(statement.target, head, body, []),
         ]  # fmt: skip
+
+    def _turns_of(self, statement: ast.For) -> tuple[list[ast.expr], str]:
+        """Bounds of a loop over whole numbers, and the name of these."""
+        head = statement.iter
+        if not (
+            isinstance(statement.target, ast.Name)
+            and isinstance(head, ast.Call)
+            and ast.unparse(head.func) == "range"
+        ):
+            raise not_converted(head, "a loop over what is no range")
+        if statement.orelse:
+            raise not_converted(head, "a loop with an end of its own, over")
+        return head.args, statement.target.id
 
     def _each_turn(self, body: Body, mask: str | None) -> Body:
         """The body of a loop, under a mask of its own where lanes differ in their turns."""
@@ -94,7 +116,7 @@ class Converter(Statements):
         if exits(body, (ast.Return,)) and self.has_returned:
             gone.append("_gone")
         if left in self.left_by:
-            raise NotImplementedError("a break by some lanes out of a loop")
+            raise NotConvertedError("a break by some lanes out of a loop over a range")
         if skip in self.left_by:
             head.append(set_to(skip, ast.Constant(False)))
         if gone:
@@ -107,6 +129,8 @@ class Converter(Statements):
         return [*head, *made]
 
     def _while(self, statement: ast.While) -> Body:
+        if statement.orelse:
+            raise not_converted(statement.test, "a loop with an end of its own, while")
         if self.is_same(statement.test) and not exits(statement.body, (ast.Return, ast.Break)):
             test = self.visit(statement.test)
             return [ast.While(test, self._each_turn(statement.body, None), [])]

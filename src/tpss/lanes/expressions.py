@@ -10,6 +10,15 @@ from typing import Any
 from tpss.lanes.known import DECIDED, SAME_ARRAYS, SAME_FIELDS
 
 
+class NotConvertedError(Exception):
+    """A kernel has a form that the conversion does not know; the message shows it."""
+
+
+def not_converted(form: ast.AST, what: str) -> NotConvertedError:
+    """What a form is, and as what it is not known."""
+    return NotConvertedError(f"{what}: {ast.unparse(form)}")
+
+
 def name(of: str) -> ast.Name:
     """A name that is read."""
     return ast.Name(of, ast.Load())
@@ -44,6 +53,12 @@ def assigned(body: list[ast.stmt]) -> list[str]:
 
 def _is_whole(test: ast.expr, value: bool) -> bool:
     return isinstance(test, ast.Constant) and test.value is value
+
+
+_UNKNOWN = (
+    ast.Lambda, ast.NamedExpr, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.Yield,
+    ast.YieldFrom, ast.Await,
+)  # fmt: skip
 
 
 class Pruned(ast.NodeTransformer):
@@ -145,6 +160,9 @@ class Expressions(ast.NodeTransformer):
         if isinstance(target, ast.Name):
             values.setdefault(target.id, []).append(value)
         elif isinstance(target, ast.Tuple):
+            for each in target.elts:
+                if not isinstance(each, (ast.Name, ast.Attribute, ast.Subscript)):
+                    raise not_converted(target, "names unpacked within others")
             apart = value.elts if isinstance(value, ast.Tuple) else [None] * len(target.elts)
             for each, one in zip(target.elts, apart, strict=True):
                 self._note(each, one, values)
@@ -210,6 +228,12 @@ class Expressions(ast.NodeTransformer):
 
     # Expressions
 
+    def generic_visit(self, node: ast.AST) -> ast.AST:
+        """Of other expressions their parts."""
+        if isinstance(node, _UNKNOWN):
+            raise not_converted(node, "an expression of an unknown kind")
+        return super().generic_visit(node)
+
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
         """Masks joined; what is called sees the lanes that are left."""
         folded = self.fold(node)
@@ -256,11 +280,13 @@ class Expressions(ast.NodeTransformer):
         if isinstance(self.fold(node), ast.Constant):
             return self.fold(node)
         left, right = self.visit(node.left), [self.visit(each) for each in node.comparators]
-        if isinstance(node.ops[0], ast.In):
+        if isinstance(node.ops[0], ast.In) and isinstance(right[0], ast.Tuple) and not right[1:]:
             tested: list[ast.expr] = [
                 ast.Compare(copy.deepcopy(left), [ast.Eq()], [each]) for each in right[0].elts
             ]
             join = "either"
+        elif any(isinstance(op, (ast.In, ast.NotIn, ast.Is, ast.IsNot)) for op in node.ops):
+            raise not_converted(node, "a comparison of an unknown kind")
         else:
             tested = [
                 ast.Compare(copy.deepcopy(a), [op], [copy.deepcopy(b)])
@@ -277,7 +303,7 @@ class Expressions(ast.NodeTransformer):
         left, right = self.visit(node.left), self.visit(node.right)
         if isinstance(node.op, ast.Pow):
             if not (isinstance(right, ast.Constant) and right.value == 2):
-                raise NotImplementedError(ast.unparse(node))
+                raise not_converted(node, "a power that is not a square")
             return ast.BinOp(left, ast.Mult(), copy.deepcopy(left))
         return ast.BinOp(left, node.op, right)
 
@@ -295,6 +321,8 @@ class Expressions(ast.NodeTransformer):
         folded = self.fold(node)
         if isinstance(folded, ast.Constant):
             return folded
+        if node.keywords:
+            raise not_converted(node, "a call with names of arguments")
         text = ast.unparse(node.func)
         if text == "bool":
             return self.visit(node.args[0])

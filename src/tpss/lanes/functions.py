@@ -1,4 +1,4 @@
-"""Functions that lanes have in a form of their own, without a branch: angles and exponentials.
+"""Functions that lanes have in a form of their own, without a branch: angles, and looks at bits.
 
 The angles are the polynomials of the Cephes library, exact to about a unit in the last place in the
 range of a load flow's angles.
@@ -9,13 +9,10 @@ from typing import Any
 
 from tpss.lanes.compile import by_hand, compiled, of_math
 from tpss.lanes.masks import is_finite, is_nan, power_of_two_times, select
-from tpss.numerics import exponential as own
+from tpss.numerics.exponential import times_power_of_two
 
 _ROUND = 1.5 * 2.0**52
 _PI_2_HIGH, _PI_2_LOW = 1.5707963267341256, 6.077100506506192e-11
-_LARGEST = own.LARGEST
-_LOG2_E, _LN2_HIGH, _LN2_LOW = own._LOG2_E, own._LN2_HIGH, own._LN2_LOW
-_C = tuple(1.0 / math.factorial(n) for n in range(14))
 
 _P = (-8.750608600031904122785e-1, -1.615753718733365076637e1, -7.500855792314704667340e1,
       -1.228866684490136173410e2, -6.485021904942025371773e1)  # fmt: skip
@@ -25,23 +22,6 @@ _S = (1.58962301576546568060e-10, -2.50507477628578072866e-8, 2.7557313621385724
       -1.98412698295895385996e-4, 8.33333333332211858878e-3, -1.66666666666666307295e-1)  # fmt: skip
 _K = (-1.13585365213876817300e-11, 2.08757008419747316778e-9, -2.75573141792967388112e-7,
       2.48015872888517045348e-5, -1.38888888888730564116e-3, 4.16666666666665929218e-2)  # fmt: skip
-
-
-@compiled(fused=True)
-def exponential(x: Any) -> Any:
-    """`numerics.exponential` of lanes."""
-    x = select(x > _LARGEST, _LARGEST, x)
-    x = select(x < -_LARGEST, -_LARGEST, x)
-    rounded = x * _LOG2_E + _ROUND
-    k = rounded - _ROUND
-    r = (x - k * _LN2_HIGH) - k * _LN2_LOW
-    r2 = r * r
-    r4 = r2 * r2
-    low = (_C[2] + _C[3] * r) + (_C[4] + _C[5] * r) * r2
-    middle = (_C[6] + _C[7] * r) + (_C[8] + _C[9] * r) * r2
-    high = (_C[10] + _C[11] * r) + (_C[12] + _C[13] * r) * r2
-    power = 1.0 + (r + r2 * (low + r4 * (middle + r4 * high)))
-    return power_of_two_times(power, rounded)
 
 
 @compiled(fused=True)
@@ -90,4 +70,4 @@ def cos(x: Any) -> Any:
 
 
 of_math.update(sin=sin, cos=cos, atan2=atan2, isnan=is_nan, isfinite=is_finite)
-by_hand[own.exponential] = exponential, False
+by_hand[times_power_of_two] = power_of_two_times, False

@@ -15,7 +15,7 @@ from tpss.powerflow.newton import (
     MOST_HALVINGS,
     MOST_PASSES,
     Solution,
-    _conclude,
+    conclude,
     evaluate,
     find_direction,
     mark_base,
@@ -23,8 +23,8 @@ from tpss.powerflow.newton import (
 )
 from tpss.powerflow.solve import ASKS, solve_or_ask, stations_jumped
 
-_evaluate, _find_direction, _conclude_lanes, _stations_jumped = (
-    lane_version(each)[0] for each in (evaluate, find_direction, _conclude, stations_jumped)
+_evaluate, _find_direction, _conclude, _stations_jumped = (
+    lane_version(each)[0] for each in (evaluate, find_direction, conclude, stations_jumped)
 )
 _mark_base, _take_step = lane_version(mark_base)[0], lane_version(take_step)[0]
 _SOLVED, _NOT_CONVERGED = int(Solution.SOLVED), int(Solution.NOT_CONVERGED)
@@ -61,7 +61,7 @@ def newton(network: Any, flow: Any, loads: Any, mask: Any) -> tuple[Any, Any]:
             trials = select(farther, trials + 1, 1)
             left = both(left, negated(ends))
         if anyone(solved):
-            status = select(solved, _conclude_lanes(sign, network, flow, solved), status)
+            status = select(solved, _conclude(sign, network, flow, solved), status)
             left = both(left, negated(solved))
         if not anyone(left):
             break

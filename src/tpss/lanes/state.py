@@ -73,6 +73,9 @@ def join_state(states: Sequence[State]) -> tuple[State, LaneArray]:
     numbers = join([np.append(each, np.full(rows - each.size, -1)) for each in orders])
     trains = new_lanes(Train.dtype, (rows,), OF_TRAIN)
     trains.words[:, word_of(Train.dtype, "motion", "phase")] = Phase.GONE
+    # All trains have one type, so rows without one too: kernels read it from the first lane.
+    types = np.concatenate([np.asarray(each.trains)["train_type"] for each in states])
+    trains.words[:, word_of(Train.dtype, "train_type")] = types.max(initial=0)
     for lane, (each, order) in enumerate(zip(states, orders, strict=True)):
         words = words_of(each.trains)
         for columns in OF_STEPPED:

@@ -9,7 +9,15 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, get_args, get_origin, get_type_hints
 
-from tpss.lanes.expressions import Expressions, assigned, call, load, name, set_to
+from tpss.lanes.expressions import (
+    Expressions,
+    assigned,
+    call,
+    load,
+    name,
+    not_converted,
+    set_to,
+)
 from tpss.lanes.known import SAME_PARAMETERS
 
 CHEAP = {"as_mask", "complex", "float", "select", "both", "either", "negated", "anyone", "lane_at",
@@ -129,8 +137,11 @@ class Statements(Expressions):
         """One statement under the present mask."""
         if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
             return []  # a docstring
-        kind = type(statement).__name__
-        return getattr(self, f"_{kind.lower()}")(statement)
+        convert = getattr(self, f"_{type(statement).__name__.lower()}", None)
+        if convert is None:
+            raise not_converted(statement, "a statement of an unknown kind")
+        made: Body = convert(statement)
+        return made
 
     def _pass(self, _: ast.Pass) -> Body:
         return []
@@ -151,7 +162,8 @@ class Statements(Expressions):
         return made
 
     def _annassign(self, statement: ast.AnnAssign) -> Body:
-        assert statement.value is not None
+        if statement.value is None:
+            raise not_converted(statement, "a name without a value")
         return self._store(statement.target, self.visit(statement.value))
 
     def _augassign(self, statement: ast.AugAssign) -> Body:
@@ -182,7 +194,7 @@ class Statements(Expressions):
     def _store(self, target: ast.expr, value: ast.expr) -> Body:
         """Store a value, which is converted already."""
         if isinstance(target, ast.Tuple):
-            raise NotImplementedError(ast.unparse(target))
+            raise not_converted(target, "a tuple in a tuple")
         if isinstance(target, ast.Name):
             if self._keeps(target.id):
                 value = call("select", self.mask(), value, name(target.id))

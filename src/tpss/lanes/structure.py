@@ -25,6 +25,7 @@ def structure_of(case: Prepared) -> tuple[Any, ...]:
     plain = (*network.pattern, network.source_of_node)
     return (
         start.steps,
+        tuple(service.train_type for service in start.services),
         tuple(line for line, _, _ in frame.zones),
         frame.at_line_level.tobytes(),
         model.options,

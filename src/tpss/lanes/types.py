@@ -122,47 +122,37 @@ def parts(context: Any, builder: Any, value: Any) -> tuple[Any, Any]:
     return made.real, made.imag
 
 
-@lower_cast(types.Float, LanesType)
-@lower_cast(types.Integer, LanesType)
-@lower_cast(types.Boolean, LanesType)
-def _to_lanes(context: Any, builder: Any, given: Any, _: Any, value: Any) -> Any:
-    return spread(builder, context.cast(builder, value, given, types.float64), NUMBERS)
+def _spreads(given: Any, to: Any, plain: Any, vector: Any) -> None:
+    """Let a plain number become lanes: as a number of the kind `plain` it stands in all of them."""
+
+    @lower_cast(given, to)
+    def cast(context: Any, builder: Any, given: Any, _: Any, value: Any) -> Any:
+        return spread(builder, context.cast(builder, value, given, plain), vector)
 
 
-@lower_cast(types.Integer, LaneIntType)
-@lower_cast(types.Boolean, LaneIntType)
-def _to_whole(context: Any, builder: Any, given: Any, _: Any, value: Any) -> Any:
-    return spread(builder, context.cast(builder, value, given, types.int64), WHOLES)
+def _converts(given: Any, to: Any, instruction: str, vector: Any) -> None:
+    """Let lanes become others by one instruction."""
+
+    @lower_cast(given, to)
+    def cast(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
+        return getattr(builder, instruction)(value, vector)
+
+
+for _plain_kind in _plain_number:
+    _spreads(_plain_kind, LanesType, types.float64, NUMBERS)
+    _spreads(_plain_kind, LaneIntType, types.int64, WHOLES)
+for _given, _to, _instruction, _wide in (
+    (MaskType, LaneIntType, "zext", WHOLES),
+    (MaskType, LanesType, "uitofp", NUMBERS),
+    (LaneIntType, LanesType, "sitofp", NUMBERS),
+    (LanesType, LaneIntType, "fptosi", WHOLES),
+):
+    _converts(_given, _to, _instruction, _wide)
 
 
 @lower_cast(types.Boolean, MaskType)
 def _to_mask(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
     return spread(builder, value if value.type == BIT else builder.trunc(value, BIT), BITS)
-
-
-@lower_cast(MaskType, LaneIntType)
-def _mask_to_whole(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
-    return builder.zext(value, WHOLES)
-
-
-@lower_cast(MaskType, LanesType)
-def _mask_to_lanes(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
-    return builder.uitofp(value, NUMBERS)
-
-
-@lower_cast(LaneIntType, LanesType)
-def _whole_to_lanes(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
-    return builder.sitofp(value, NUMBERS)
-
-
-@lower_cast(LanesType, LaneIntType)
-def _lanes_to_whole(_context: Any, builder: Any, _given: Any, _to: Any, value: Any) -> Any:
-    return builder.fptosi(value, WHOLES)
-
-
-@lower_cast(types.Float, LaneIntType)
-def _float_to_whole(context: Any, builder: Any, given: Any, _: Any, value: Any) -> Any:
-    return spread(builder, context.cast(builder, value, given, types.int64), WHOLES)
 
 
 @lower_cast(LanesType, LaneComplexType)
@@ -174,7 +164,7 @@ def _lanes_to_complex(context: Any, builder: Any, _given: Any, _to: Any, value: 
 @lower_cast(types.Integer, LaneComplexType)
 @lower_cast(types.Boolean, LaneComplexType)
 def _real_to_complex(context: Any, builder: Any, given: Any, _: Any, value: Any) -> Any:
-    return pair(context, builder, _to_lanes(context, builder, given, Lanes, value), ZERO)
+    return pair(context, builder, context.cast(builder, value, given, Lanes), ZERO)
 
 
 @lower_cast(types.Complex, LaneComplexType)

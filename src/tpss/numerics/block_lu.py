@@ -31,11 +31,13 @@ from tpss.record import Record, Records
 Complexes = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
 
-MOST_NEIGHBOURS = (-1, 1, 2, 3, 4, 6)
-"""Passive nodes with up to so many neighbours are eliminated once: whichever makes the rest cheapest."""
+MOST_NEIGHBOURS = (1, 2, 3, 4, 6)
+"""Passive nodes with up to so many neighbours are eliminated once, or none: whichever makes the rest
+cheapest."""
 
 SUBSTITUTION = 0.1
-"""What a block of a row that is eliminated once costs in each solution, of one that is not. [1]"""
+"""What a block of a row that is eliminated once costs in each solution, of one that is not; an estimate,
+on which the order depends, and no result but by roundings. [1]"""
 
 
 class Block(Record):

@@ -30,6 +30,13 @@ _C2, _C3, _C4, _C5, _C6, _C7, _C8, _C9, _C10, _C11, _C12, _C13 = (
 
 
 @inlined
+def times_power_of_two(number: float, rounded: float) -> float:
+    """A number times 2^k, whose k stands in the last bits of another."""
+    bits = np.float64(number).view(np.int64) + (np.float64(rounded).view(np.int64) << np.int64(52))
+    return np.int64(bits).view(np.float64)
+
+
+@inlined
 def exponential(x: float) -> float:
     """e^x, between e^-700 and e^700; NaN stays NaN."""
     x = LARGEST if x > LARGEST else x
@@ -43,6 +50,4 @@ def exponential(x: float) -> float:
     low = (_C2 + _C3 * r) + (_C4 + _C5 * r) * r2
     middle = (_C6 + _C7 * r) + (_C8 + _C9 * r) * r2
     high = (_C10 + _C11 * r) + (_C12 + _C13 * r) * r2
-    power = 1.0 + (r + r2 * (low + r4 * (middle + r4 * high)))
-    bits = np.float64(power).view(np.int64) + (np.float64(rounded).view(np.int64) << np.int64(52))
-    return np.int64(bits).view(np.float64)
+    return times_power_of_two(1.0 + (r + r2 * (low + r4 * (middle + r4 * high))), rounded)

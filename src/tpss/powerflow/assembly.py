@@ -160,7 +160,7 @@ def assemble(
         shared=shared,
         stores=StoreLaw.blank(0) if stores is None else stores,
     )
-    return complete(network, admittance_s)
+    return complete(network)
 
 
 def new_flow(network: Network, n_trains: int) -> Flow:

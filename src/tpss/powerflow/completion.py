@@ -9,20 +9,19 @@ from tpss.powerflow.links import ends_of
 from tpss.powerflow.network import UNFED, Network
 
 
-def complete(network: Network, constant_s: npt.NDArray[np.complex128]) -> Network:
+def complete(network: Network) -> Network:
     """The network, its unfed nodes marked and its passive ones eliminated.
 
     Parameters
     ----------
     network : Network
-        Its `admittance_s` is not looked at.
-    constant_s : array of complex, shape (blocks,)
-        What branches, links and grids of several sources put into each block of the system. [S]
+        Its `admittance_s` is what branches, links and grids of several sources put into each block of
+        the system.
     """
     unfed = unfed_nodes(network)
     network = network._replace(
         source_of_node=np.where(unfed, UNFED, network.source_of_node),
-        admittance_s=eliminate_passive(network.pattern, constant_s, unfed),
+        admittance_s=eliminate_passive(network.pattern, network.admittance_s, unfed),
     )
     if not unfed.any():
         return network

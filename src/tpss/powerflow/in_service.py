@@ -66,7 +66,7 @@ def in_service(
         inner_ohm = None if network.bundles == NO_BUNDLES else network.bundles.inner_ohm
         shared = shared_grids(network.shared.mutual_ohm, sources, inner_ohm)
         changed = changed._replace(shared=shared)
-    return complete(changed, constant_admittance(changed))
+    return complete(changed._replace(admittance_s=constant_admittance(changed)))
 
 
 def _idle(stores: Records[StoreLaw], out: Collection[int]) -> Records[StoreLaw]:

@@ -363,7 +363,7 @@ def _close_gaps(flow: Flow) -> None:
 
 
 @inlined
-def _conclude(sign: float, network: Network, flow: Flow) -> Solution:
+def conclude(sign: float, network: Network, flow: Flow) -> Solution:
     """Status of a state without mismatch."""
     _close_gaps(flow)
     if not sign > 0.0:
@@ -409,7 +409,7 @@ def newton(
             size, trials = size / 2.0, trials + 1
             continue
         if solved:
-            return _conclude(sign, network, flow), passes
+            return conclude(sign, network, flow), passes
         # One step from close by is likely the solution: look, without derivatives, before going on.
         after_flat, merit = kind == FLAT, trial
         kind = CHECK if mismatch < CLOSE and kind == WARM else WARM

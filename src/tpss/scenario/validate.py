@@ -56,7 +56,7 @@ _REMEDIES = {
     "string_too_short": "write a name",
     "string_unicode": "write text in UTF-8",
     "control_character": "write it on one line, without control characters and others that are not seen",
-    "string_pattern_mismatch": "use letters, digits, dots, hyphens and underscores only",
+    "string_pattern_mismatch": "use letters (a to z), digits, dots, hyphens and underscores only",
     "too_short": "add at least one more",
     "not_ascending": "put them in ascending order, each value once",
     "not_unique": "give each one its own",

@@ -11,7 +11,7 @@ import pandas as pd
 from filelock import FileLock, Timeout
 
 from tpss.errors import StudyError
-from tpss.files.checked import checked_name, document_checksum, read_checked
+from tpss.files.checked import checked_name, read_checked, takes_checksum, with_checksum
 from tpss.files.json_text import read_json_file
 from tpss.files.refusals import ANOTHER, explained, reason
 from tpss.files.whole import UNFINISHED, write_file
@@ -27,9 +27,6 @@ FORMAT_KEY, FORMAT = "table_format", 1
 
 It increases when a column is renamed, removed or changes its meaning.
 """
-
-CHECKSUM = "sha256"
-"""Key of a checksum of all else in a manifest."""
 
 STEP_CHECK = "step_check"
 """Key of what the time step costs a sample of the cases."""
@@ -152,7 +149,7 @@ def batches(ranges: Ranges, size: int) -> Iterator[tuple[int, int]]:
 
 def _as_json(manifest: dict[str, Any]) -> bytes:
     """A manifest with its checksum."""
-    return json.dumps({**manifest, CHECKSUM: document_checksum(manifest)}, indent=1).encode()
+    return json.dumps(with_checksum(manifest), indent=1).encode()
 
 
 def read_manifest(path: Path) -> dict[str, Any]:
@@ -172,7 +169,7 @@ def read_manifest(path: Path) -> dict[str, Any]:
         ) from error
     if not isinstance(manifest, dict):
         raise StudyError(f"{path / MANIFEST} is damaged; give the study another folder")
-    if manifest.pop(CHECKSUM, None) not in (None, document_checksum(manifest)):
+    if not takes_checksum(manifest):
         raise StudyError(
             f"{path / MANIFEST} is damaged (its checksum is another); give the study another folder"
         )

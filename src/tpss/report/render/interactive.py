@@ -49,7 +49,8 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
     count = len(drawing.panels)
     figure = make_subplots(rows=count, cols=1, shared_xaxes=True, vertical_spacing=0.06)
     figure.update_layout(LAYOUT, meta=drawing.axis.partition(" ")[0], height=height_px)
-    figure.update_xaxes(AXIS, range=drawing.span).update_yaxes(AXIS)
+    # Wide numbers, and names of rows, find room beside the axis.
+    figure.update_xaxes(AXIS, range=drawing.span).update_yaxes(AXIS, automargin=True)
     figure.update_xaxes(title={"text": drawing.axis}, row=count, col=1)
     if not (drawing.axis or drawing.columns):
         figure.update_xaxes(visible=False)
@@ -67,7 +68,6 @@ def render(drawing: parts.Drawing, height_px: int) -> go.Figure:
             figure.update_yaxes(visible=False, row=row, col=1)
         if panel.rows:
             names: Any = {"tickvals": [*range(len(panel.rows))], "ticktext": panel.rows}
-            names["automargin"] = True
             figure.update_yaxes(names, autorange="reversed", row=row, col=1)
         units = parts.unit_of(drawing.axis), parts.unit_of(panel.label)
         for item in panel.items:

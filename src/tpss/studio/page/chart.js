@@ -3,7 +3,7 @@
 import uPlot from "./vendor/uplot.js";
 import { withGaps } from "./arrays.js";
 import { colour, el, shown } from "./dom.js";
-import { DASHES, LEFT, RIGHT, curveColour, spanOf } from "./scales.js";
+import { AXIS, DASHES, LEFT, RIGHT, curveColour, spanOf } from "./scales.js";
 
 const HEIGHT = 190, LOW_HEIGHT = 130;
 const MOST_ROWS = 60;
@@ -50,14 +50,12 @@ class Panel {
   build(key, curves, data, width, height) {
     this.key = key;
     if (this.plot) this.plot.destroy();
-    const ink = () => colour("--soft"), rule = () => colour("--rule");
-    const axis = { stroke: ink, font: "12px system-ui, sans-serif", grid: { stroke: rule, width: 1 }, ticks: { show: false } };
     this.plot = new uPlot({
       width, height, padding: [10, RIGHT, 0, 0], legend: { show: false },
       cursor: { sync: { key: this.axis }, drag: { x: false, y: false }, points: { size: 6 } },
       scales: { x: { time: false, range: () => this.span || [data[0][0], data[0].at(-1)] }, y: { range: () => this.range } },
-      axes: [{ ...axis, size: this.isLast ? 34 : 10, values: this.isLast ? undefined : (_, ticks) => ticks.map(() => ""),
-        gap: 4 }, { ...axis, size: LEFT, gap: 6 }],
+      axes: [{ ...AXIS, size: this.isLast ? 34 : 10, values: this.isLast ? AXIS.values : (_, ticks) => ticks.map(() => ""),
+        gap: 4 }, { ...AXIS, size: LEFT, gap: 6 }],
       series: [{}, ...curves.map(each => ({
         label: each.name, stroke: () => curveColour(each.colour), width: 1.6, dash: DASHES[each.dash % 4], points: { show: false },
         paths: each.held ? uPlot.paths.stepped({ align: 1 }) : undefined,

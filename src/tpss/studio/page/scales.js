@@ -6,6 +6,10 @@ export const LEFT = 58;
 export const RIGHT = 18;
 /** Space beside every plot, so that those over the same axis stand below each other. [px] */
 
+/** Look of an axis; its numbers are written as everywhere else on the page: 12500, not 12,500. */
+export const AXIS = { stroke: () => colour("--soft"), font: "12px system-ui, sans-serif", grid: { stroke: () => colour("--rule"), width: 1 },
+  ticks: { show: false }, values: (_, ticks) => ticks.map(each => String(each).replace("-", "−")) };
+
 export const DASHES = [[], [7, 4], [7, 3, 2, 3], [2, 3]];
 
 const STOPS = [[0, [7, 5, 27]], [0.125, [41, 11, 85]], [0.25, [84, 15, 109]], [0.375, [122, 29, 109]], [0.5, [162, 43, 98]],

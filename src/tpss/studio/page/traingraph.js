@@ -2,7 +2,7 @@
 
 import uPlot from "./vendor/uplot.js";
 import { colour, el, shown } from "./dom.js";
-import { LEFT, ramp, shadeOf, spanOf } from "./scales.js";
+import { AXIS, LEFT, ramp, shadeOf, spanOf } from "./scales.js";
 
 const HEIGHT = 320, NAMES = 92;
 
@@ -57,12 +57,11 @@ export class TrainGraph {
   }
 
   build(width) {
-    const axis = { stroke: () => colour("--soft"), font: "12px system-ui, sans-serif", grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false } };
     this.plot = new uPlot({
       width, height: HEIGHT, padding: [10, NAMES, 0, 0], legend: { show: false },
       cursor: { sync: { key: "time" }, drag: { x: false, y: false }, points: { show: false } },
       scales: { x: { time: false, range: () => this.xs }, y: { range: () => this.ys } },
-      axes: [{ ...axis, size: 34, gap: 4 }, { ...axis, size: LEFT, gap: 6 }],
+      axes: [{ ...AXIS, size: 34, gap: 4 }, { ...AXIS, size: LEFT, gap: 6 }],
       series: [{}, { show: true, points: { show: false } }],
       hooks: { drawSeries: [plot => this.paths(plot)] },
     }, [this.xs, [null, null]], this.plots);
