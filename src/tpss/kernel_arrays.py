@@ -18,7 +18,6 @@ import numba.extending
 import numpy as np
 from numba.core import types
 from numba.core.datamodel import models
-from numba.core.errors import NumbaTypeError
 
 from tpss.record import Record
 
@@ -28,6 +27,10 @@ _typeof: Any = numba.extending.typeof_impl
 _box: Any = numba.extending.box
 _NamedTuple: Any = types.BaseNamedTuple
 _ir: Any = llvmlite.ir
+
+NOT_GIVEN_BACK = (
+    "kernels give no arrays back to Python: call the plain function (`tpss.kernel.plain`)"
+)
 
 PACKAGE = __name__.partition(".")[0]
 
@@ -111,18 +114,13 @@ class KernelArrayModel(_ArrayModel):  # type: ignore[misc]
 
 
 @_box(KernelArray)  # type: ignore[untyped-decorator]
-def to_python(kind: Any, _: Any, __: Any) -> None:
+def to_python(_: Any, __: Any, boxing: Any) -> Any:
     """Refuse to give an array back: which object of Python it was, nobody handed over.
 
-    Raises
-    ------
-    NumbaTypeError
-        Always, when a kernel that Python calls is compiled.
+    A call from Python of a kernel that returns arrays ends in a `SystemError` with this as its cause.
     """
-    raise NumbaTypeError(
-        f"a kernel gives {kind.ndim}-dimensional arrays back to Python, which cannot be: "
-        "call the plain function (`tpss.kernel.plain`)"
-    )
+    boxing.pyapi.err_set_string("PyExc_TypeError", NOT_GIVEN_BACK)
+    return boxing.pyapi.make_none()
 
 
 _type_of_array, _type_of_tuple = (_typeof.dispatch(kind) for kind in (np.ndarray, tuple))
