@@ -21,6 +21,7 @@ import numpy as np
 import platformdirs
 
 from tpss.kernel_cache import KernelCache
+from tpss.quick_compiling import quick_compiling
 from tpss.shipped import Shipped, shipped
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -273,36 +274,6 @@ def plain(function: _Function) -> _Function:
     return python
 
 
-TESTED_INLINER = "0.68."
-"""numba whose inliner is known to need no copies of scopes and places in the source."""
-
-_one_compiles = threading.RLock()
-"""Held while the inliner is changed."""
-
-
-@contextmanager
-def quick_inlining() -> Iterator[None]:
-    """Compile without the copies that numba's inliner makes of what it does not change.
-
-    It copies the scope of every block, with all variables, twice a call that it inlines: a quarter of
-    the time that the kernels take to compile.  The compiled code is the same.  One thread at a time.
-    """
-    from numba.core import ir
-
-    if not numba.__version__.startswith(TESTED_INLINER):
-        yield
-        return
-    copied = (ir.Scope, ir.Loc)
-    with _one_compiles:
-        for each in copied:
-            setattr(each, "__deepcopy__", lambda self, _: self)  # noqa: B010
-        try:
-            yield
-        finally:
-            for each in copied:
-                delattr(each, "__deepcopy__")
-
-
 def compile_for(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """Compile a kernel for its arguments, or load it from the cache, without running it."""
     if hasattr(function, "compile"):  # not if compilation is switched off
@@ -312,5 +283,5 @@ def compile_for(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Non
 def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """`compile_for` of a kernel outside those of every run, unless that is done already."""
     if not getattr(function, "signatures", True):
-        with quick_inlining():
+        with quick_compiling():
             compile_for(function, arguments)

@@ -31,7 +31,7 @@ from tpss.kernel import (
     compile_for,
     kernels_are_compiled,
     plain,
-    quick_inlining,
+    quick_compiling,
     switch,
 )
 from tpss.powerflow.chain import WARM
@@ -83,7 +83,7 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
             return
         if not are_ready():
             tell("compiling")
-        with quick_inlining():
+        with quick_compiling():
             if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
                 _compile_in_parts(model)
             Run(model, [], 0).advance_to(0)
@@ -180,7 +180,7 @@ def _compile_in_parts(model: Model) -> None:
 
 def _help(model: Model) -> None:
     """The second process: compile what the clock calls, say so, then what audits a run."""
-    with quick_inlining():
+    with quick_compiling():
         compile_calls(step_calls(model))
         print("step", flush=True)
         compile_calls(figures_calls(model))
