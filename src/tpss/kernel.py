@@ -21,6 +21,7 @@ import numpy as np
 import platformdirs
 
 from tpss.kernel_cache import KernelCache
+from tpss.kernel_calls import KernelCompiler, KernelDispatcher, for_kernels
 from tpss.quick_compiling import quick_compiling
 from tpss.shipped import Shipped, shipped
 
@@ -44,6 +45,7 @@ _OPTIONS: dict[str, Any] = {
     # Not fast-math: a product and the sum that it enters may be rounded once in place of twice, and
     # nothing else.  NaN, infinities and the order of operations stay what they are.
     "fastmath": {"contract"},
+    "pipeline_class": KernelCompiler,
 }
 
 _WITHOUT_CACHE = {name: value for name, value in _OPTIONS.items() if name != "cache"}
@@ -229,12 +231,13 @@ def compiled_into(folder: Path, function: _Function, fused: bool) -> _Function:
     folder_before = _config.CACHE_DIR
     _config.CACHE_DIR = str(folder)
     try:
-        compiled: _Function = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
+        compiled: Any = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
         if compiles():
-            setattr(compiled, "_cache", _cache_of(function, _none_shipped))  # noqa: B010
+            compiled.__class__ = KernelDispatcher
+            compiled._cache = _cache_of(function, _none_shipped)
     finally:
         _config.CACHE_DIR = folder_before
-    return compiled
+    return compiled  # type: ignore[no-any-return]
 
 
 def _none_shipped() -> None:
@@ -246,14 +249,15 @@ def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     folder_before = _config.CACHE_DIR
     _config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: _Function = _njit(inline=inline, **options)(function)
+        compiled: Any = _njit(inline=inline, **options)(function)
         if compiles():
-            setattr(compiled, "_cache", _cache_of(function, shipped_kernels))  # noqa: B010
+            compiled.__class__ = KernelDispatcher
+            compiled._cache = _cache_of(function, shipped_kernels)
             if inline == "never":
-                _indices.append(compiled._cache.index.relative_to(cache_folder()))  # type: ignore[attr-defined]
+                _indices.append(compiled._cache.index.relative_to(cache_folder()))
     finally:
         _config.CACHE_DIR = folder_before
-    return compiled
+    return compiled  # type: ignore[no-any-return]
 
 
 at = np.uint64
@@ -274,10 +278,19 @@ def plain(function: _Function) -> _Function:
     return python
 
 
-def compile_for(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    """Compile a kernel for its arguments, or load it from the cache, without running it."""
+def compile_for(
+    function: Callable[..., Any], arguments: tuple[Any, ...], by_kernels: bool = False
+) -> None:
+    """Compile a kernel for its arguments, or load it from the cache, without running it.
+
+    Parameters
+    ----------
+    by_kernels : bool
+        Only other kernels call it, not Python.
+    """
     if hasattr(function, "compile"):  # not if compilation is switched off
-        function.compile(tuple(numba.typeof(argument) for argument in arguments))
+        with for_kernels(by_kernels):
+            function.compile(tuple(numba.typeof(argument) for argument in arguments))
 
 
 def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

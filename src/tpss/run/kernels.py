@@ -151,10 +151,16 @@ def _start(model: Model) -> State:
     return new_state(model, train_records(trains, 0.0))
 
 
-def compile_calls(calls: list[Call]) -> None:
-    """Compile each kernel for its arguments, or load it from the cache, without running it."""
+def compile_calls(calls: list[Call], by_kernels: bool = False) -> None:
+    """Compile each kernel for its arguments, or load it from the cache, without running it.
+
+    Parameters
+    ----------
+    by_kernels : bool
+        Only other kernels call it, not Python.
+    """
     for function, arguments in calls:
-        compile_for(function, arguments)
+        compile_for(function, arguments, by_kernels)
 
 
 def _compile_in_parts(model: Model) -> None:
@@ -168,7 +174,7 @@ def _compile_in_parts(model: Model) -> None:
         with subprocess.Popen(command, env=environment, **pipes) as second:  # type: ignore[call-overload]
             try:
                 _send(model, second)
-                compile_calls(load_flow_calls(model))
+                compile_calls(load_flow_calls(model), by_kernels=True)
                 second.stdout.readline()  # it has compiled what the clock calls, or has ended
                 adopt(theirs, folder)
                 Run(model, [], 0).advance_to(0)
@@ -181,7 +187,7 @@ def _compile_in_parts(model: Model) -> None:
 def _help(model: Model) -> None:
     """The second process: compile what the clock calls, say so, then what audits a run."""
     with quick_compiling():
-        compile_calls(step_calls(model))
+        compile_calls(step_calls(model), by_kernels=True)
         print("step", flush=True)
         compile_calls(figures_calls(model))
 
