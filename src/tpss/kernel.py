@@ -8,9 +8,7 @@ therefore named after a digest of *all* kernel sources.
 import hashlib
 import os
 import tempfile
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,7 +20,6 @@ import platformdirs
 
 from tpss.kernel_cache import KernelCache
 from tpss.kernel_calls import KernelCompiler, KernelDispatcher, for_kernels
-from tpss.quick_compiling import quick_compiling
 from tpss.shipped import Shipped, shipped
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -291,10 +288,3 @@ def compile_for(
     if hasattr(function, "compile"):  # not if compilation is switched off
         with for_kernels(by_kernels):
             function.compile(tuple(numba.typeof(argument) for argument in arguments))
-
-
-def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    """`compile_for` of a kernel outside those of every run, unless that is done already."""
-    if not getattr(function, "signatures", True):
-        with quick_compiling():
-            compile_for(function, arguments)

@@ -14,12 +14,13 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
-from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import NativeLowering
+
+from tpss.quick_compiling import quick_compiling
 
 # Classes of numba have no types.
 _Library: Any = JITCodeLibrary
@@ -28,6 +29,7 @@ _Lowering: Any = NativeLowering
 _Pipeline: Any = Compiler
 _Dispatcher: Any = CPUDispatcher
 _Results: Any = CompileResultCacheImpl
+_Result: Any = CompileResult
 
 FORM = "called"
 """How the cache names the form of a kernel that only kernels call."""
@@ -153,11 +155,15 @@ class KernelDispatcher(_Dispatcher):  # type: ignore[misc]
 
     def compile(self, sig: Any) -> Any:
         """Compile for types; return what stands for it, or, if Python asks, what it can call."""
-        entry = super().compile(sig)
-        if _are_for_kernels():
-            return entry
-        with global_compiler_lock:
-            result = _with_environments(self.overloads[tuple(normalize_signature(sig)[0])])
+        types = tuple(normalize_signature(sig)[0])
+        kept = self.overloads.get(types)
+        if kept and (_are_for_kernels() or not isinstance(kept.library, CalledLibrary)):
+            return kept.entry_point
+        with quick_compiling():
+            entry = super().compile(sig)
+            if _are_for_kernels():
+                return entry
+            result = _with_environments(self.overloads[types])
             if isinstance(result.library, CalledLibrary):
                 result = _for_python(result)
                 self.targetctx.insert_user_function(
@@ -190,13 +196,17 @@ def _with_environments(result: Any) -> Any:
 class KernelResults(_Results):  # type: ignore[misc]
     """How compiled kernels are kept."""
 
+    def reduce(self, result: Any) -> Any:
+        """What is kept; numba's listing of the types in the source is not."""
+        return super().reduce(result._replace(type_annotation=""))
+
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         """From what was kept."""
         kept, described, environment, signature, objectmode, lifted, text, reload, others = payload
         if kept[1] != FORM:
             return super().rebuild(target_context, payload)
         library = CalledLibrary.of(target_context.codegen(), kept)
-        return CompileResult(
+        return _Result(
             target_context=target_context,
             typing_context=target_context.typing_context,
             library=library,

@@ -7,41 +7,62 @@ are, that is most of the time of their compilation.  What comes out is the same.
 All of it holds for one release of numba; with another one, its own passes do their work.
 """
 
-import threading
+import gc
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import reduce
 from hashlib import sha256
+from itertools import chain
+from operator import or_
 from types import SimpleNamespace
 from typing import Any
 
 import numba
+from numba.core.compiler_lock import global_compiler_lock
 
 TESTED = "0.68."
 """numba whose passes are known to allow it."""
 
-_one_compiles = threading.RLock()
-"""Held while passes are changed."""
-
+_lock: Any = global_compiler_lock
 _changed: list[bool] = []
 """Not empty while they are."""
 
 
 @contextmanager
 def quick_compiling() -> Iterator[None]:
-    """Compile quickly within.  One thread at a time."""
-    with _one_compiles:
+    """Compile quickly within, where numba lets one thread do so at a time."""
+    with _lock:
         if _changed or not numba.__version__.startswith(TESTED):
             yield
             return
         _changed.append(True)
         try:
             with ExitStack() as stack:
+                stack.enter_context(_rare_search_for_garbage())
                 for owner, name, quick in _changes():
                     stack.enter_context(_in_place_of(owner, name, quick))
                 yield
         finally:
             _changed.pop()
+
+
+OBJECTS_BEFORE_SEARCH = 1_000_000
+"""New objects after which Python looks for cycles that nobody needs: about 100 MB."""
+
+
+@contextmanager
+def _rare_search_for_garbage() -> Iterator[None]:
+    """Look for garbage seldom: a compilation makes millions of objects, and they live until its end."""
+    before = gc.get_threshold()
+    if before[0] == 0:  # Python is told not to look
+        yield
+        return
+    gc.set_threshold(OBJECTS_BEFORE_SEARCH, 1, 1000)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 @contextmanager
@@ -57,18 +78,25 @@ def _in_place_of(owner: Any, name: str, quick: Any) -> Iterator[None]:
 def _changes() -> list[tuple[Any, str, Any]]:
     """What is put in place of what, while kernels are compiled."""
     from llvmlite.binding import ffi
-    from numba.core import inline_closurecall, ir, itanium_mangler, postproc, ssa, targetconfig
+    from numba.core import (  # isort: skip
+        analysis, base, errors, inline_closurecall, ir, itanium_mangler, postproc, ssa, targetconfig,
+        types,
+    )  # fmt: skip
     from numba.core.types.functions import BaseFunction
 
     return [
         (inline_closurecall.InlineWorker, "inline_function", _inline_function),
         (ir.Inst, "_rec_list_vars", _list_variables),
         (postproc.PostProcessor, "run", _lazily(postproc.PostProcessor.run)),
+        (analysis, "compute_live_map", _live_variables),
         (ssa, "_run_ssa", _run_ssa),
         (targetconfig.TargetConfig, "__eq__", _same_flags),
         (targetconfig.TargetConfig, "__hash__", _hash_of_flags),
         (BaseFunction, "get_call_type", _memo_of(BaseFunction.get_call_type)),
         (itanium_mangler, "mangle_type_or_value", _short(itanium_mangler.mangle_type_or_value)),
+        (base.OverloadSelector, "find", _finding(base.OverloadSelector._select_compatible)),
+        (errors, "termcolor", _Colourless),  # most only say that something else is to be tried
+        (types.Record, "__repr__", _once(types.Record.__repr__)),
         (ffi.lib._lock, "_cblist", []),  # nobody measures how long LLVM is locked
     ]
 
@@ -142,16 +170,52 @@ def _lazily(process: Callable[..., Any]) -> Callable[..., None]:
     return run
 
 
+def _live_variables(
+    graph: Any, blocks: Any, used: dict[int, set[str]], defined: dict[int, set[str]]
+) -> dict[int, set[str]]:
+    """Variables that live where each block begins, as numba finds them, with a bit for each."""
+    names = list(dict.fromkeys(chain(*used.values(), *defined.values())))
+    bits = {name: 1 << k for k, name in enumerate(names)}
+    uses = {label: _all_of(bits, used[label]) for label in blocks}
+    defines = {label: _all_of(bits, defined[label]) for label in blocks}
+    order = graph.topo_order()
+    reaching, living, before = dict.fromkeys(blocks, 0), dict(uses), None
+    while before != reaching:
+        before = dict(reaching)
+        for label in order:
+            reaching[label] |= defines[label] | uses[label]
+            for after, _ in graph.successors(label):
+                reaching[after] |= reaching[label]
+    before = None
+    while before != living:
+        before = dict(living)
+        for label in reversed(order):
+            for ahead, _ in graph.predecessors(label):
+                living[ahead] |= living[label] & reaching[ahead] & ~defines[ahead]
+    return {label: _names_of(names, living[label]) for label in blocks}
+
+
+def _all_of(bits: dict[str, int], names: set[str]) -> int:
+    """The bits of names."""
+    return reduce(or_, map(bits.__getitem__, names), 0)
+
+
+def _names_of(names: list[str], bits: int) -> set[str]:
+    """The names of bits."""
+    return {names[k] for k, bit in enumerate(reversed(f"{bits:b}")) if bit == "1"}
+
+
 # --- Static single assignment ---
 
 
 def _run_ssa(blocks: dict[int, Any]) -> dict[int, Any]:
     """numba's reconstruction, which for each variable looks only at blocks that name it."""
-    from numba.core import errors, ir, ssa
+    from numba.core import analysis, errors, ir, ssa
 
     if not blocks:
         return {}
-    cfg = ssa.compute_cfg_from_blocks(blocks)
+    graph_of: Any = analysis.compute_cfg_from_blocks
+    cfg = graph_of(blocks)
     fronts = ssa._iterated_domfronts(cfg)
     violators = ssa._find_defs_violators(blocks, cfg)
     listed = ssa._CacheListVars()
@@ -168,7 +232,7 @@ def _run_ssa(blocks: dict[int, Any]) -> dict[int, Any]:
         _rewrite(renewed, used[name], states, ssa._FixSSAVars(listed))
         for label, phis in states["phimap"].items():
             renewed[label].body = phis + renewed[label].body
-    if ssa.compute_cfg_from_blocks(renewed) != cfg:
+    if graph_of(renewed) != cfg:
         raise errors.CompilerError("CFG mutated in SSA pass")
     return renewed
 
@@ -182,7 +246,8 @@ def _blocks_of_variables(
     assigned: dict[str, list[int]] = defaultdict(list)
     used: dict[str, list[int]] = defaultdict(list)
     for label, block in blocks.items():
-        targets, others = {}, {}
+        targets: dict[str, None] = {}
+        others: dict[str, None] = {}
         for statement in block.body:
             read = statement
             if isinstance(statement, ir.Assign):
@@ -241,7 +306,6 @@ def _memo_of(resolve: Callable[..., Any]) -> Callable[..., Any]:
     Those that numba implements by functions that it compiles are resolved anew, as that compiles them.
     """
     from numba.core import types
-    from numba.core.typing.templates import _OverloadFunctionTemplate
 
     lasting = (types.Number, types.Boolean, types.Array, types.BaseTuple, types.Record)
 
@@ -259,6 +323,46 @@ def _memo_of(resolve: Callable[..., Any]) -> Callable[..., Any]:
     return get_call_type
 
 
+class _Colourless:
+    """Colours of errors: none."""
+
+    def __getattr__(self, _: str) -> Callable[[str], str]:
+        return lambda text: text
+
+
+def _finding(select: Callable[..., Any]) -> Callable[..., Any]:
+    """Find implementations for types; that there is none is remembered, and no text is made of it."""
+    from numba.core.errors import NumbaNotImplementedError
+
+    def find(self: Any, types: Any) -> Any:
+        if (found := self._cache.get(types)) is not None:
+            return found
+        lacking = self.__dict__.setdefault("_lacking", {})
+        if lacking.get(types) != len(self.versions):
+            if candidates := select(self, types):
+                found = self._cache[types] = candidates[self._best_signature(candidates)]
+                return found
+            lacking[types] = len(self.versions)
+        raise NumbaNotImplementedError("not implemented")
+
+    return find
+
+
+_texts: dict[int, tuple[Any, str]] = {}
+"""Types of records and how they are written."""
+
+
+def _once(write: Callable[[Any], str]) -> Callable[[Any], str]:
+    """Write a type of records once; numba does so for each of its passes, and for errors."""
+
+    def text(self: Any) -> str:
+        if id(self) not in _texts:
+            _texts[id(self)] = self, write(self)
+        return _texts[id(self)][1]
+
+    return text
+
+
 LONGEST_NAME = 60
 """Longest name of a type in the name of a function."""
 
@@ -267,7 +371,7 @@ _short_names: dict[int, tuple[Any, str]] = {}
 
 
 def _short(mangle: Callable[[Any], str]) -> Callable[[Any], str]:
-    """Name types of many records by a digest: their names would be a quarter of the code that is read."""
+    """Name types of many records by a digest: whole names would be a quarter of all code."""
     from numba.core import types
 
     def mangle_type_or_value(kind: Any) -> str:
