@@ -8,7 +8,6 @@ therefore named after a digest of *all* kernel sources.
 import hashlib
 import os
 import tempfile
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -22,6 +21,7 @@ import platformdirs
 
 from tpss.kernel_arrays import handed_over
 from tpss.kernel_cache import KernelCache
+from tpss.kernel_calls import KernelCompiler, KernelDispatcher, for_kernels
 from tpss.shipped import Shipped, shipped
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -44,6 +44,7 @@ _OPTIONS: dict[str, Any] = {
     # Not fast-math: a product and the sum that it enters may be rounded once in place of twice, and
     # nothing else.  NaN, infinities and the order of operations stay what they are.
     "fastmath": {"contract"},
+    "pipeline_class": KernelCompiler,
 }
 
 _WITHOUT_CACHE = {name: value for name, value in _OPTIONS.items() if name != "cache"}
@@ -55,12 +56,18 @@ KERNEL_PACKAGES = (
 """Packages that hold kernels."""
 
 
+HOW_COMPILED = (
+    "kernel.py", "kernel_arrays.py", "kernel_calls.py", "quick_compiling.py", "record.py"
+)  # fmt: skip
+"""Files that say how kernels are compiled."""
+
+
 def source_digest(package_folder: Path) -> str:
     """Digest of every kernel source below `package_folder`, of how it is compiled, and of numba's
     version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for shared in (Path(__file__).name, "kernel_arrays.py", "record.py"):
+    for shared in HOW_COMPILED:
         digest.update((package_folder / shared).read_bytes())
     for name in KERNEL_PACKAGES:
         for file in sorted((package_folder / name).rglob("*.py")):
@@ -227,10 +234,11 @@ def compiled_into(folder: Path, function: _Function, fused: bool) -> _Function:
         As of `fused`.
     """
     with _kept_in(folder):
-        compiled: _Function = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
+        compiled: Any = _njit(inline="never", forceinline=fused, **_OPTIONS)(function)
         if compiles():
-            setattr(compiled, "_cache", _cache_of(function, _none_shipped))  # noqa: B010
-    return compiled
+            compiled.__class__ = KernelDispatcher
+            compiled._cache = _cache_of(function, _none_shipped)
+    return compiled  # type: ignore[no-any-return]
 
 
 def _none_shipped() -> None:
@@ -240,12 +248,13 @@ def _none_shipped() -> None:
 def _compiled(function: _Function, inline: str, **others: Any) -> _Function:
     options = {**_OPTIONS, **others}
     with _kept_in(cache_folder()):
-        compiled: _Function = _njit(inline=inline, **options)(function)
+        compiled: Any = _njit(inline=inline, **options)(function)
         if compiles():
-            setattr(compiled, "_cache", _cache_of(function, shipped_kernels))  # noqa: B010
+            compiled.__class__ = KernelDispatcher
+            compiled._cache = _cache_of(function, shipped_kernels)
             if inline == "never":
-                _indices.append(compiled._cache.index.relative_to(cache_folder()))  # type: ignore[attr-defined]
-    return compiled
+                _indices.append(compiled._cache.index.relative_to(cache_folder()))
+    return compiled  # type: ignore[no-any-return]
 
 
 @contextmanager
@@ -277,36 +286,6 @@ def plain(function: _Function) -> _Function:
     return python
 
 
-TESTED_INLINER = "0.68."
-"""numba whose inliner is known to need no copies of scopes and places in the source."""
-
-_one_compiles = threading.RLock()
-"""Held while the inliner is changed."""
-
-
-@contextmanager
-def quick_inlining() -> Iterator[None]:
-    """Compile without the copies that numba's inliner makes of what it does not change.
-
-    It copies the scope of every block, with all variables, twice a call that it inlines: a quarter of
-    the time that the kernels take to compile.  The compiled code is the same.  One thread at a time.
-    """
-    from numba.core import ir
-
-    if not numba.__version__.startswith(TESTED_INLINER):
-        yield
-        return
-    copied = (ir.Scope, ir.Loc)
-    with _one_compiles:
-        for each in copied:
-            setattr(each, "__deepcopy__", lambda self, _: self)  # noqa: B010
-        try:
-            yield
-        finally:
-            for each in copied:
-                delattr(each, "__deepcopy__")
-
-
 def compile_for(
     function: Callable[..., Any], arguments: tuple[Any, ...], by_kernels: bool = False
 ) -> None:
@@ -314,18 +293,10 @@ def compile_for(
 
     Parameters
     ----------
-    function : callable
-    arguments : tuple
     by_kernels : bool
-        Whether kernels will call it, and so hand over arrays as `kernel_arrays` says, not Python.
+        Only other kernels call it, which hand over arrays as `kernel_arrays` says, not Python.
     """
     if hasattr(function, "compile"):  # not if compilation is switched off
         kinds = [numba.typeof(argument) for argument in arguments]
-        function.compile(tuple(map(handed_over, kinds) if by_kernels else kinds))
-
-
-def compile_quickly(function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    """`compile_for` of a kernel outside those of every run, unless that is done already."""
-    if not getattr(function, "signatures", True):
-        with quick_inlining():
-            compile_for(function, arguments)
+        with for_kernels(by_kernels):
+            function.compile(tuple(map(handed_over, kinds) if by_kernels else kinds))

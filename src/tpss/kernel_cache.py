@@ -18,6 +18,7 @@ from typing import Any
 
 import numba.core.caching
 
+from tpss.kernel_calls import KernelResults
 from tpss.shipped import Shipped, key_of, name_of
 
 _FunctionCache: Any = numba.core.caching.FunctionCache
@@ -70,6 +71,8 @@ class KernelCache(_FunctionCache):  # type: ignore[misc]
     shipped : callable
         Gives the kernels that came with the package, None if none fit.
     """
+
+    _impl_class = KernelResults
 
     def __init__(self, function: Callable[..., Any], shipped: Callable[[], Shipped | None]) -> None:
         super().__init__(function)

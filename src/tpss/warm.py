@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from tpss import examples
 from tpss.api import prepare
 from tpss.extras import absent
-from tpss.kernel import cache_folder, quick_inlining
+from tpss.kernel import cache_folder
 from tpss.run.kernels import compile_calls, search_calls
 from tpss.savings.table import spare_time_savings
 from tpss.scenario.load import load_scenario
@@ -34,8 +34,7 @@ SPARED = {
 def _simulate(scenario: Scenario) -> None:
     """Simulate, and compile the search for solutions too, which few runs need."""
     prepared = prepare(scenario)
-    with quick_inlining():
-        compile_calls(search_calls(prepared.start.model))
+    compile_calls(search_calls(prepared.start.model))
     prepared.run()
 
 

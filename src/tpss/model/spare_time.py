@@ -22,7 +22,6 @@ import numpy as np
 
 from tpss.driving.alone import drive_alone
 from tpss.driving.data import DrivingData, Profile, Profiles, Stop
-from tpss.kernel import compile_quickly
 from tpss.model.held_limits import Held, capped, coasted
 from tpss.model.searches import lowest_between, root_between
 from tpss.numerics.series import SCRATCH_SHAPE
@@ -117,9 +116,7 @@ class Leg:
             limits=_one_row(capped(self._limits, held)),
             coasting=_one_row(coasted(held, self.fastest_m_s)),
         )
-        arguments = (self._voltage_v, self._records, data, self._points, self._scratch)
-        compile_quickly(drive_alone, arguments)
-        drive_alone(*arguments)
+        drive_alone(self._voltage_v, self._records, data, self._points, self._scratch)
         passage = self._records[0].passage
         if passage.motion.phase != Phase.ARRIVED:
             return Way(speed_m_s, coasts_from_m, math.inf, math.inf)

@@ -25,7 +25,7 @@ A sound line needs 1 and 2 only.  So the clock's kernel does these, and asks for
 has done by a kernel that is compiled when it is needed.
 """
 
-from tpss.kernel import at, compile_quickly, inlined, kernel, switch
+from tpss.kernel import at, inlined, kernel, switch
 from tpss.numerics.pairs import magnitude
 from tpss.powerflow.bundle_state import predict_bundles, remember_bundles
 from tpss.powerflow.chain import FLAT, WARM
@@ -349,10 +349,8 @@ def answer(network: Network, flow: Flow, loads: Loads) -> None:
 
 
 def answer_in_turn(network: Network, flow: Flow, loads: Loads) -> None:
-    """`answer`, compiled if it is the first one, while other threads wait for that only."""
-    arguments = (network, flow, loads)
-    compile_quickly(answer, arguments)
-    answer(*arguments)
+    """`answer`, and what it does not find from the other side."""
+    answer(network, flow, loads)
     asked = flow.search[0]
     if asked.share < 1.0 and asked.ending == Ending.LOST:
         answer_from_other_side(network, flow, loads)

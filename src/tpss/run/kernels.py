@@ -31,7 +31,6 @@ from tpss.kernel import (
     compile_for,
     kernels_are_compiled,
     plain,
-    quick_inlining,
     switch,
 )
 from tpss.powerflow.chain import WARM
@@ -83,13 +82,12 @@ def make_ready(model: Model, clock: Clock = advance) -> None:
             return
         if not are_ready():
             tell("compiling")
-        with quick_inlining():
-            if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
-                _compile_in_parts(model)
-            Run(model, [], 0).advance_to(0)
-            if clock is not advance:
-                Run(model, [], 1, clock).advance_to(1)
-            compile_calls(figures_calls(model))
+        if not are_ready() and (os.cpu_count() or 1) > 1 and sys.executable:
+            _compile_in_parts(model)
+        Run(model, [], 0).advance_to(0)
+        if clock is not advance:
+            Run(model, [], 1, clock).advance_to(1)
+        compile_calls(figures_calls(model))
         _ready.add(kernels)
 
 
@@ -152,7 +150,13 @@ def _start(model: Model) -> State:
 
 
 def compile_calls(calls: list[Call], by_kernels: bool = False) -> None:
-    """`compile_for` of each kernel."""
+    """Compile each kernel for its arguments, or load it from the cache, without running it.
+
+    Parameters
+    ----------
+    by_kernels : bool
+        Only other kernels call it, not Python.
+    """
     for function, arguments in calls:
         compile_for(function, arguments, by_kernels)
 
@@ -168,7 +172,7 @@ def _compile_in_parts(model: Model) -> None:
         with subprocess.Popen(command, env=environment, **pipes) as second:  # type: ignore[call-overload]
             try:
                 _send(model, second)
-                compile_calls(load_flow_calls(model))
+                compile_calls(load_flow_calls(model), by_kernels=True)
                 second.stdout.readline()  # it has compiled what the clock calls, or has ended
                 adopt(theirs, folder)
                 Run(model, [], 0).advance_to(0)
@@ -180,10 +184,9 @@ def _compile_in_parts(model: Model) -> None:
 
 def _help(model: Model) -> None:
     """The second process: compile what the clock calls, say so, then what audits a run."""
-    with quick_inlining():
-        compile_calls(step_calls(model), by_kernels=True)
-        print("step", flush=True)
-        compile_calls(figures_calls(model))
+    compile_calls(step_calls(model), by_kernels=True)
+    print("step", flush=True)
+    compile_calls(figures_calls(model))
 
 
 def _send(model: Model, process: "subprocess.Popen[bytes]") -> None:
