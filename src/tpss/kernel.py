@@ -59,7 +59,7 @@ def source_digest(package_folder: Path) -> str:
     version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for shared in (Path(__file__).name, "record.py"):
+    for shared in (Path(__file__).name, "kernel_calls.py", "quick_compiling.py", "record.py"):
         digest.update((package_folder / shared).read_bytes())
     for name in KERNEL_PACKAGES:
         for file in sorted((package_folder / name).rglob("*.py")):
