@@ -39,13 +39,12 @@ from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.powerflow.solve import answer
 from tpss.run.run import Clock, Run
 from tpss.run.services import ScheduledTrain, train_records
-from tpss.step.advance import advance, prepare_trains
+from tpss.step.advance import advance, change_length, prepare_trains, separate_trains
 from tpss.step.coupling import decide
 from tpss.step.model import Model, driving_data
 from tpss.step.record import record_instant, record_trains
 from tpss.step.recording import new_recording
 from tpss.step.state import State, new_state
-from tpss.step.traffic import list_trains
 from tpss.vehicle.demand import update_speed_terms
 
 Call = tuple[Any, tuple[Any, ...]]
@@ -125,7 +124,8 @@ def step_calls(model: Model) -> list[Call]:
         (replan, (train, kind, data)),
         (replan_within, (train, kind, data)),
         (stand_at_stop, (step, 1.0, train, model.stops)),
-        (list_trains, (state.trains, state.flow)),
+        (separate_trains, (step, step, model, state, recording)),
+        (change_length, (step, 1.0, model, state, recording)),
         (prepare_trains, (step, *on_line, data, model.points, state.scratch)),
         (
             record_trains,
