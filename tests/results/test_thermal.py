@@ -3,6 +3,7 @@
 Each case is a load over steps of a minute, or as said, of one piece of equipment with a rating.
 """
 
+import json
 import math
 from typing import Any
 
@@ -210,6 +211,15 @@ def test_a_transformer_that_passes_its_temperature_is_over():
     found = judged(body, [1.5] * 60)
     assert (found.verdict, found.highest_temperature_c) == ("over", pytest.approx(141.0, abs=0.6))
     assert found.state_at_min == 60.0
+
+
+def test_a_transformer_that_burns_has_no_number_for_its_life():
+    """At 40 times its rating it passes 6242 °C, where paper ages infinitely fast; JSON knows no infinity."""
+    found = thermal(body_of(TransformerRating(cooling="ONAF")), [40.0] * 60)
+    assert found.judged[0].loss_of_life_min == math.inf
+    (told,) = found.as_dict()["elements"].values()
+    assert told["verdict"] == "over" and "loss_of_life_min" not in told
+    json.dumps(told, allow_nan=False)
 
 
 def test_a_motor_bears_its_short_time_current_for_its_time_from_cold():

@@ -204,10 +204,11 @@ def ageing_rate(hot_spot_c: Floats) -> Floats:
     Parameters
     ----------
     hot_spot_c : Floats
-        Temperature of the hot spot. [°C]
+        Temperature of the hot spot; above some 6200 °C the rate is infinite. [°C]
 
     References
     ----------
     [IEC600767]_, paper that is not thermally upgraded.
     """
-    return np.asarray(2.0 ** ((hot_spot_c - NORMAL_HOT_SPOT_C) / DOUBLES_PER_K))
+    with np.errstate(over="ignore"):
+        return np.asarray(2.0 ** ((hot_spot_c - NORMAL_HOT_SPOT_C) / DOUBLES_PER_K))

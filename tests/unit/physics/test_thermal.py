@@ -140,3 +140,12 @@ def test_the_hot_spot_overshoots_only_with_fans():
 
 def test_ageing_doubles_every_six_kelvin():
     np.testing.assert_allclose(ageing_rate(np.array([92.0, 98.0, 104.0, 140.0])), [0.5, 1, 2, 128])
+
+
+def test_paper_beyond_all_temperatures_ages_at_once():
+    """2^1024 is beyond all numbers: from 98 °C + 1024 · 6 K = 6242 °C on, without a warning."""
+    assert ageing_rate(np.array([6241.9, 6242.0, 9000.0])).tolist() == [
+        pytest.approx(2.0**1023 * 2.0 ** (1.0 - 0.1 / 6.0), rel=1e-9),
+        math.inf,
+        math.inf,
+    ]

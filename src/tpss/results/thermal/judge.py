@@ -253,6 +253,10 @@ def _worst(windows: Sequence[Window]) -> Window:
 
 
 def _plain(judged: Judged) -> dict[str, Any]:
-    """Figures of a piece of equipment, without those that it has not."""
+    """Figures of a piece of equipment, without those that it has not, or that are infinite."""
     figures = {key: value for key, value in judged._asdict().items() if key != "element"}
-    return {key: value for key, value in figures.items() if value == value and value != ""}
+    return {
+        key: value
+        for key, value in figures.items()
+        if value != "" and (isinstance(value, str) or math.isfinite(value))
+    }
