@@ -214,7 +214,7 @@ def test_a_transformer_that_passes_its_temperature_is_over():
 
 
 def test_a_transformer_that_burns_has_no_number_for_its_life():
-    """At 40 times its rating it passes 6242 °C, where paper ages infinitely fast, which JSON cannot say."""
+    """At 40 times its rating it passes 6242 °C, where paper ages infinitely fast; JSON cannot say so."""
     found = thermal(body_of(TransformerRating(cooling="ONAF")), [40.0] * 60)
     assert found.judged[0].loss_of_life_min == math.inf
     (told,) = found.as_dict()["elements"].values()
