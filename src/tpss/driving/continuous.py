@@ -164,7 +164,7 @@ def prepare(train: Train, data: DrivingData, points: Points, scratch: Floats) ->
     """Find all about a train that stays fixed while this step is solved, but what its driver decides."""
     decision = train.decision
     kind = data.types[at(train.train_type)]
-    train.passage.stays = False
+    train.passage.stays, train.passage.tried_v = False, 0.0
     decision.wanted_m_s = wanted_speed(train, kind, data)
     train.demand.driven_share = decision.moving_share = 1.0
     decision.hold_s = 0.0

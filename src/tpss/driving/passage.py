@@ -404,13 +404,16 @@ def demand_of_passage(
     Others are those of `pass_through`.
     """
     passage, per_second = train.passage, 1.0 / data.options.step_s
-    if not passage.stays or voltage_v <= 0.0:
+    # A voltage that was checked and does not solve the step is asked for its slopes next.
+    again = with_slopes and voltage_v == passage.tried_v
+    if not (passage.stays or again) or voltage_v <= 0.0:
         pass_through(voltage_v, passage, train, kind, data, points, scratch)
-        passage.stays = passage.at_any_voltage and voltage_v > 0.0
+        passage.stays, passage.tried_v = passage.at_any_voltage and voltage_v > 0.0, voltage_v
     active_slope, reactive_slope = 0.0, passage.reactive_slope_vars
     if with_slopes and passage.by_voltage:
         trial, change_v = train.trial, data.options.slope_change * voltage_v
         pass_through(voltage_v + change_v, trial, train, kind, data, points, scratch)
+        passage.tried_v = 0.0
         active_slope = (trial.active_j - passage.active_j) / change_v
         reactive_slope = (trial.reactive_vars - passage.reactive_vars) / change_v
     demand = train.demand

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from tpss.driving.data import DrivingData, Floats
 from tpss.driving.lookahead import time_to_braking, time_to_place
-from tpss.kernel import at, inlined, kernel
+from tpss.kernel import at, inlined
 from tpss.numerics.curve import Points
 from tpss.physics.gradient import mean_gradient
 from tpss.physics.running_resistance import gradient_force
@@ -106,7 +106,7 @@ def when_a_phase_ends(acceleration_m_s2: float, speed_m_s: float, aim: Aim) -> t
     return duration, end
 
 
-@kernel
+@inlined
 def pull_with(
     acceleration_m_s2: float, voltage_v: float, aim: Aim, passage: Passage, train: Train,
     kind: TrainType, data: DrivingData, points: Points, scratch: Floats,
@@ -158,12 +158,12 @@ def find_pull(
     a = aim.acceleration_m_s2
     if a > 0.0:
         a = min(a, max(0.0, passage.acceleration_m_s2))
-    pull = pull_with(a, voltage_v, aim, passage, train, kind, data, points, scratch)
-    above = pull.acceleration_m_s2 - a
     low, high = -math.inf, math.inf
     before, above_before = a, math.inf
-    for _ in range(MOST_SECANTS):
-        if abs(above) <= ACCURACY * max(1.0, abs(a)):
+    for tried in range(MOST_SECANTS + 1):
+        pull = pull_with(a, voltage_v, aim, passage, train, kind, data, points, scratch)
+        above = pull.acceleration_m_s2 - a
+        if abs(above) <= ACCURACY * max(1.0, abs(a)) or tried == MOST_SECANTS:
             break
         # 1. The root lies above where g is positive, and below where it is negative.
         if above > 0.0:
@@ -177,6 +177,4 @@ def find_pull(
         if not (low < after and after < high):
             after = (low + high) / 2.0 if high - low < math.inf else pull.acceleration_m_s2
         before, above_before, a = a, above, after
-        pull = pull_with(a, voltage_v, aim, passage, train, kind, data, points, scratch)
-        above = pull.acceleration_m_s2 - a
     return pull

@@ -28,7 +28,7 @@ from typing import Annotated, Any
 import numpy as np
 import numpy.typing as npt
 
-from tpss.kernel import fused, kernel
+from tpss.kernel import fused, inlined, kernel
 from tpss.numerics.exponential import exponential
 from tpss.record import Record
 
@@ -163,6 +163,17 @@ def prepare_series(network: FeedForwardNetwork) -> None:
     network.closest_8 = float(np.abs(weight).max() / LONGEST_MOVE) ** TAYLOR_TERMS
 
 
+@inlined
+def logistic(value: float) -> float:
+    """The logistic function, 1 / (1 + e^{-y}).
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (B.4), (F.16).
+    """
+    return 1.0 / (1.0 + exponential(-value))
+
+
 @fused
 def logsig(neurons: Array) -> None:
     """Put the logistic function of each value, 1 / (1 + e^{-y}), in its place, shape (NEURONS,).
@@ -172,7 +183,7 @@ def logsig(neurons: Array) -> None:
     [Boullanger2009]_, eq. (B.4), (F.16).
     """
     for n in range(NEURONS):
-        neurons[n] = 1.0 / (1.0 + exponential(-neurons[n]))
+        neurons[n] = logistic(neurons[n])
 
 
 @fused

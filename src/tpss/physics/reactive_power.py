@@ -13,7 +13,7 @@ from tpss.kernel import inlined, kernel
 from tpss.numerics.neural_network import (
     NEURONS,
     FeedForwardNetwork,
-    logsig,
+    logistic,
     outside,
     weigh,
 )
@@ -127,8 +127,7 @@ def power_factor(speed_m_s: float, network: FeedForwardNetwork, neurons: Array) 
     [Boullanger2009]_, eq. (E.1)-(E.13) and (F.11)-(F.14).
     """
     for n in range(NEURONS):
-        neurons[n] = network.bias[n] + network.weight[0, n] * speed_m_s
-    logsig(neurons)
+        neurons[n] = logistic(network.bias[n] + network.weight[0, n] * speed_m_s)
     return network.output_bias + weigh(network.output, neurons)
 
 

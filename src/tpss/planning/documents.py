@@ -7,6 +7,7 @@ from typing import Any
 from tpss.planning.cases import Case
 from tpss.planning.plan import Evaluation
 from tpss.planning.rows import row_of
+from tpss.scenario.own_library import folder_in_use, using
 from tpss.scenario.scenario import Scenario
 from tpss.sweep.collector import spare_the_collector
 
@@ -33,8 +34,9 @@ def run_documents(sent: list[Sent], evaluation: str) -> list[Row]:
         How they are evaluated, in JSON.
     """
     how = Evaluation.model_validate_json(evaluation)
-    return [row_of(case, _maker(document), how) for case, document in sent]
+    with using(folder_in_use()):  # found out once, not once a case
+        return [row_of(case, _maker(document), how) for case, document in sent]
 
 
 def _maker(document: dict[str, Any]) -> Callable[[], Scenario]:
-    return lambda: Scenario.from_document(document, Path("case"))
+    return lambda: Scenario.from_own_document(document, Path("case"))

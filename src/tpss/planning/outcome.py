@@ -143,8 +143,9 @@ def _grid_and_rails(steady: SteadyRun, window: Window) -> dict[str, float]:
 def _lowest_voltage_v(run: Run, inside: npt.NDArray[np.bool_]) -> float:
     """Lowest voltage at a pantograph that is fed, in some steps; infinite if there is none. [V]"""
     there = run.recording.train_state[: run.step][inside] != TrainState.ABSENT
-    trains = np.asarray(run.recording.trains)[: run.step][inside]
-    voltage_v = np.hypot(trains["pantograph_real"], trains["pantograph_imag"])[there]
+    trains = np.asarray(run.recording.trains)[: run.step]  # of which two columns are wanted
+    real, imaginary = (trains[f"pantograph_{part}"][inside][there] for part in ("real", "imag"))
+    voltage_v = np.hypot(real, imaginary)
     return float(np.min(voltage_v, initial=math.inf, where=voltage_v > 0.0))
 
 

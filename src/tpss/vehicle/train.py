@@ -183,6 +183,9 @@ class Passage(Record):
     """Whether forces and powers are known to be the same at any line voltage."""
     stays: bool
     """Whether it is the train's way through the present step, whatever the line voltage."""
+    tried_v: float
+    """Line voltage at which it is the way through the present step, and the train's demand is that of its
+    end; 0: at none. [V]"""
     traction_ns: float
     """Impulse of the tractive force. [N s]"""
     braking_ns: float

@@ -10,7 +10,7 @@ from tpss.kernel import inlined
 from tpss.numerics.neural_network import (
     NEURONS,
     FeedForwardNetwork,
-    logsig,
+    logistic,
     outside,
     weigh,
 )
@@ -19,6 +19,16 @@ from tpss.numerics.series import Series, make_series
 Array = npt.NDArray[np.float64]
 
 SPEED, VOLTAGE, CURRENT = 0, 1, 2
+
+
+@inlined
+def _given_to(
+    n: int, speed_m_s: float, voltage_v: float, current_a: float, network: FeedForwardNetwork
+) -> float:
+    """What a neuron is given."""
+    weight = network.weight
+    fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
+    return fixed + weight[VOLTAGE, n] * voltage_v
 
 
 @inlined
@@ -35,10 +45,8 @@ def _put_in(
     ----------
     [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
     """
-    weight = network.weight
     for n in range(NEURONS):
-        fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
-        scratch[0, n] = fixed + weight[VOLTAGE, n] * voltage_v
+        scratch[0, n] = _given_to(n, speed_m_s, voltage_v, current_a, network)
 
 
 @inlined
@@ -57,8 +65,9 @@ def motor_force(
     ----------
     [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
     """
-    _put_in(speed_m_s, voltage_v, current_a, network, scratch)
-    logsig(scratch[0])
+    # In one loop: neurons that are put down one by one would be waited for to be taken up together.
+    for n in range(NEURONS):
+        scratch[0, n] = logistic(_given_to(n, speed_m_s, voltage_v, current_a, network))
     return network.output_bias + weigh(network.output, scratch[0])
 
 
