@@ -1,7 +1,7 @@
 """Parts of a scenario that many cases have in common: what says the same is validated once, and shared.
 
-Parts are frozen, so nobody can tell.  To tell what says the same costs a tenth of validating it, and
-what is made of a part, such as a network, is found by the part itself, without comparing what it says.
+Parts are frozen, so nobody can tell.  To find out what says the same takes a tenth of validating it.
+What is made of a part, such as a network, is then found by the part itself: nothing has to be compared.
 """
 
 import marshal
@@ -34,10 +34,10 @@ class MadeOnce(Part):
         cls, source: type[Any], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         def validate(given: Any, validated: Any, info: ValidationInfo) -> Any:
-            key = _told(given, info)
-            return (
-                validated(given) if key is None else _parts.of((cls, key), lambda: validated(given))
-            )
+            told = _told(given, info)
+            if told is None:
+                return validated(given)
+            return _parts.of((cls, told), lambda: validated(given))
 
         return core_schema.with_info_wrap_validator_function(validate, handler(source))
 

@@ -184,8 +184,8 @@ class Passage(Record):
     stays: bool
     """Whether it is the train's way through the present step, whatever the line voltage."""
     tried_v: float
-    """Line voltage at which it is the way through the present step, and the train's demand is that of
-    its end; 0: at none. [V]"""
+    """Line voltage at which it is the way through the present step, and the demand that of its end; 0:
+    none. [V]"""
     traction_ns: float
     """Impulse of the tractive force. [N s]"""
     braking_ns: float
