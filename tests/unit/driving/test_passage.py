@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from tpss.driving import passage
@@ -58,7 +57,7 @@ def test_slopes_at_a_voltage_that_was_checked_take_the_second_way_only(ask):
     slopes = asked(train, 14e3, True)
     assert tried == [14e3, 14e3 + 0.14]
     assert slopes == asked(other, 14e3, True)
-    assert np.asarray(train).tobytes() == np.asarray(other).tobytes()
+    assert repr(train.tolist()) == repr(other.tolist())  # in which NaN is NaN
     del tried[:]
     asked(train, 14e3, False)
     assert tried == [14e3]
