@@ -41,8 +41,8 @@ def _sum(points, scale):
 
 
 NAMES = (
-    r"_v\d+_|\bB\d+|;.*|_ZN[\w$]*|@[\".\w<>$ :]*"
-    r"|\$\d+|\d+ x i8|0x[0-9a-f]+|inttoptr \(i64 \d+|c\".*\""
+    r"_v\d+_|\bB\d+|;.*|_ZN[\w$]*|@[\".\w<>$ :]*|\$\d+|\d+ x i8|0x[0-9a-f]+"
+    r"|inttoptr \(i64 \d+|c\".*\""
 )
 """What differs between two compilations of one function."""
 
