@@ -28,7 +28,6 @@ from tpss.scenario.fields import (
     fault,
     unique,
 )
-from tpss.scenario.made_once import MadeOnce
 from tpss.scenario.routes import EQUAL_KM
 from tpss.units import kilometres
 
@@ -168,7 +167,7 @@ def _of_files(schema: JsonSchemaValue) -> None:
     ]
 
 
-class Line(MadeOnce):
+class Line(Part):
     """A railway line from the kilometre where it begins, over its length; nothing lies outside."""
 
     model_config = ConfigDict(json_schema_extra=_of_files)

@@ -6,7 +6,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from tpss import library
 from tpss.scenario.completed import completed
-from tpss.scenario.fields import Name, Real, entry_of, fault
+from tpss.scenario.fields import Name, Part, Real, entry_of, fault
 from tpss.scenario.machine import (
     AdhesionOverSpeed,
     CurrentLimitation,
@@ -16,7 +16,6 @@ from tpss.scenario.machine import (
     RetardationOverSpeed,
     TractiveEffort,
 )
-from tpss.scenario.made_once import MadeOnce
 from tpss.scenario.on_board import OnBoardStorage
 from tpss.scenario.over_load import EfficiencyOverLoad
 from tpss.scenario.own_laws import DriverLaw, ResistanceLaw, demand_resistance, demand_wishes
@@ -32,7 +31,7 @@ LARGEST_SHARE = 0.5
 """Largest share of rotating parts in the mass of a train; 1 plus it is the largest factor."""
 
 
-class Train(MadeOnce):
+class Train(Part):
     """A train: the locomotive's machine and the whole train's mechanics."""
 
     model: Annotated[Name, entry_of("locomotives")] | None = Field(

@@ -10,12 +10,12 @@ from tpss.scenario.fields import (
     Flag,
     FromLibrary,
     Name,
+    Part,
     Real,
     demand_unique,
     fault,
     unique,
 )
-from tpss.scenario.made_once import MadeOnce
 from tpss.scenario.supply.catenary import Catenary, without_reactance
 from tpss.scenario.supply.conductor_faults import demand_conductors
 from tpss.scenario.supply.conductors import Autotransformers, Conductors
@@ -77,7 +77,7 @@ def _with_own_type(table: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]
     return table
 
 
-class Supply(MadeOnce):
+class Supply(Part):
     """Everything that feeds the trains."""
 
     system: SystemName = Field(
