@@ -174,7 +174,7 @@ def logistic(value: float) -> float:
     return 1.0 / (1.0 + exponential(-value))
 
 
-@fused
+@inlined
 def logsig(neurons: Array) -> None:
     """Put the logistic function of each value, 1 / (1 + e^{-y}), in its place, shape (NEURONS,).
 

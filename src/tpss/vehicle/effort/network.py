@@ -25,7 +25,12 @@ SPEED, VOLTAGE, CURRENT = 0, 1, 2
 def _given_to(
     n: int, speed_m_s: float, voltage_v: float, current_a: float, network: FeedForwardNetwork
 ) -> float:
-    """What a neuron is given."""
+    """What a neuron is given.
+
+    References
+    ----------
+    [Boullanger2009]_, eq. (C.1)-(C.17) and (F.7)-(F.10).
+    """
     weight = network.weight
     fixed = network.bias[n] + weight[SPEED, n] * speed_m_s + weight[CURRENT, n] * current_a
     return fixed + weight[VOLTAGE, n] * voltage_v
