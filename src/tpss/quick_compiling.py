@@ -1,4 +1,4 @@
-"""Compilation in half the time: what numba's passes do again and again is done once, or not at all.
+"""Compilation in less time: what numba's passes do again and again is done once, or not at all.
 
 numba takes its passes over every function anew, with copies that nobody changes and lists that are
 found by asking each value what it is.  Of functions that many others become part of, as the kernels

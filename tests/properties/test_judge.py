@@ -21,6 +21,18 @@ def test_a_run_that_fills_its_line_for_longer_than_was_foreseen_is_given_up():
     assert judge(held(7200.0)) == "begun, too long to end"
 
 
+def test_a_limit_behind_the_first_station_holds_while_the_tail_is_under_it():
+    """It begins 10 m behind the limit of 30 km/h with 300 m of train: for 290 m it may not be faster."""
+    document = copy.deepcopy(SMALLEST)
+    document["simulation"] = {"time_step_min": 1.0, "duration_min": 4.0, "motion": "stepped"}
+    line = document["line"]
+    line["stations"] = [{"name": "A", "position_km": 2.0}, {"name": "B", "position_km": 5.0}]
+    limits = [(0.0, 30.0), (1.99, 60.0)]
+    line["speed_limits"] = [{"from_km": km, "speed_kmh": kmh} for km, kmh in limits]
+    document["trains"]["freight"]["length_m"] = 300.0
+    assert judge(document) == "finished"
+
+
 def test_a_run_that_takes_more_steps_than_was_foreseen_is_given_up():
     """One train, for five days of steps of half a minute."""
     document = held(7200.0)

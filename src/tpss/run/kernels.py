@@ -34,7 +34,7 @@ from tpss.kernel import (
     switch,
 )
 from tpss.powerflow.chain import WARM
-from tpss.powerflow.network import Loads, Network
+from tpss.powerflow.network import Network
 from tpss.powerflow.newton import MOST_PASSES, newton
 from tpss.powerflow.solve import answer
 from tpss.run.run import Clock, Run
@@ -44,7 +44,7 @@ from tpss.step.coupling import decide
 from tpss.step.model import Model, driving_data
 from tpss.step.record import record_instant, record_trains
 from tpss.step.recording import new_recording
-from tpss.step.state import State, new_state
+from tpss.step.state import State, loads_in_python, new_state
 from tpss.vehicle.demand import update_speed_terms
 
 Call = tuple[Any, tuple[Any, ...]]
@@ -98,8 +98,7 @@ def are_ready() -> bool:
 def load_flow_calls(model: Model) -> list[Call]:
     """The kernel that solves a load flow, with all that it calls."""
     state = _start(model)
-    data = plain(driving_data)(model)
-    loads = Loads(state.trains, model.types, state.scratch, data, model.points)
+    loads = loads_in_python(model, state)
     return [(newton, (1.0, WARM, MOST_PASSES, model.network, state.flow, loads))]
 
 
