@@ -22,12 +22,14 @@ def test_a_run_that_fills_its_line_for_longer_than_was_foreseen_is_given_up():
 
 
 def test_a_limit_behind_the_first_station_holds_while_the_tail_is_under_it():
-    """It begins 10 m behind the limit of 30 km/h with 300 m of train: for 290 m it may not be faster."""
+    """It begins 10 m behind the limit of 20 km/h with 300 m of train: for 290 m it may not be faster,
+    though with 60 km/h at its head it could be, after a minute at full effort."""
     document = copy.deepcopy(SMALLEST)
     document["simulation"] = {"time_step_min": 1.0, "duration_min": 4.0, "motion": "stepped"}
     line = document["line"]
-    line["stations"] = [{"name": "A", "position_km": 2.0}, {"name": "B", "position_km": 5.0}]
-    limits = [(0.0, 30.0), (1.99, 60.0)]
+    line["length_km"] = 50.0
+    line["stations"] = [{"name": "A", "position_km": 2.0}, {"name": "B", "position_km": 45.0}]
+    limits = [(0.0, 20.0), (1.99, 60.0)]
     line["speed_limits"] = [{"from_km": km, "speed_kmh": kmh} for km, kmh in limits]
     document["trains"]["freight"]["length_m"] = 300.0
     assert judge(document) == "finished"
